@@ -1,0 +1,7 @@
+//! Small numerical pieces that every domain folder may use; they import nothing of ours.
+//!
+//! * [`random`]: seeded streams whose values never change between versions, hosts or thread counts
+//! * [`elementary`]: `exp`, `sin`, `pow` … with one implementation everywhere, so that results keep their bits
+
+pub mod elementary;
+pub mod random;
