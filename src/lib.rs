@@ -2,3 +2,5 @@
 
 pub mod artifact;
 pub mod math;
+pub mod stage;
+pub mod unit;
