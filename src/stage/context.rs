@@ -2,6 +2,7 @@
 
 use super::{StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
+use crate::unit::Dimension;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -14,6 +15,17 @@ pub struct Context {
     pub factors: BTreeMap<String, Factor>,
     /// `[response.NAME]` tables.
     pub responses: BTreeMap<String, Response>,
+    /// `[material.NAME]` tables: values by path (`mortar.Ec`).
+    pub materials: BTreeMap<String, BTreeMap<String, Parameter>>,
+}
+
+/// One value of a material, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// The value.
+    pub value: f64,
+    /// Its dimension, to be checked by whoever knows what the path stands for.
+    pub dimension: Dimension,
 }
 
 /// An experimental factor: the parameter it sets, its unit and symbol, and its levels or range in that unit.
@@ -48,9 +60,17 @@ pub struct Input<'a> {
     pub stage: &'a str,
     /// Hash of its result.
     pub content: ContentHash,
-    /// The task that makes another replicate of it, for kinds that have replicates.
+    /// [`super::Stage::replicate`] of that stage.
     pub replicate: Box<dyn Fn(u64) -> Option<Task> + 'a>,
+    /// [`super::Stage::sample`] of that stage.
+    pub sample: Sampler<'a>,
 }
+
+/// Makes the task that tries a point on a replicate.
+pub type Sampler<'a> = Box<dyn Fn(&Point, u64) -> Result<Task, StageError> + 'a>;
+
+/// Values of factors by name, in the factors' units.
+pub type Point = BTreeMap<String, f64>;
 
 /// What became of a task that the stage asked for.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,6 +14,17 @@
 //! A [`Task`] holds everything that decides its result and nothing else. Its `work` names a function in
 //! [`works`]; bump that function's version when its results change, with a line that says what moved.
 //!
+//! # Artifacts that several kinds exchange
+//! * `results`: a table `runs` with one row per run: factors (in their units), `replicate`, responses (in the units of
+//!   `[response.NAME]`), `failure` (text, empty when all went well; the responses are then missing). From `simulate`,
+//!   `command` and `data`.
+//! * `design`: a table `design` with `point_type` and the factors, and a table `report`.
+//! * `run`: one run of a simulator: a table `responses` (`response,value,unit`) and, for `simulate`, curve, cracks, ….
+//! * `surfaces`: fitted models (tables `coefficients`, `fit`, `residuals`, `stationary` and what prediction needs).
+//! * `solution`: calibrated sets (tables `solution`, `history`, `solution_set`).
+//!
+//! Columns that are factors bear the names of `[factor.NAME]` tables, responses those of `[response.NAME]`.
+//!
 //! # A new kind
 //! One file with the config struct (serde, schemars, `deny_unknown_fields`; quantities as [`crate::unit::Quantity`]),
 //! `impl Stage`, `impl Kind` and its work functions, and one line in the list below. Options added later are skipped
@@ -24,7 +35,7 @@ mod context;
 pub mod data;
 mod task;
 
-pub use context::{Context, Factor, Input, Known, Library, Outcome, Response};
+pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -56,6 +67,16 @@ pub trait Stage: Send + Sync {
     /// (specimens): the result of the stage itself is replicate 1.
     fn replicate(&self, _context: &Context, _number: u64) -> Option<Task> {
         None
+    }
+
+    /// The task that tries one point of the factor space on replicate `number` of whatever it is tried on, for kinds
+    /// that can stand as a simulator (`simulate`, `command`): calibration and verification ask for such tasks. Its
+    /// artifact is that of a single run.
+    ///
+    /// # Errors
+    /// The kind is no simulator, or a factor of the point is not one that it can set.
+    fn sample(&self, _known: &Known, _point: &Point, _number: u64) -> Result<Task, StageError> {
+        Err(StageError::new("this stage is no simulator").hint("name a stage of kind simulate or command"))
     }
 }
 
