@@ -33,6 +33,7 @@
 
 mod context;
 pub mod data;
+pub mod rows;
 mod task;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response};
