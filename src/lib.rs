@@ -1,6 +1,11 @@
 //! `flow` runs a numerical-experiment campaign with bonded-particle models that is written down as one TOML file.
 
 pub mod artifact;
+pub mod cli;
+pub mod exec;
 pub mod math;
+pub mod plan;
+pub mod run;
 pub mod stage;
+pub mod store;
 pub mod unit;

@@ -36,7 +36,7 @@ pub mod data;
 pub mod rows;
 mod task;
 
-pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response};
+pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
