@@ -3,4 +3,5 @@
 pub mod artifact;
 pub mod math;
 pub mod stage;
+pub mod store;
 pub mod unit;
