@@ -7,9 +7,11 @@
 //! Typed artifacts are declared with [`artifact!`](crate::artifact!), one type per file, and convert to and from the tree.
 
 mod field;
+mod key;
 mod node;
 
 pub use field::{Field, Wanted, expect_kind, take};
+pub use key::Key;
 pub use node::{Array, Column, Group, Node, Table, Values};
 
 use std::fmt;
@@ -38,6 +40,18 @@ impl Artifact {
         hash.update(&self.version.to_le_bytes());
         self.root.feed(&mut hash);
         ContentHash(*hash.finalize().as_bytes())
+    }
+
+    /// The artifact as it comes back from a file: every missing value one NaN, no zero with a sign.
+    #[must_use]
+    pub fn canonical(mut self) -> Self {
+        self.root.canonicalise();
+        self
+    }
+
+    /// About the memory its values take, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.root.bytes()
     }
 
     /// The table called `name`, wherever a group of this artifact holds it.

@@ -61,6 +61,14 @@ impl Group {
         self.0.iter().map(|(name, node)| (name.as_str(), node))
     }
 
+    pub(super) fn canonicalise(&mut self) {
+        self.0.values_mut().for_each(Node::canonicalise);
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        self.0.iter().map(|(name, node)| name.len() + 64 + node.bytes()).sum()
+    }
+
     pub(super) fn feed(&self, hash: &mut blake3::Hasher) {
         feed_length(hash, self.0.len());
         for (name, node) in &self.0 {
@@ -187,6 +195,20 @@ impl Values {
         }
     }
 
+    fn canonicalise(&mut self) {
+        if let Self::Reals(values) = self {
+            values.iter_mut().for_each(|value| *value = f64::from_bits(canonical(*value)));
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Reals(values) => 8 * values.len(),
+            Self::Ints(values) => 8 * values.len(),
+            Self::Texts(values) => values.iter().map(|value| 24 + value.len()).sum(),
+        }
+    }
+
     fn feed(&self, hash: &mut blake3::Hasher) {
         feed_length(hash, self.len());
         match self {
@@ -228,6 +250,27 @@ pub struct Array {
 }
 
 impl Node {
+    fn canonicalise(&mut self) {
+        match self {
+            Self::Group(group) => group.canonicalise(),
+            Self::Table(table) => table.columns.iter_mut().for_each(|column| column.values.canonicalise()),
+            Self::Array(array) => array.values.canonicalise(),
+            Self::Real { value, .. } => *value = f64::from_bits(canonical(*value)),
+            Self::Text(_) | Self::Int(_) | Self::Flag(_) | Self::Bytes(_) => {}
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Group(group) => group.bytes(),
+            Self::Table(table) => table.columns.iter().map(|column| 96 + column.values.bytes()).sum(),
+            Self::Array(array) => 96 + array.values.bytes(),
+            Self::Text(text) => text.len(),
+            Self::Bytes(bytes) => bytes.len(),
+            Self::Real { .. } | Self::Int(_) | Self::Flag(_) => 8,
+        }
+    }
+
     pub(super) fn feed(&self, hash: &mut blake3::Hasher) {
         hash.update(self.tag());
         match self {
