@@ -2,5 +2,6 @@
 
 pub mod artifact;
 pub mod math;
+pub mod plan;
 pub mod stage;
 pub mod unit;
