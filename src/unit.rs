@@ -240,6 +240,10 @@ impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Self::Value, E> {
                 Quantity::parse(text).map_err(E::custom)
             }
+            /// A hole: the value was faulty and that is told already.
+            fn visit_unit<E: de::Error>(self) -> Result<Self::Value, E> {
+                Ok(Quantity::si(1.0))
+            }
         }
         deserializer.deserialize_any(Visitor(PhantomData))
     }
