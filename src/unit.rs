@@ -171,10 +171,7 @@ impl<K: Kind> Quantity<K> {
     /// What is wrong with number or unit, with the right form.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
         let text = text.trim();
-        let (value, rest) = split_number(text).ok_or_else(|| UnitError::NoNumber(text.to_owned(), K::EXAMPLE))?;
-        if !value.is_finite() {
-            return Err(UnitError::NotFinite(text.to_owned()));
-        }
+        let (value, rest) = finite(text, K::EXAMPLE)?;
         if rest.is_empty() && K::DIMENSION != Dimension::NONE {
             return Err(UnitError::NoUnit(text.to_owned(), K::EXAMPLE));
         }
@@ -184,6 +181,21 @@ impl<K: Kind> Quantity<K> {
         }
         Ok(Self::si(value * unit.factor))
     }
+}
+
+/// Reads a number with or without a unit of any kind: its SI value and dimension.
+///
+/// # Errors
+/// What is wrong with number or unit.
+pub fn parse_any(text: &str) -> Result<(f64, Dimension), UnitError> {
+    let (value, rest) = finite(text.trim(), "16 GPa")?;
+    let unit = Unit::parse(rest)?;
+    Ok((value * unit.factor, unit.dimension))
+}
+
+fn finite<'t>(text: &'t str, example: &'static str) -> Result<(f64, &'t str), UnitError> {
+    let (value, rest) = split_number(text).ok_or_else(|| UnitError::NoNumber(text.to_owned(), example))?;
+    if value.is_finite() { Ok((value, rest)) } else { Err(UnitError::NotFinite(text.to_owned())) }
 }
 
 /// The longest leading text that is a number, and what follows it.

@@ -1,7 +1,7 @@
 //! From the tree to the workflow: every table read, every name resolved.
 
 use super::fault::{Fault, Source};
-use super::file::{FactorTable, Head, ResponseTable};
+use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
 use super::node::{Entry, Node, Sources, Step, Table, Value};
 use super::read::read;
 use super::{Overrides, Workflow, overlay, stages, syntax};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Keys of the root.
-const ROOT: [&str; 5] = ["workflow", "factor", "response", "stage", "profile"];
+const ROOT: [&str; 6] = ["workflow", "factor", "response", "material", "stage", "profile"];
 
 /// Longest name of a stage, factor, response or profile.
 const LONGEST_NAME: usize = 64;
@@ -32,6 +32,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         seed: head.as_ref().map_or(0, |head| head.seed),
         factors: check.named(&mut root, "factor", Check::factor),
         responses: check.named(&mut root, "response", Check::response),
+        materials: check.named(&mut root, "material", Check::material),
     };
     let stages = stages::read_all(&mut check, &mut root, &context);
     let mut faults = check.faults;
@@ -150,6 +151,11 @@ impl Check<'_> {
         let table = read(node, self.sources, &mut self.faults, |reader| ResponseTable::deserialize(reader))?;
         self.unit(&table.unit, node);
         Some(table.response(name))
+    }
+
+    fn material(&mut self, _: &str, node: &mut Node) -> Option<BTreeMap<String, crate::stage::Parameter>> {
+        let read_table = |reader: super::read::Reader<'_>| MaterialTable::deserialize(reader);
+        read(node, self.sources, &mut self.faults, read_table).map(MaterialTable::material)
     }
 
     fn unit(&mut self, unit: &str, node: &Node) {

@@ -1,8 +1,12 @@
 //! The tables of a workflow file that are not stages.
 
-use crate::stage::{Factor, Response};
-use schemars::JsonSchema;
-use serde::Deserialize;
+use crate::stage::{Factor, Parameter, Response};
+use crate::unit::{Dimension, parse_any};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, de};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt;
 
 /// `[workflow]`: what the whole campaign shares.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -48,6 +52,63 @@ pub(super) struct ResponseTable {
     pub(super) unit: String,
     /// Symbol for tables and figures, such as "\\sigma_u"; the response's name when not given.
     pub(super) symbol: Option<String>,
+}
+
+/// `[material.NAME]`: microparameters by contact group, such as `mortar = { Ec = "20 GPa", mu = 0.5 }`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub(super) struct MaterialTable(BTreeMap<String, BTreeMap<String, ParameterValue>>);
+
+impl MaterialTable {
+    /// Values by path, such as `mortar.Ec`.
+    pub(super) fn material(self) -> BTreeMap<String, Parameter> {
+        let path = |group: &str, name: String| format!("{group}.{name}");
+        let groups = self.0.into_iter();
+        groups.flat_map(|(g, all)| all.into_iter().map(move |(name, value)| (path(&g, name), value.0))).collect()
+    }
+}
+
+/// A quantity of any kind; what it stands for decides later which kind is right.
+#[derive(Debug)]
+struct ParameterValue(Parameter);
+
+impl<'de> Deserialize<'de> for ParameterValue {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl de::Visitor<'_> for Visitor {
+            type Value = Parameter;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, or a quantity with its unit such as \"16 GPa\"")
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Parameter, E> {
+                let (value, dimension) = parse_any(text).map_err(E::custom)?;
+                Ok(Parameter { value, dimension })
+            }
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Parameter, E> {
+                Ok(Parameter { value, dimension: Dimension::NONE })
+            }
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Parameter, E> {
+                self.visit_f64(value as f64)
+            }
+            /// The place of a value whose fault was told already.
+            fn visit_unit<E: de::Error>(self) -> Result<Parameter, E> {
+                self.visit_f64(1.0)
+            }
+        }
+        deserializer.deserialize_any(Visitor).map(Self)
+    }
+}
+
+impl JsonSchema for ParameterValue {
+    fn schema_name() -> Cow<'static, str> {
+        "parameter".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["string", "number"],
+            "description": "A number, or a quantity with its unit such as \"16 GPa\".",
+        })
+    }
 }
 
 impl FactorTable {

@@ -31,6 +31,7 @@
 //! when at their default (`skip_serializing_if`), so that they rerun nothing. Parameters of tasks are plain SI numbers
 //! (the domain's own spec types), built from the config in `next`.
 
+pub mod command;
 mod context;
 pub mod data;
 pub mod rows;
@@ -187,7 +188,10 @@ macro_rules! kinds {
     };
 }
 
-kinds! { data::Data }
+kinds! {
+    command::Command,
+    data::Data,
+}
 
 /// The work called `name`.
 pub fn work(name: &str) -> Option<&'static Work> {

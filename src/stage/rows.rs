@@ -257,7 +257,16 @@ mod tests {
         ];
         let params = json!({ "factors": ["Ec"], "units": { "UCS": "MPa" } });
         let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: crate::stage::Progress| ());
-        let job = Job { params: &params, seed: None, inputs: &inputs, files: &[], threads: 1, say: &say, stop: &stop };
+        let job = Job {
+            params: &params,
+            seed: None,
+            inputs: &inputs,
+            files: &[],
+            threads: 1,
+            time_limit: None,
+            say: &say,
+            stop: &stop,
+        };
         let results = gathered(&job).unwrap();
         let strengths = results.table("runs").unwrap().reals("UCS").unwrap();
         assert!((strengths[0] - 30.0).abs() < 1e-12 && strengths[1].is_nan());

@@ -23,12 +23,14 @@ pub struct Task {
     pub files: Vec<FileInput>,
     /// Which design row (from 0) it computes; for people only, not part of its key.
     pub row: Option<usize>,
+    /// Seconds after which an external program is ended; not part of its key.
+    pub time_limit: Option<f64>,
 }
 
 impl Task {
     /// A task without inputs.
     pub fn new(work: &'static str, params: Value) -> Self {
-        Self { work, params, seed: None, inputs: Vec::new(), files: Vec::new(), row: None }
+        Self { work, params, seed: None, inputs: Vec::new(), files: Vec::new(), row: None, time_limit: None }
     }
 
     /// Gives it a seed.
@@ -112,6 +114,8 @@ pub struct Job<'a> {
     pub files: &'a [FileInput],
     /// Threads it may use; results do not depend on it.
     pub threads: usize,
+    /// Seconds after which an external program is ended.
+    pub time_limit: Option<f64>,
     /// Takes reports of progress.
     pub say: &'a (dyn Fn(Progress) + Sync),
     /// Set when the run is interrupted.
