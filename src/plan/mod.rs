@@ -15,6 +15,7 @@ mod overlay;
 mod read;
 mod stages;
 mod syntax;
+pub mod why;
 
 pub use fault::{Fault, Place, Source, nearest};
 
