@@ -3,6 +3,7 @@
 pub mod artifact;
 pub mod cli;
 pub mod exec;
+pub mod design;
 pub mod math;
 pub mod plan;
 pub mod run;
