@@ -8,5 +8,6 @@ pub mod math;
 pub mod plan;
 pub mod run;
 pub mod stage;
+pub mod stats;
 pub mod store;
 pub mod unit;
