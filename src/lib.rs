@@ -4,6 +4,7 @@ pub mod artifact;
 pub mod cli;
 pub mod exec;
 pub mod math;
+pub mod optim;
 pub mod plan;
 pub mod run;
 pub mod stage;
