@@ -4,6 +4,7 @@ pub mod artifact;
 pub mod cli;
 pub mod exec;
 pub mod design;
+pub mod figure;
 pub mod math;
 pub mod optim;
 pub mod plan;
