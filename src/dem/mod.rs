@@ -1,2 +1,3 @@
 //! Engine.
 pub mod genesis;
+pub mod test;

@@ -1,0 +1,3 @@
+//! Loading tests.
+pub mod curve;
+pub mod gauge;
