@@ -5,6 +5,7 @@ pub mod cli;
 pub mod exec;
 pub mod design;
 pub mod figure;
+pub mod dem;
 pub mod math;
 pub mod optim;
 pub mod plan;

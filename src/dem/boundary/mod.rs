@@ -1,0 +1,5 @@
+//! Flat walls and how they move.
+
+mod wall;
+
+pub use wall::{Motion, Servo, Wall};

@@ -1,0 +1,9 @@
+//! Contacts: the list that the hot loop runs over, and what a caller sees of one.
+
+mod section;
+mod sweep;
+mod view;
+
+pub(crate) use section::{Key, LawKind, Packed, Section};
+pub(crate) use sweep::{Break, Face, Sweep, sweep_section};
+pub use view::{Contact, Other};

@@ -1,0 +1,167 @@
+//! Contacts of one class, in blocks of eight; between them the classes hold the whole list.
+//!
+//! The order of contacts (class, wall, i, j) decides the order of every sum, so it depends on nothing but the contacts.
+
+use crate::dem::interaction::Bond;
+use crate::dem::law::{KN, REFERENCE, Rows};
+use crate::dem::simd::{Row, WIDEST};
+use crate::dem::space::Space;
+
+/// Which law a class follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LawKind {
+    Linear,
+    ContactBond,
+    ParallelBond,
+}
+
+impl LawKind {
+    pub(crate) fn of(bond: &Bond) -> Self {
+        match bond {
+            Bond::None => Self::Linear,
+            Bond::Contact(_) => Self::ContactBond,
+            Bond::Parallel(_) => Self::ParallelBond,
+        }
+    }
+}
+
+/// Who meets whom, in the engine's numbering: i with particle j, or with wall j.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Key {
+    /// The first particle.
+    pub(crate) i: u32,
+    /// True when j is a wall.
+    pub(crate) at_wall: bool,
+    /// The second particle (above i), or the wall.
+    pub(crate) j: u32,
+}
+
+/// Contacts of one class: between particles, or with one wall.
+#[derive(Clone, Debug)]
+pub(crate) struct Section {
+    /// Place in the contact table.
+    pub(crate) class: usize,
+    /// The wall, for contacts with one.
+    pub(crate) wall: Option<u32>,
+    /// Real contacts; the last block is filled up with idle ones.
+    pub(crate) count: usize,
+    /// Ends of each block: i, then j.
+    pub(crate) ends: Vec<[[u32; WIDEST]; 2]>,
+    /// `Rows::COUNT` rows a block.
+    pub(crate) rows: Vec<Row>,
+    /// Force on the wall, `DIMENSION` rows a block; empty between particles.
+    pub(crate) reactions: Vec<Row>,
+}
+
+impl Section {
+    /// An idle section. Idle lanes join the two dummies that stand after the `particles` real ones.
+    pub(crate) fn new<S: Space>(class: usize, wall: Option<u32>, contacts: usize, particles: usize) -> Self {
+        let blocks = contacts.div_ceil(WIDEST);
+        let dummy = [[particles as u32; WIDEST], [particles as u32 + 1; WIDEST]];
+        let mut rows = vec![Row::default(); blocks * Rows::<S>::COUNT];
+        for block in rows.chunks_exact_mut(Rows::<S>::COUNT) {
+            block[Rows::<S>::TENSION] = Row([f64::INFINITY; WIDEST]);
+            block[Rows::<S>::COHESION] = Row([f64::INFINITY; WIDEST]);
+        }
+        let reactions = if wall.is_some() { vec![Row::default(); blocks * S::DIMENSION] } else { Vec::new() };
+        Self { class, wall, count: contacts, ends: vec![dummy; blocks], rows, reactions }
+    }
+
+    /// The key of contact `c`.
+    pub(crate) fn key(&self, c: usize) -> Key {
+        let [i, j] = self.ends[c / WIDEST].map(|end| end[c % WIDEST]);
+        Key { i, at_wall: self.wall.is_some(), j: self.wall.unwrap_or(j) }
+    }
+
+    /// Sets the ends of contact `c`.
+    pub(crate) fn set_key(&mut self, c: usize, key: Key) {
+        let ends = &mut self.ends[c / WIDEST];
+        ends[0][c % WIDEST] = key.i;
+        if !key.at_wall {
+            ends[1][c % WIDEST] = key.j;
+        }
+    }
+
+    /// Row `row` of contact `c`.
+    pub(crate) fn value<S: Space>(&self, c: usize, row: usize) -> f64 {
+        self.rows[c / WIDEST * Rows::<S>::COUNT + row].0[c % WIDEST]
+    }
+
+    /// Writes row `row` of contact `c`.
+    pub(crate) fn set_value<S: Space>(&mut self, c: usize, row: usize, value: f64) {
+        self.rows[c / WIDEST * Rows::<S>::COUNT + row].0[c % WIDEST] = value;
+    }
+
+    /// Whether contact `c` is bonded.
+    pub(crate) fn bonded<S: Space>(&self, c: usize) -> bool {
+        self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
+    }
+
+    /// Copies contact `c` out.
+    pub(crate) fn pack<S: Space>(&self, c: usize, into: &mut Packed) {
+        into.keys.push((self.key(c), self.class as u32));
+        into.values.extend((0..Rows::<S>::COUNT).map(|row| self.value::<S>(c, row)));
+    }
+}
+
+/// Contacts one after the other, `Rows::COUNT` numbers each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Packed {
+    /// Key and class.
+    pub(crate) keys: Vec<(Key, u32)>,
+    /// Rows of each.
+    pub(crate) values: Vec<f64>,
+}
+
+impl Packed {
+    /// Adds a fresh, unbonded contact.
+    pub(crate) fn push_new<S: Space>(&mut self, key: Key, class: u32, kn: f64) {
+        self.keys.push((key, class));
+        let first = self.values.len();
+        self.values.resize(first + Rows::<S>::COUNT, 0.0);
+        self.values[first + KN] = kn;
+        self.values[first + REFERENCE] = 0.0;
+        self.values[first + Rows::<S>::TENSION] = f64::INFINITY;
+        self.values[first + Rows::<S>::COHESION] = f64::INFINITY;
+    }
+
+    /// Adds contact `k` of another list.
+    pub(crate) fn push_old<S: Space>(&mut self, from: &Packed, k: usize) {
+        self.keys.push(from.keys[k]);
+        self.values.extend_from_slice(from.rows::<S>(k));
+    }
+
+    /// Rows of contact `k`.
+    pub(crate) fn rows<S: Space>(&self, k: usize) -> &[f64] {
+        &self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
+    }
+
+    /// Sections in the order (wall or not, class, wall), contacts by (i, j) within each.
+    pub(crate) fn sections<S: Space>(&self, particles: usize) -> Vec<Section> {
+        let mut order: Vec<u32> = (0..self.keys.len() as u32).collect();
+        let place = |k: u32| {
+            let (key, class) = self.keys[k as usize];
+            (key.at_wall, class, if key.at_wall { key.j } else { 0 }, key.i, key.j)
+        };
+        order.sort_unstable_by_key(|&k| place(k));
+        let same = |a: &u32, b: &u32| {
+            let (a, b) = (place(*a), place(*b));
+            (a.0, a.1, a.2) == (b.0, b.1, b.2)
+        };
+        order
+            .chunk_by(same)
+            .map(|chunk| {
+                let (key, class) = self.keys[chunk[0] as usize];
+                let wall = key.at_wall.then_some(key.j);
+                let mut section = Section::new::<S>(class as usize, wall, chunk.len(), particles);
+                for (c, &k) in chunk.iter().enumerate() {
+                    section.set_key(c, self.keys[k as usize].0);
+                    for (row, &value) in self.rows::<S>(k as usize).iter().enumerate() {
+                        section.set_value::<S>(c, row, value);
+                    }
+                }
+                section
+            })
+            .collect()
+    }
+}

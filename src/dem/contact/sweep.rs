@@ -1,0 +1,165 @@
+//! The one contact loop: geometry, law, loads, for every block of a section.
+
+use super::section::{LawKind, Section};
+use crate::dem::law::{Constants, ContactBondLaw, KN, Law, LinearLaw, ParallelBondLaw, Rows, Viscous};
+use crate::dem::simd::{Lane, Quad, Row, WIDEST};
+use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
+
+/// The side of a wall that balls see, now.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face<S: Space> {
+    /// A point on it.
+    pub(crate) point: Vector<S>,
+    /// Unit normal into the specimen.
+    pub(crate) normal: Vector<S>,
+    /// Velocity.
+    pub(crate) velocity: Vector<S>,
+}
+
+/// What a sweep reads besides its section.
+pub(crate) struct Sweep<'a> {
+    /// Kinematic records, two dummies at the end.
+    pub(crate) records: &'a [Quad],
+    /// 1/m of the body of each particle, two dummies at the end.
+    pub(crate) inverse_mass: &'a [f64],
+    /// Time step, s.
+    pub(crate) dt: f64,
+}
+
+/// A bond that broke in this step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Break {
+    /// Class of the contact.
+    pub(crate) class: usize,
+    /// Ends in the engine's numbering; j is the wall when `at_wall`.
+    pub(crate) i: u32,
+    pub(crate) j: u32,
+    pub(crate) at_wall: bool,
+    /// Tension, else shear.
+    pub(crate) tensile: bool,
+}
+
+/// Touch of two balls.
+#[inline(always)]
+fn pair_touch<S: Space, L: Lane>(i: &End<S, L>, j: &End<S, L>, dt: L) -> Touch<S, L> {
+    let apart = j.position.minus(i.position);
+    let distance = apart.norm();
+    let inverse = L::splat(1.0) / distance;
+    let gap = distance - (i.radius + j.radius);
+    let half = gap * L::splat(0.5);
+    S::touch(i, j, apart.times(inverse), gap, [i.radius + half, j.radius + half], inverse, dt)
+}
+
+/// Touch of a ball and a wall.
+#[inline(always)]
+fn wall_touch<S: Space, L: Lane>(i: &End<S, L>, face: &Face<S>, dt: L) -> Touch<S, L> {
+    let lanes = |v: Vector<S>| S::Vector::<L>::build(|k| L::splat(v.at(k)));
+    let inward = lanes(face.normal);
+    let gap = i.position.minus(lanes(face.point)).dot(inward) - i.radius;
+    let zero = L::splat(0.0);
+    let j = End {
+        position: i.position,
+        radius: L::splat(f64::INFINITY),
+        velocity: lanes(face.velocity),
+        spin: S::Spin::<L>::zero(),
+    };
+    let arm = i.radius + gap * L::splat(0.5);
+    S::touch(i, &j, inward.times(L::splat(-1.0)), gap, [arm, zero], zero, dt)
+}
+
+/// Runs the law of a section over all its blocks.
+#[inline(always)]
+pub(crate) fn sweep_section<S: Space, L: Lane>(
+    kind: LawKind,
+    constants: &Constants,
+    face: Option<&Face<S>>,
+    section: &mut Section,
+    task: &Sweep<'_>,
+    loads: &mut [Quad],
+    breaks: &mut Vec<Break>,
+) {
+    match kind {
+        LawKind::Linear => blocks::<S, L, LinearLaw>(constants, face, section, task, loads, breaks),
+        LawKind::ContactBond => blocks::<S, L, ContactBondLaw>(constants, face, section, task, loads, breaks),
+        LawKind::ParallelBond => blocks::<S, L, ParallelBondLaw>(constants, face, section, task, loads, breaks),
+    }
+}
+
+#[inline(always)]
+fn blocks<S: Space, L: Lane, K: Law<S>>(
+    constants: &Constants,
+    face: Option<&Face<S>>,
+    section: &mut Section,
+    task: &Sweep<'_>,
+    loads: &mut [Quad],
+    breaks: &mut Vec<Break>,
+) {
+    let viscous = constants.dashpot != [0.0; 2];
+    let dt = L::splat(task.dt);
+    let class = section.class;
+    let wall = section.wall;
+    for (b, (ends, rows)) in section.ends.iter().zip(section.rows.chunks_exact_mut(Rows::<S>::COUNT)).enumerate() {
+        for at in (0..WIDEST).step_by(L::WIDTH) {
+            let (first, second) = (&ends[0][at..at + L::WIDTH], &ends[1][at..at + L::WIDTH]);
+            let i = S::ends::<L>(task.records, first);
+            let touch = match face {
+                None => pair_touch(&i, &S::ends::<L>(task.records, second), dt),
+                Some(face) => wall_touch(&i, face, dt),
+            };
+            let drag = viscous.then(|| drag(constants, task, first, face.is_none().then_some(second), rows, at));
+            let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at);
+            S::push_i(loads, first, &touch, &load);
+            match face {
+                None => S::push_j(loads, second, &touch, &load),
+                Some(_) => react(&mut section.reactions[b * S::DIMENSION..], at, &touch, &load),
+            }
+            if let Some(broken) = broken {
+                let (tension, shear) = (L::bits(broken.tension), L::bits(broken.shear));
+                note(class, wall, [first, second], tension, tension | shear, breaks);
+            }
+        }
+    }
+}
+
+/// Dashpot coefficients over the time step, 2 β √(m_eff k) / dt.
+#[inline(always)]
+fn drag<L: Lane>(
+    constants: &Constants,
+    task: &Sweep<'_>,
+    first: &[u32],
+    second: Option<&[u32]>,
+    rows: &[Row],
+    at: usize,
+) -> Viscous<L> {
+    let mut inverse = Row::default();
+    for (k, &i) in first.iter().enumerate() {
+        inverse.0[k] = task.inverse_mass[i as usize] + second.map_or(0.0, |j| task.inverse_mass[j[k] as usize]);
+    }
+    // Two bodies that cannot move have no effective mass; the floor keeps the quotient finite and the velocity is 0.
+    let inverse = L::load(&inverse, 0).max(L::splat(f64::MIN_POSITIVE));
+    let kn = L::load(&rows[KN], at);
+    let critical = (kn / inverse).sqrt();
+    let shear = (kn * L::splat(constants.shear_share) / inverse).sqrt();
+    Viscous {
+        normal: L::splat(2.0 * constants.dashpot[0] / task.dt) * critical,
+        shear: L::splat(2.0 * constants.dashpot[1] / task.dt) * shear,
+    }
+}
+
+/// Keeps the force on the wall.
+#[inline(always)]
+fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L>, load: &Load<S, L>) {
+    let force = S::force(touch, load);
+    for k in 0..S::DIMENSION {
+        (-force.at(k)).store(&mut reactions[k], at);
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn note(class: usize, wall: Option<u32>, ends: [&[u32]; 2], tension: u8, any: u8, breaks: &mut Vec<Break>) {
+    for k in (0..ends[0].len()).filter(|k| any >> k & 1 == 1) {
+        let j = wall.unwrap_or(ends[1][k]);
+        breaks.push(Break { class, i: ends[0][k], j, at_wall: wall.is_some(), tensile: tension >> k & 1 == 1 });
+    }
+}

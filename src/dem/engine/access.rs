@@ -1,0 +1,179 @@
+//! What a caller may read. Particles are named by their places in the caller's list.
+
+use super::{Engine, Settings};
+use crate::dem::body;
+use crate::dem::contact::{Contact, Key, Other, Section};
+use crate::dem::law::{KN, REFERENCE, Rows, SHEAR};
+use crate::dem::measure::Crack;
+use crate::dem::particle::{Clump, Group, Particle};
+use crate::dem::space::{Load, Space, Spin, Touch, Tuple, Vector};
+
+impl<S: Space> Engine<S> {
+    /// Number of particles.
+    pub fn particle_count(&self) -> usize {
+        self.caller.len()
+    }
+
+    /// Steps made.
+    pub fn steps(&self) -> u64 {
+        self.step
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Time step, s.
+    pub fn time_step(&self) -> f64 {
+        self.dt
+    }
+
+    /// Settings.
+    pub fn settings(&self) -> &Settings<S> {
+        &self.settings
+    }
+
+    /// Cracks so far, in the order of breaking.
+    pub fn cracks(&self) -> &[Crack<S>] {
+        &self.cracks
+    }
+
+    /// Centre of a particle, m.
+    pub fn position(&self, particle: usize) -> Vector<S> {
+        self.position_of(self.place[particle] as usize)
+    }
+
+    /// Velocity of a particle, m/s.
+    pub fn velocity(&self, particle: usize) -> Vector<S> {
+        body::velocity::<S>(&self.records, self.place[particle] as usize)
+    }
+
+    /// Spin of a particle, rad/s.
+    pub fn spin(&self, particle: usize) -> Spin<S> {
+        body::spin::<S>(&self.records, self.place[particle] as usize)
+    }
+
+    /// Radius of a particle, m.
+    pub fn radius(&self, particle: usize) -> f64 {
+        self.radii[self.place[particle] as usize]
+    }
+
+    /// Group of a particle.
+    pub fn group(&self, particle: usize) -> Group {
+        self.groups[self.place[particle] as usize]
+    }
+
+    /// Mass of a particle that belongs to no clump, as it moves, kg.
+    pub fn mass(&self, particle: usize) -> f64 {
+        self.masses[self.place[particle] as usize]
+    }
+
+    /// The clump of a particle, by its place in the caller's list of clumps.
+    pub fn clump_of(&self, particle: usize) -> Option<usize> {
+        let body = self.bodies[self.place[particle] as usize] as usize;
+        (body < self.clumps.len()).then_some(body)
+    }
+
+    /// A particle as it is now.
+    pub fn particle(&self, particle: usize) -> Particle<S> {
+        let p = self.place[particle] as usize;
+        Particle {
+            position: self.position(particle),
+            radius: self.radii[p],
+            velocity: self.velocity(particle),
+            spin: self.spin(particle),
+            mass: self.masses[p],
+            inertia: self.inertias[p],
+            group: self.groups[p],
+        }
+    }
+
+    /// A clump as it is now; its inertia in the present frame of the specimen.
+    pub fn clump(&self, clump: usize) -> Clump<S> {
+        let rigid = &self.clumps[clump];
+        Clump {
+            pebbles: rigid.pebbles.clone().map(|p| self.caller[p] as usize).collect(),
+            centre: rigid.centre,
+            velocity: rigid.velocity,
+            spin: rigid.spin,
+            mass: rigid.mass,
+            inertia: S::turned_inertia(rigid.turn, &rigid.inertia),
+        }
+    }
+
+    /// Number of clumps.
+    pub fn clump_count(&self) -> usize {
+        self.clumps.len()
+    }
+
+    /// A point on wall `w` now, m.
+    pub fn wall_point(&self, w: usize) -> Vector<S> {
+        self.walls[w].face.point
+    }
+
+    /// Unit normal of wall `w`, into the specimen.
+    pub fn wall_normal(&self, w: usize) -> Vector<S> {
+        self.walls[w].face.normal
+    }
+
+    /// Velocity of wall `w` now, m/s.
+    pub fn wall_velocity(&self, w: usize) -> Vector<S> {
+        self.walls[w].face.velocity
+    }
+
+    /// All listed contacts, in the engine's order.
+    pub fn contacts(&self) -> impl Iterator<Item = Contact<S>> + '_ {
+        self.sections.iter().flat_map(move |section| (0..section.count).map(move |c| self.contact(section, c)))
+    }
+
+    pub(super) fn position_of(&self, p: usize) -> Vector<S> {
+        body::position::<S>(&self.records, p)
+    }
+
+    /// Normal of a contact from i outwards.
+    pub(super) fn normal_of(&self, key: Key) -> Vector<S> {
+        if key.at_wall {
+            return self.walls[key.j as usize].face.normal.times(-1.0);
+        }
+        let apart = self.position_of(key.j as usize).minus(self.position_of(key.i as usize));
+        apart.times(1.0 / apart.norm())
+    }
+
+    fn contact(&self, section: &Section, c: usize) -> Contact<S> {
+        let key = section.key(c);
+        let (i, j) = (key.i as usize, key.j as usize);
+        let (gap, normal, x) = (self.gap(key), self.normal_of(key), self.position_of(i));
+        let reach = self.radii[i] + 0.5 * gap;
+        let value = |row: usize| section.value::<S>(c, row);
+        let bonded = section.bonded::<S>(c);
+        let point_bond = bonded && self.classes[section.class].law == crate::dem::contact::LawKind::ContactBond;
+        let overlap = value(REFERENCE) - gap;
+        let push = value(KN) * if point_bond { overlap } else { overlap.max(0.0) };
+        let shear = |first: usize| S::Shear::<f64>::build(|k| value(first + k));
+        let solid = S::DIMENSION == 3;
+        let cement = Load::<S, f64> {
+            normal: value(Rows::<S>::BOND_NORMAL),
+            shear: shear(Rows::<S>::BOND_SHEAR),
+            twist: if solid { value(Rows::<S>::BOND_TWIST) } else { 0.0 },
+            bend: shear(Rows::<S>::BOND_BEND),
+        };
+        let spring = Load::<S, f64> { normal: -push, shear: shear(SHEAR), ..cement };
+        let touch = Touch::<S, f64>::still(normal, gap);
+        Contact {
+            particle: self.caller[i] as usize,
+            other: if key.at_wall { Other::Wall(j) } else { Other::Particle(self.caller[j] as usize) },
+            normal,
+            point: x.plus(normal.times(reach)),
+            branch: normal.times(if key.at_wall { reach } else { self.radii[i] + self.radii[j] + gap }),
+            gap,
+            reference: value(REFERENCE),
+            bonded,
+            active: bonded || overlap > 0.0,
+            kn: value(KN),
+            spring: S::force(&touch, &spring),
+            cement: S::force(&touch, &cement),
+            moment: S::bond_moment(&touch, &cement),
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! From a model to an engine.
+
+use super::{Class, Engine, Model, MovingWall};
+use crate::dem::body::{Rigid, set_kinematics};
+use crate::dem::boundary::{Motion, Wall};
+use crate::dem::contact::{Face, LawKind};
+use crate::dem::error::Faults;
+use crate::dem::interaction::ContactTable;
+use crate::dem::law::Constants;
+use crate::dem::neighbour::morton_order;
+use crate::dem::simd::Quad;
+use crate::dem::space::{Space, Tuple, Vector};
+
+/// A body of its own, in `bodies`.
+const NO_CLUMP: u32 = u32::MAX;
+
+impl<S: Space> Engine<S> {
+    /// Checks a model and sets it up: bodies are renumbered along a Morton curve, contacts are searched, the time step
+    /// is derived.
+    ///
+    /// # Errors
+    /// All faults of the model.
+    pub fn new(model: &Model<S>) -> Result<Self, Faults> {
+        super::validate::check(model)?;
+        let (caller, clump_of) = numbering(model);
+        let mut engine = Self::empty(model, caller, &clump_of);
+        engine.add_particles(model);
+        engine.add_clumps(model);
+        for wall in &model.walls {
+            engine.walls.push(moving(wall));
+        }
+        engine.set_inverse_masses();
+        engine.relist();
+        engine.derive_step();
+        if model.settings.masses == super::Masses::EqualStep {
+            engine.equalise_masses();
+        }
+        Ok(engine)
+    }
+
+    fn empty(model: &Model<S>, caller: Vec<u32>, clump_of: &[u32]) -> Self {
+        let n = caller.len();
+        let mut place = vec![0; n];
+        let mut bodies = vec![0; n];
+        let mut single = model.clumps.len() as u32;
+        for (p, &id) in caller.iter().enumerate() {
+            place[id as usize] = p as u32;
+            bodies[p] = clump_of[id as usize];
+            if bodies[p] == NO_CLUMP {
+                bodies[p] = single;
+                single += 1;
+            }
+        }
+        let smallest = model.particles.iter().map(|p| p.radius).fold(f64::INFINITY, f64::min);
+        Self {
+            settings: model.settings.clone(),
+            table: model.contacts.clone(),
+            classes: classes(&model.contacts),
+            caller,
+            place,
+            groups: Vec::with_capacity(n),
+            bodies,
+            radii: Vec::with_capacity(n),
+            masses: Vec::with_capacity(n),
+            inertias: Vec::with_capacity(n),
+            fixed: vec![[false; 2]; n],
+            records: vec![Quad::default(); (n + 2) * S::RECORD],
+            loads: vec![Quad::default(); (n + 2) * S::LOADS],
+            inverse: vec![Quad::default(); n * S::LOADS],
+            inverse_mass: vec![0.0; n + 2],
+            weights: Vec::new(),
+            clumps: Vec::with_capacity(model.clumps.len()),
+            walls: Vec::with_capacity(model.walls.len()),
+            sections: Vec::new(),
+            breaks: Vec::new(),
+            cracks: Vec::new(),
+            margin: 0.1 * smallest,
+            smallest_radius: smallest,
+            travelled: 0.0,
+            origins: Vec::new(),
+            listed_at: 0,
+            stale: false,
+            dt: 0.0,
+            step: 0,
+            time: 0.0,
+        }
+    }
+
+    fn add_particles(&mut self, model: &Model<S>) {
+        let n = self.caller.len();
+        for p in 0..n {
+            let particle = &model.particles[self.caller[p] as usize];
+            let record = &mut self.records[p * S::RECORD..(p + 1) * S::RECORD];
+            record[0].0[3] = particle.radius;
+            set_kinematics::<S>(record, particle.position, particle.velocity, particle.spin);
+            self.groups.push(particle.group);
+            self.radii.push(particle.radius);
+            self.masses.push(particle.mass);
+            self.inertias.push(particle.inertia);
+        }
+        // Two dummies, apart from each other and at rest, for the idle lanes of the last blocks.
+        for (k, p) in [n, n + 1].into_iter().enumerate() {
+            self.records[p * S::RECORD].0 = [3.0 * k as f64, 0.0, 0.0, 1.0];
+        }
+    }
+
+    fn add_clumps(&mut self, model: &Model<S>) {
+        for clump in &model.clumps {
+            // Pebbles stand together in the engine's order.
+            let first = clump.pebbles.iter().map(|&id| self.place[id]).min().unwrap_or(0) as usize;
+            let pebbles = first..first + clump.pebbles.len();
+            let offset = |p: usize| model.particles[self.caller[p] as usize].position.minus(clump.centre);
+            let inverse = S::inverse_inertia(&clump.inertia).unwrap_or_default();
+            let mut rigid = Rigid {
+                offsets: pebbles.clone().map(offset).collect(),
+                pebbles,
+                centre: clump.centre,
+                velocity: clump.velocity,
+                momentum: S::momentum_of(&clump.inertia, clump.spin),
+                spin: clump.spin,
+                turn: S::upright(),
+                mass: clump.mass,
+                inertia: clump.inertia,
+                inverse,
+                weight: Vector::<S>::zero(),
+            };
+            rigid.set_motion(clump.velocity, clump.spin);
+            rigid.place(&mut self.records);
+            self.clumps.push(rigid);
+        }
+    }
+
+    /// Inverse masses and weights, from masses, fixed components and gravity.
+    pub(super) fn set_inverse_masses(&mut self) {
+        let n = self.caller.len();
+        let heavy = self.settings.gravity.norm() > 0.0;
+        self.weights = if heavy { vec![Quad::default(); n * S::LOADS] } else { Vec::new() };
+        let (row, first) = crate::dem::body::spin_place::<S>();
+        let spins = if S::DIMENSION == 2 { 1 } else { 3 };
+        for p in 0..n {
+            let inverse = &mut self.inverse[p * S::LOADS..(p + 1) * S::LOADS];
+            inverse.fill(Quad::default());
+            self.inverse_mass[p] = 0.0;
+            let clump = self.bodies[p] as usize;
+            if clump < self.clumps.len() {
+                self.inverse_mass[p] = 1.0 / self.clumps[clump].mass;
+                continue;
+            }
+            if !self.fixed[p][0] {
+                self.inverse_mass[p] = 1.0 / self.masses[p];
+                inverse[0].0[..S::DIMENSION].fill(1.0 / self.masses[p]);
+            }
+            if !self.fixed[p][1] {
+                inverse[row].0[first..first + spins].fill(1.0 / self.inertias[p]);
+            }
+            if heavy {
+                for k in 0..S::DIMENSION {
+                    self.weights[p * S::LOADS].0[k] = self.masses[p] * self.settings.gravity.at(k);
+                }
+            }
+        }
+        for clump in &mut self.clumps {
+            clump.weight = self.settings.gravity.times(clump.mass);
+        }
+    }
+}
+
+/// The classes of a table.
+pub(super) fn classes(table: &ContactTable) -> Vec<Class> {
+    let class = |e: &(_, _, crate::dem::interaction::Interaction)| Class {
+        law: LawKind::of(&e.2.bond),
+        constants: Constants::new(&e.2),
+    };
+    table.entries.iter().map(class).collect()
+}
+
+/// A wall as it starts.
+pub(super) fn moving<S: Space>(wall: &Wall<S>) -> MovingWall<S> {
+    let velocity = match wall.motion {
+        Motion::Velocity(v) => v,
+        Motion::Servo(_) => Vector::<S>::zero(),
+    };
+    let normal = wall.normal.times(1.0 / wall.normal.norm());
+    MovingWall {
+        face: Face { point: wall.point, normal, velocity },
+        motion: wall.motion,
+        group: wall.group,
+        present: true,
+    }
+}
+
+/// The caller's places in the engine's order (bodies along a Morton curve, pebbles of a clump together), and the clump
+/// of each of the caller's particles.
+fn numbering<S: Space>(model: &Model<S>) -> (Vec<u32>, Vec<u32>) {
+    let mut clump_of = vec![NO_CLUMP; model.particles.len()];
+    for (k, clump) in model.clumps.iter().enumerate() {
+        for &id in &clump.pebbles {
+            clump_of[id] = k as u32;
+        }
+    }
+    let coordinates =
+        |x: &Vector<S>| -> [f64; 3] { std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 }) };
+    let mut centres: Vec<[f64; 3]> = model.clumps.iter().map(|c| coordinates(&c.centre)).collect();
+    let singles: Vec<u32> = (0..clump_of.len() as u32).filter(|&id| clump_of[id as usize] == NO_CLUMP).collect();
+    centres.extend(singles.iter().map(|&id| coordinates(&model.particles[id as usize].position)));
+    let mut caller = Vec::with_capacity(clump_of.len());
+    for body in morton_order(&centres, S::DIMENSION) {
+        match model.clumps.get(body as usize) {
+            None => caller.push(singles[body as usize - model.clumps.len()]),
+            Some(clump) => {
+                let pebbles: Vec<[f64; 3]> =
+                    clump.pebbles.iter().map(|&id| coordinates(&model.particles[id].position)).collect();
+                let order = morton_order(&pebbles, S::DIMENSION);
+                caller.extend(order.iter().map(|&k| clump.pebbles[k as usize] as u32));
+            }
+        }
+    }
+    (caller, clump_of)
+}

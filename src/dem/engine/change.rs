@@ -1,0 +1,149 @@
+//! What a caller may change between runs. Particles are named by their places in the caller's list.
+
+use super::Engine;
+use super::build::{classes, moving};
+use crate::dem::body::set_kinematics;
+use crate::dem::boundary::{Motion, Wall};
+use crate::dem::contact::LawKind;
+use crate::dem::error::Faults;
+use crate::dem::interaction::ContactTable;
+use crate::dem::law::{KN, Rows};
+use crate::dem::space::{Space, Spin, Tuple, Vector};
+
+impl<S: Space> Engine<S> {
+    /// Sets all velocities and spins of free bodies to zero.
+    pub fn calm(&mut self) {
+        let rest = (Vector::<S>::zero(), Spin::<S>::zero());
+        for p in 0..self.caller.len() {
+            let x = self.position_of(p);
+            let (v, w) =
+                (crate::dem::body::velocity::<S>(&self.records, p), crate::dem::body::spin::<S>(&self.records, p));
+            let [keep_v, keep_w] = self.fixed[p];
+            let (v, w) = (if keep_v { v } else { rest.0 }, if keep_w { w } else { rest.1 });
+            set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, v, w);
+        }
+        for clump in &mut self.clumps {
+            clump.set_motion(rest.0, rest.1);
+        }
+    }
+
+    /// Sets velocity and spin of a ball (or of the clump it belongs to).
+    pub fn set_motion(&mut self, particle: usize, velocity: Vector<S>, spin: Spin<S>) {
+        let p = self.place[particle] as usize;
+        match self.clumps.get_mut(self.bodies[p] as usize) {
+            Some(clump) => {
+                clump.set_motion(velocity, spin);
+                clump.place(&mut self.records);
+            }
+            None => {
+                let x = self.position_of(p);
+                set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, velocity, spin);
+            }
+        }
+    }
+
+    /// Takes a ball's velocity (and spin) out of the equations of motion: they stay as set by
+    /// [`set_motion`](Self::set_motion).
+    pub fn fix(&mut self, particle: usize, velocity: bool, spin: bool) {
+        self.fixed[self.place[particle] as usize] = [velocity, spin];
+        self.set_inverse_masses();
+        self.derive_step();
+    }
+
+    /// Multiplies the radius of some balls; mass and inertia follow at constant density. Stiffnesses are derived anew.
+    pub fn scale_radii(&mut self, factors: &[(usize, f64)]) {
+        for &(particle, factor) in factors {
+            let p = self.place[particle] as usize;
+            let volume = S::volume(self.radii[p]);
+            self.radii[p] *= factor;
+            let growth = S::volume(self.radii[p]) / volume;
+            self.masses[p] *= growth;
+            self.inertias[p] *= growth * factor * factor;
+            self.records[p * S::RECORD].0[3] = self.radii[p];
+        }
+        self.smallest_radius = self.radii.iter().copied().fold(f64::INFINITY, f64::min);
+        self.set_inverse_masses();
+        self.renew();
+    }
+
+    /// Replaces the contact table. Contacts keep their reference gaps and forces; bonds stay with the values of their
+    /// installation as long as the law of the pair stays the same, and vanish otherwise.
+    ///
+    /// # Errors
+    /// All faults of the table.
+    pub fn set_contacts(&mut self, table: &ContactTable) -> Result<(), Faults> {
+        super::validate::check_table::<S>(table, &self.meetings())?;
+        let mut all = self.packed();
+        let before: Vec<LawKind> = self.classes.iter().map(|class| class.law).collect();
+        self.table = table.clone();
+        self.classes = classes(table);
+        for k in 0..all.keys.len() {
+            let (key, old) = all.keys[k];
+            let class = self.class_of(key);
+            all.keys[k].1 = class;
+            if self.classes[class as usize].law != before[old as usize] {
+                let rows = &mut all.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT];
+                rows[Rows::<S>::TENSION] = f64::INFINITY;
+                rows[Rows::<S>::COHESION] = f64::INFINITY;
+                rows[Rows::<S>::BOND..].fill(0.0);
+            }
+            all.values[k * Rows::<S>::COUNT + KN] = self.linear_stiffness(key);
+        }
+        self.sections = all.sections::<S>(self.caller.len());
+        self.renew();
+        Ok(())
+    }
+
+    /// Adds a wall; its place.
+    ///
+    /// # Errors
+    /// All faults of the wall.
+    pub fn add_wall(&mut self, wall: &Wall<S>) -> Result<usize, Faults> {
+        super::validate::check_wall(self.walls.len(), wall)?;
+        self.walls.push(moving(wall));
+        if let Err(faults) = super::validate::check_table::<S>(&self.table, &self.meetings()) {
+            self.walls.pop();
+            return Err(faults);
+        }
+        self.renew();
+        Ok(self.walls.len() - 1)
+    }
+
+    /// Takes a wall away. The places of the others stay.
+    pub fn remove_wall(&mut self, w: usize) {
+        self.walls[w].present = false;
+        self.sections.retain(|section| section.wall != Some(w as u32));
+        self.walls[w].motion = Motion::Velocity(Vector::<S>::zero());
+        self.walls[w].face.velocity = Vector::<S>::zero();
+        self.renew();
+    }
+
+    /// Changes how a wall moves.
+    pub fn move_wall(&mut self, w: usize, motion: Motion<S>) {
+        self.walls[w].motion = motion;
+        if let Motion::Velocity(v) = motion {
+            self.walls[w].face.velocity = v;
+        }
+    }
+
+    /// Local damping from now on.
+    pub fn set_damping(&mut self, alpha: f64) {
+        self.settings.damping = alpha;
+    }
+
+    /// Forgets the cracks so far.
+    pub fn forget_cracks(&mut self) {
+        self.cracks.clear();
+    }
+
+    fn renew(&mut self) {
+        self.relist();
+        self.derive_step();
+    }
+
+    /// Pairs of groups that can meet.
+    fn meetings(&self) -> Vec<(crate::dem::particle::Group, crate::dem::particle::Group)> {
+        let members = self.groups.iter().copied().zip(self.bodies.iter().copied());
+        super::validate::meetings(members, self.walls.iter().filter(|w| w.present).map(|w| w.group))
+    }
+}

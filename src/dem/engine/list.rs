@@ -1,0 +1,163 @@
+//! The contact list: searched again when some body came half the margin far; contacts keep their state.
+//!
+//! A pair is listed while its surfaces are nearer than the margin, while it is bonded, and while it has a reference gap
+//! and is nearer than the smallest radius, so that a reference gap outlives a loss of contact. The margin follows the
+//! motion: it widens when lists grow old fast and narrows when they last, by step counts alone.
+
+use super::Engine;
+use crate::dem::body::position;
+use crate::dem::contact::{Key, Packed};
+use crate::dem::law::{KN, REFERENCE, Rows};
+use crate::dem::neighbour::pairs;
+use crate::dem::space::{Space, Tuple, Vector};
+
+/// Limits of the margin over the smallest radius.
+const NARROW: f64 = 0.02;
+const WIDE: f64 = 0.5;
+/// A list that lasts fewer (more) steps than this makes the margin wider (narrower).
+const SHORT: u64 = 200;
+const LONG: u64 = 4000;
+
+impl<S: Space> Engine<S> {
+    /// Searches contacts again if the list may have missed one.
+    pub(super) fn relist_if_due(&mut self) {
+        if !self.stale {
+            return;
+        }
+        let age = self.step - self.listed_at;
+        let factor = if age < SHORT {
+            1.5
+        } else if age > LONG {
+            1.0 / 1.5
+        } else {
+            1.0
+        };
+        self.margin = (self.margin * factor).clamp(NARROW * self.smallest_radius, WIDE * self.smallest_radius);
+        self.relist();
+    }
+
+    /// Searches contacts with the present margin and derives the time step.
+    pub(super) fn relist(&mut self) {
+        let old = self.packed();
+        let found = self.candidates();
+        let listed = self.merge(&old, &found);
+        self.sections = listed.sections::<S>(self.caller.len());
+        self.origins = (0..self.caller.len()).map(|p| position::<S>(&self.records, p)).collect();
+        self.travelled = 0.0;
+        self.listed_at = self.step;
+        self.stale = false;
+    }
+
+    /// All contacts, sorted by key.
+    pub(super) fn packed(&self) -> Packed {
+        let mut all = Packed::default();
+        for section in &self.sections {
+            for c in 0..section.count {
+                section.pack::<S>(c, &mut all);
+            }
+        }
+        let mut order: Vec<usize> = (0..all.keys.len()).collect();
+        order.sort_unstable_by_key(|&k| all.keys[k].0);
+        let mut sorted = Packed::default();
+        for k in order {
+            sorted.push_old::<S>(&all, k);
+        }
+        sorted
+    }
+
+    /// Keys of everything nearer than the margin, sorted.
+    fn candidates(&self) -> Vec<Key> {
+        let n = self.caller.len();
+        let positions: Vec<Vector<S>> = (0..n).map(|p| position::<S>(&self.records, p)).collect();
+        let flat: Vec<[f64; 3]> =
+            positions.iter().map(|x| std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })).collect();
+        let mut keys: Vec<Key> = pairs(&flat, &self.radii, &self.bodies, self.margin)
+            .into_iter()
+            .map(|(i, j)| Key { i, at_wall: false, j })
+            .collect();
+        for (w, wall) in self.walls.iter().enumerate().filter(|(_, wall)| wall.present) {
+            for (p, x) in positions.iter().enumerate() {
+                let gap = x.minus(wall.face.point).dot(wall.face.normal) - self.radii[p];
+                if gap < self.margin {
+                    keys.push(Key { i: p as u32, at_wall: true, j: w as u32 });
+                }
+            }
+        }
+        keys.sort_unstable();
+        keys
+    }
+
+    /// The new list: what was found, with the state of the old contacts, and old ones that must not be forgotten.
+    fn merge(&self, old: &Packed, found: &[Key]) -> Packed {
+        let mut listed = Packed::default();
+        let mut next = 0;
+        for &key in found {
+            while next < old.keys.len() && old.keys[next].0 < key {
+                self.keep_if_needed(old, next, &mut listed);
+                next += 1;
+            }
+            if next < old.keys.len() && old.keys[next].0 == key {
+                listed.push_old::<S>(old, next);
+                next += 1;
+            } else {
+                listed.push_new::<S>(key, self.class_of(key), 0.0);
+            }
+            let last = listed.keys.len() - 1;
+            listed.values[last * Rows::<S>::COUNT + KN] = self.linear_stiffness(key);
+        }
+        for k in next..old.keys.len() {
+            self.keep_if_needed(old, k, &mut listed);
+        }
+        listed
+    }
+
+    fn keep_if_needed(&self, old: &Packed, k: usize, listed: &mut Packed) {
+        let key = old.keys[k].0;
+        if key.at_wall && !self.walls[key.j as usize].present {
+            return;
+        }
+        let rows = old.rows::<S>(k);
+        let bonded = rows[Rows::<S>::TENSION] < f64::INFINITY;
+        let remembered = rows[REFERENCE] != 0.0 && self.gap(key) < self.smallest_radius;
+        if bonded || remembered {
+            listed.push_old::<S>(old, k);
+        }
+    }
+
+    /// Distance of the surfaces of a pair, m.
+    pub(super) fn gap(&self, key: Key) -> f64 {
+        let i = key.i as usize;
+        let x = position::<S>(&self.records, i);
+        if key.at_wall {
+            let face = &self.walls[key.j as usize].face;
+            return x.minus(face.point).dot(face.normal) - self.radii[i];
+        }
+        let j = key.j as usize;
+        position::<S>(&self.records, j).minus(x).norm() - (self.radii[i] + self.radii[j])
+    }
+
+    /// Radii that a contact stands between, ∞ for a wall.
+    pub(super) fn contact_radii(&self, key: Key) -> [f64; 2] {
+        let second = if key.at_wall { f64::INFINITY } else { self.radii[key.j as usize] };
+        [self.radii[key.i as usize], second]
+    }
+
+    /// Class of a pair. Checked with the model: every pair that can meet has one.
+    pub(super) fn class_of(&self, key: Key) -> u32 {
+        let other = if key.at_wall { self.walls[key.j as usize].group } else { self.groups[key.j as usize] };
+        let class = self.table.class(self.groups[key.i as usize], other);
+        class.unwrap_or_else(|| panic!("BUG: groups {:?} and {other:?} have no class", self.groups[key.i as usize]))
+            as u32
+    }
+
+    pub(super) fn linear_stiffness(&self, key: Key) -> f64 {
+        let interaction = &self.table.entries[self.class_of(key) as usize].2;
+        interaction.linear.stiffness.normal::<S>(self.contact_radii(key))
+    }
+
+    /// Largest distance that any particle came since the list was made, m.
+    pub(super) fn true_travel(&self) -> f64 {
+        let moved = |(p, origin): (usize, &Vector<S>)| position::<S>(&self.records, p).minus(*origin).norm();
+        self.origins.iter().enumerate().map(moved).fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,155 @@
+//! The engine: bodies, contacts and the clock, and what a caller may ask of them.
+
+mod access;
+mod bonding;
+mod build;
+mod change;
+mod list;
+mod step;
+#[cfg(test)]
+mod tests;
+mod timestep;
+mod validate;
+
+use super::body::Rigid;
+use super::boundary::{Motion, Wall};
+use super::contact::{Break, Face, LawKind, Section};
+use super::interaction::ContactTable;
+use super::law::Constants;
+use super::particle::{Clump, Group, Particle};
+use super::simd::Quad;
+use super::space::{Space, Vector};
+use crate::dem::measure::Crack;
+
+/// Numbers of a run that belong to no body.
+#[derive(Clone, Debug)]
+pub struct Settings<S: Space> {
+    /// Local damping α, 0 … 1.
+    pub damping: f64,
+    /// Gravity, m/s².
+    pub gravity: Vector<S>,
+    /// Share of the critical time step.
+    pub safety: f64,
+    /// A time step to use instead of the derived one, s.
+    pub fixed_step: Option<f64>,
+    /// Which masses move the bodies.
+    pub masses: Masses,
+    /// Corners of the box that no particle's centre may leave, m.
+    pub bounds: Option<[Vector<S>; 2]>,
+    /// Overlap over the smaller radius above which a start is refused; infinite while a packing is being made.
+    pub overlap_limit: f64,
+}
+
+impl<S: Space> Default for Settings<S> {
+    fn default() -> Self {
+        use super::space::Tuple;
+        Self {
+            damping: 0.7,
+            gravity: Vector::<S>::zero(),
+            safety: 0.8,
+            fixed_step: None,
+            masses: Masses::Real,
+            bounds: None,
+            overlap_limit: 0.5,
+        }
+    }
+}
+
+/// Which masses move the bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Masses {
+    /// Their own.
+    #[default]
+    Real,
+    /// Mass proportional to stiffness at the same total, so that every body has one critical step: fewer steps to the
+    /// same strain in a quasi-static run. Weight stays that of the real mass.
+    EqualStep,
+}
+
+/// Everything that makes an engine.
+#[derive(Clone, Debug)]
+pub struct Model<S: Space> {
+    /// Balls, pebbles of clumps among them.
+    pub particles: Vec<Particle<S>>,
+    /// Rigid clumps.
+    pub clumps: Vec<Clump<S>>,
+    /// Flat walls.
+    pub walls: Vec<Wall<S>>,
+    /// Laws between groups.
+    pub contacts: ContactTable,
+    /// The rest.
+    pub settings: Settings<S>,
+}
+
+/// A class of contacts in the form in which the loop uses it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Class {
+    pub(crate) law: LawKind,
+    pub(crate) constants: Constants,
+}
+
+/// A wall in motion.
+#[derive(Clone, Debug)]
+pub(crate) struct MovingWall<S: Space> {
+    pub(crate) face: Face<S>,
+    pub(crate) motion: Motion<S>,
+    pub(crate) group: Group,
+    pub(crate) present: bool,
+}
+
+/// A model in motion. See the head of [`crate::dem`] for how it is used.
+#[derive(Clone, Debug)]
+pub struct Engine<S: Space> {
+    settings: Settings<S>,
+    table: ContactTable,
+    classes: Vec<Class>,
+    /// Particles stand in the engine's own order; `caller[p]` is the caller's place of p, `place` the other way round.
+    caller: Vec<u32>,
+    place: Vec<u32>,
+    groups: Vec<Group>,
+    /// Body of each particle: clumps first, then single balls.
+    bodies: Vec<u32>,
+    radii: Vec<f64>,
+    masses: Vec<f64>,
+    inertias: Vec<f64>,
+    fixed: Vec<[bool; 2]>,
+    records: Vec<Quad>,
+    loads: Vec<Quad>,
+    inverse: Vec<Quad>,
+    inverse_mass: Vec<f64>,
+    weights: Vec<Quad>,
+    clumps: Vec<Rigid<S>>,
+    walls: Vec<MovingWall<S>>,
+    sections: Vec<Section>,
+    breaks: Vec<Break>,
+    cracks: Vec<Crack<S>>,
+    /// Contacts nearer than this are listed; `travelled` bounds how far any body came since, from `origins`.
+    margin: f64,
+    smallest_radius: f64,
+    travelled: f64,
+    origins: Vec<Vector<S>>,
+    listed_at: u64,
+    stale: bool,
+    dt: f64,
+    step: u64,
+    time: f64,
+}
+
+/// What a watcher of a run wants next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watch {
+    /// Go on.
+    Continue,
+    /// End the run here.
+    Stop,
+}
+
+/// How a run ended well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// All steps were made.
+    Finished,
+    /// The watcher stopped it.
+    Stopped,
+}

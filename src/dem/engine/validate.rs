@@ -1,0 +1,248 @@
+//! Checks of a model: all faults at once.
+
+use super::Model;
+use crate::dem::boundary::{Motion, Wall};
+use crate::dem::error::{Fault, Faults};
+use crate::dem::interaction::{Bond, BondStiffness, ContactTable, Interaction, Stiffness};
+use crate::dem::neighbour::pairs;
+use crate::dem::particle::Group;
+use crate::dem::space::{Space, Tuple, Vector};
+use std::collections::BTreeMap;
+
+const POSITIVE: &str = "a number above 0";
+const NOT_NEGATIVE: &str = "0 or more";
+const FINITE: &str = "a finite number";
+
+fn ok(faults: Vec<Fault>) -> Result<(), Faults> {
+    if faults.is_empty() { Ok(()) } else { Err(Faults(faults)) }
+}
+
+fn positive(x: f64) -> bool {
+    x > 0.0 && x.is_finite()
+}
+
+/// Checks a model.
+pub(super) fn check<S: Space>(model: &Model<S>) -> Result<(), Faults> {
+    let mut faults = Vec::new();
+    let clump_of = clumps(model, &mut faults);
+    particles(model, &clump_of, &mut faults);
+    for (w, wall) in model.walls.iter().enumerate() {
+        faults.extend(wall_faults(w, wall));
+    }
+    settings(model, &mut faults);
+    let members = model.particles.iter().map(|p| p.group).zip(clump_of.iter().copied());
+    let meetings = meetings(members, model.walls.iter().map(|w| w.group));
+    faults.extend(table_faults::<S>(&model.contacts, &meetings));
+    if faults.is_empty() {
+        overlaps(model, &clump_of, &mut faults);
+    }
+    ok(faults)
+}
+
+/// Checks a table against the pairs of groups that can meet.
+pub(super) fn check_table<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> Result<(), Faults> {
+    ok(table_faults::<S>(table, meetings))
+}
+
+/// Checks one wall.
+pub(super) fn check_wall<S: Space>(w: usize, wall: &Wall<S>) -> Result<(), Faults> {
+    ok(wall_faults(w, wall))
+}
+
+/// Pairs of groups that can meet: of different bodies, and of particles with walls.
+pub(super) fn meetings(
+    members: impl Iterator<Item = (Group, u32)>,
+    walls: impl Iterator<Item = Group>,
+) -> Vec<(Group, Group)> {
+    // A group with two bodies or more can meet itself.
+    let mut groups: BTreeMap<Group, (u32, bool)> = BTreeMap::new();
+    for (group, body) in members {
+        let entry = groups.entry(group).or_insert((body, false));
+        entry.1 |= entry.0 != body;
+    }
+    let mut found = Vec::new();
+    let list: Vec<(Group, bool)> = groups.iter().map(|(group, (_, many))| (*group, *many)).collect();
+    for (k, &(a, many)) in list.iter().enumerate() {
+        found.extend(many.then_some((a, a)));
+        found.extend(list[k + 1..].iter().map(|&(b, _)| (a, b)));
+    }
+    for wall in walls {
+        found.extend(list.iter().map(|&(a, _)| (a.min(wall), a.max(wall))));
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Body of each particle (its clump, or a number of its own).
+fn clumps<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) -> Vec<u32> {
+    let n = model.particles.len();
+    let mut body: Vec<Option<u32>> = vec![None; n];
+    for (clump, c) in model.clumps.iter().enumerate() {
+        let mut fault = |quantity, value, wanted| faults.push(Fault::Clump { clump, quantity, value, wanted });
+        if c.pebbles.is_empty() {
+            fault("number of pebbles", 0.0, "at least 1");
+        }
+        if !positive(c.mass) {
+            fault("mass", c.mass, POSITIVE);
+        }
+        if S::inverse_inertia(&c.inertia).is_none() {
+            fault("inertia", c.inertia[2][2], "a positive definite tensor");
+        }
+        let sum = c.centre.norm() + c.velocity.norm() + c.spin.norm();
+        if !sum.is_finite() {
+            fault("position, velocity or spin", sum, FINITE);
+        }
+        for &pebble in &c.pebbles {
+            let problem = match body.get(pebble) {
+                None => "does not exist",
+                Some(Some(_)) => "belongs to a clump already",
+                Some(None) => {
+                    body[pebble] = Some(clump as u32);
+                    continue;
+                }
+            };
+            faults.push(Fault::Pebble { clump, pebble, problem });
+        }
+    }
+    let own = |(p, b): (usize, Option<u32>)| b.unwrap_or((model.clumps.len() + p) as u32);
+    body.into_iter().enumerate().map(own).collect()
+}
+
+fn particles<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
+    for (particle, p) in model.particles.iter().enumerate() {
+        let mut check = |quantity, value: f64, good: bool, wanted| {
+            if !good {
+                faults.push(Fault::Particle { particle, quantity, value, wanted });
+            }
+        };
+        for k in 0..S::DIMENSION {
+            let (x, v) = (p.position.at(k), p.velocity.at(k));
+            check("position", x, x.is_finite(), FINITE);
+            check("velocity", v, v.is_finite(), FINITE);
+        }
+        check("spin", p.spin.norm(), p.spin.norm().is_finite(), FINITE);
+        check("radius", p.radius, positive(p.radius), POSITIVE);
+        if body[particle] as usize >= model.clumps.len() {
+            check("mass", p.mass, positive(p.mass), POSITIVE);
+            check("inertia", p.inertia, positive(p.inertia), POSITIVE);
+        }
+    }
+    if model.particles.is_empty() {
+        faults.push(Fault::Setting { quantity: "number of particles", value: 0.0, wanted: "at least 1" });
+    }
+}
+
+fn wall_faults<S: Space>(wall: usize, w: &Wall<S>) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut check = |quantity, value: f64, good: bool, wanted| {
+        if !good {
+            faults.push(Fault::Wall { wall, quantity, value, wanted });
+        }
+    };
+    let length = w.normal.norm();
+    check("point", w.point.norm(), w.point.norm().is_finite(), FINITE);
+    check("length of the normal", length, positive(length), POSITIVE);
+    match w.motion {
+        Motion::Velocity(v) => check("velocity", v.norm(), v.norm().is_finite(), FINITE),
+        Motion::Servo(s) => {
+            check("servo pressure", s.pressure, s.pressure.is_finite(), FINITE);
+            check("servo area", s.area, positive(s.area), POSITIVE);
+            check("servo relaxation", s.relaxation, s.relaxation > 0.0 && s.relaxation <= 1.0, "in (0, 1]");
+            check("servo speed limit", s.speed_limit, positive(s.speed_limit), POSITIVE);
+        }
+    }
+    faults
+}
+
+fn settings<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) {
+    let s = &model.settings;
+    let mut check = |quantity, value: f64, good: bool, wanted| {
+        if !good {
+            faults.push(Fault::Setting { quantity, value, wanted });
+        }
+    };
+    check("damping", s.damping, (0.0..1.0).contains(&s.damping), "in [0, 1)");
+    check("gravity", s.gravity.norm(), s.gravity.norm().is_finite(), FINITE);
+    check("safety factor of the time step", s.safety, s.safety > 0.0 && s.safety <= 1.0, "in (0, 1]");
+    check("overlap limit", s.overlap_limit, s.overlap_limit >= 0.0, NOT_NEGATIVE);
+    if let Some(dt) = s.fixed_step {
+        check("time step", dt, positive(dt), POSITIVE);
+    }
+}
+
+fn table_faults<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for (a, b, interaction) in &table.entries {
+        let mut check = |quantity, value: f64, good: bool, wanted| {
+            if !good {
+                faults.push(Fault::Interaction { a: *a, b: *b, quantity, value, wanted });
+            }
+        };
+        interaction_faults(interaction, &mut check);
+    }
+    let missing = meetings.iter().filter(|(a, b)| table.class(*a, *b).is_none());
+    faults.extend(missing.map(|&(a, b)| Fault::NoInteraction { a, b }));
+    faults
+}
+
+fn interaction_faults(interaction: &Interaction, check: &mut impl FnMut(&'static str, f64, bool, &'static str)) {
+    let linear = &interaction.linear;
+    match linear.stiffness {
+        Stiffness::Modulus { modulus, ratio, .. } => {
+            check("modulus", modulus, positive(modulus), POSITIVE);
+            check("kn/ks", ratio, positive(ratio), POSITIVE);
+        }
+        Stiffness::Direct { kn, ks } => {
+            check("kn", kn, positive(kn), POSITIVE);
+            check("ks", ks, ks >= 0.0 && ks.is_finite(), NOT_NEGATIVE);
+        }
+    }
+    check("friction", linear.friction, linear.friction >= 0.0 && linear.friction.is_finite(), NOT_NEGATIVE);
+    for beta in [linear.dashpot.normal, linear.dashpot.shear] {
+        check("dashpot", beta, beta >= 0.0 && beta.is_finite(), NOT_NEGATIVE);
+    }
+    let strengths = match interaction.bond {
+        Bond::None => return,
+        Bond::Contact(b) => {
+            [("tensile strength", b.tensile_strength), ("shear strength", b.shear_strength), ("deviation", b.deviation)]
+        }
+        Bond::Parallel(b) => {
+            match b.stiffness {
+                BondStiffness::Modulus { modulus, ratio } => {
+                    check("bond modulus", modulus, positive(modulus), POSITIVE);
+                    check("bond kn/ks", ratio, positive(ratio), POSITIVE);
+                }
+                BondStiffness::PerArea { kn, ks } => {
+                    check("bond kn", kn, positive(kn), POSITIVE);
+                    check("bond ks", ks, ks >= 0.0 && ks.is_finite(), NOT_NEGATIVE);
+                }
+            }
+            check("radius multiplier", b.radius_multiplier, positive(b.radius_multiplier), POSITIVE);
+            check("moment factor", b.moment_factor, (0.0..=1.0).contains(&b.moment_factor), "in [0, 1]");
+            let right = std::f64::consts::FRAC_PI_2;
+            check("friction angle", b.friction_angle, (0.0..right).contains(&b.friction_angle), "in [0, π/2)");
+            [("tensile strength", b.tensile_strength), ("cohesion", b.cohesion), ("deviation", b.deviation)]
+        }
+    };
+    for (name, value) in &strengths[..2] {
+        check(name, *value, *value > 0.0, POSITIVE);
+    }
+    check(strengths[2].0, strengths[2].1, strengths[2].1 >= 0.0 && strengths[2].1.is_finite(), NOT_NEGATIVE);
+}
+
+/// Starts too deep in one another, or with one centre.
+fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
+    let coordinates =
+        |x: &Vector<S>| -> [f64; 3] { std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 }) };
+    let positions: Vec<[f64; 3]> = model.particles.iter().map(|p| coordinates(&p.position)).collect();
+    let radii: Vec<f64> = model.particles.iter().map(|p| p.radius).collect();
+    for (i, j) in pairs(&positions, &radii, body, 0.0) {
+        let (a, b) = (&model.particles[i as usize], &model.particles[j as usize]);
+        let distance = b.position.minus(a.position).norm();
+        let overlap = (a.radius + b.radius - distance) / a.radius.min(b.radius);
+        if overlap > model.settings.overlap_limit || distance == 0.0 {
+            faults.push(Fault::Overlap { a: i as usize, b: j as usize, overlap });
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! What can be wrong with a model, and why a run can fail.
+
+use super::particle::Group;
+
+/// One fault of the input. All faults of a model are reported together.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// A number of a particle is out of range.
+    #[error("particle {particle}: {quantity} is {value}, wanted {wanted}")]
+    Particle {
+        /// Place in the caller's list.
+        particle: usize,
+        /// What it is.
+        quantity: &'static str,
+        /// What was found.
+        value: f64,
+        /// What is allowed.
+        wanted: &'static str,
+    },
+    /// A number of a clump is out of range.
+    #[error("clump {clump}: {quantity} is {value}, wanted {wanted}")]
+    Clump {
+        /// Place in the caller's list.
+        clump: usize,
+        /// What it is.
+        quantity: &'static str,
+        /// What was found.
+        value: f64,
+        /// What is allowed.
+        wanted: &'static str,
+    },
+    /// A pebble does not exist or belongs to two clumps.
+    #[error("clump {clump}: pebble {pebble} {problem}")]
+    Pebble {
+        /// Place in the caller's list.
+        clump: usize,
+        /// Place of the particle.
+        pebble: usize,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// A number of a wall is out of range.
+    #[error("wall {wall}: {quantity} is {value}, wanted {wanted}")]
+    Wall {
+        /// Place in the caller's list.
+        wall: usize,
+        /// What it is.
+        quantity: &'static str,
+        /// What was found.
+        value: f64,
+        /// What is allowed.
+        wanted: &'static str,
+    },
+    /// A number of the contact table is out of range.
+    #[error("contact of groups {} and {}: {quantity} is {value}, wanted {wanted}", a.0, b.0)]
+    Interaction {
+        /// First group.
+        a: Group,
+        /// Second group.
+        b: Group,
+        /// What it is.
+        quantity: &'static str,
+        /// What was found.
+        value: f64,
+        /// What is allowed.
+        wanted: &'static str,
+    },
+    /// Two groups can meet and the contact table has nothing for them.
+    #[error("groups {} and {} can meet and the contact table has no entry for them", a.0, b.0)]
+    NoInteraction {
+        /// First group.
+        a: Group,
+        /// Second group.
+        b: Group,
+    },
+    /// A setting is out of range.
+    #[error("{quantity} is {value}, wanted {wanted}")]
+    Setting {
+        /// What it is.
+        quantity: &'static str,
+        /// What was found.
+        value: f64,
+        /// What is allowed.
+        wanted: &'static str,
+    },
+    /// Two particles start too deep in one another.
+    #[error("particles {a} and {b} start with an overlap of {overlap:.3} of the smaller radius")]
+    Overlap {
+        /// One, by its place in the caller's list.
+        a: usize,
+        /// The other.
+        b: usize,
+        /// Overlap over the smaller radius.
+        overlap: f64,
+    },
+}
+
+/// All faults of a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+pub struct Faults(pub Vec<Fault>);
+
+/// Why a run ended badly: data, not a crash.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// A body left the bounds.
+    #[error("particle {particle} left the bounds at step {step}")]
+    Escape {
+        /// Place in the caller's list.
+        particle: usize,
+        /// Step.
+        step: u64,
+    },
+    /// A body moved further in one step than contacts can be found.
+    #[error(
+        "particle {particle} moved {travel:.3e} m in step {step}, more than the {limit:.3e} m within which contacts are found: unstable"
+    )]
+    Instability {
+        /// Place in the caller's list.
+        particle: usize,
+        /// Step.
+        step: u64,
+        /// Travel in one step, m.
+        travel: f64,
+        /// Largest allowed travel, m.
+        limit: f64,
+    },
+    /// A position or velocity is not a number.
+    #[error("particle {particle} has a position or velocity that is not finite at step {step}")]
+    NotFinite {
+        /// Place in the caller's list.
+        particle: usize,
+        /// Step.
+        step: u64,
+    },
+}

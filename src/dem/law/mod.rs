@@ -1,0 +1,135 @@
+//! The laws of a contact, each a pure formula over lanes, and the rows of memory they share.
+//!
+//! A law sees the geometry of a touch, the constants of its class and its own rows; it answers with the load on i.
+//! Forces and moments of the memory act on i, tension positive.
+
+mod contact_bond;
+mod linear;
+mod parallel_bond;
+
+pub(crate) use contact_bond::ContactBondLaw;
+pub(crate) use linear::LinearLaw;
+pub(crate) use parallel_bond::ParallelBondLaw;
+
+use super::interaction::{Bond, Interaction, ShearBreak};
+use super::simd::{Lane, Row};
+use super::space::{Load, Space, Touch, Tuple};
+
+/// Row of k_n, N/m.
+pub(crate) const KN: usize = 0;
+/// Row of the reference gap g_r, m.
+pub(crate) const REFERENCE: usize = 1;
+/// First row of the shear force of the linear spring, N.
+pub(crate) const SHEAR: usize = 2;
+
+/// Places of the other rows, which depend on the space.
+pub(crate) struct Rows<S>(std::marker::PhantomData<S>);
+
+impl<S: Space> Rows<S> {
+    /// Tensile capacity σ_c A (∞ where nothing is bonded), N.
+    pub(crate) const TENSION: usize = SHEAR + S::SHEAR;
+    /// Shear capacity c A (∞ where nothing is bonded), N.
+    pub(crate) const COHESION: usize = Self::TENSION + 1;
+    /// k̄_n A (0 where nothing is bonded), N/m.
+    pub(crate) const BOND: usize = Self::COHESION + 1;
+    /// Normal force of the bond, N.
+    pub(crate) const BOND_NORMAL: usize = Self::BOND + 1;
+    /// First row of its shear force, N.
+    pub(crate) const BOND_SHEAR: usize = Self::BOND_NORMAL + 1;
+    /// First row of its bending moment, N·m.
+    pub(crate) const BOND_BEND: usize = Self::BOND_SHEAR + S::SHEAR;
+    /// Its twisting moment (solid only), N·m.
+    pub(crate) const BOND_TWIST: usize = Self::BOND_BEND + S::SHEAR;
+    /// All rows of a block.
+    pub(crate) const COUNT: usize = if S::DIMENSION == 2 { Self::BOND_TWIST } else { Self::BOND_TWIST + 1 };
+}
+
+/// Constants of a class, in the form in which the laws use them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Constants {
+    /// k_s / k_n of the linear spring.
+    pub(crate) shear_share: f64,
+    /// μ.
+    pub(crate) friction: f64,
+    /// k̄_s / k̄_n.
+    pub(crate) bond_share: f64,
+    /// λ.
+    pub(crate) multiplier: f64,
+    /// β.
+    pub(crate) moment_factor: f64,
+    /// tan φ.
+    pub(crate) slope: f64,
+    /// β_n, β_s.
+    pub(crate) dashpot: [f64; 2],
+    /// Whether an unbonded dashpot may pull.
+    pub(crate) tensile_dashpot: bool,
+    /// Whether a contact bond that breaks in shear drops its shear force.
+    pub(crate) zero_shear: bool,
+}
+
+impl Constants {
+    pub(crate) fn new(interaction: &Interaction) -> Self {
+        let linear = &interaction.linear;
+        let mut c = Self {
+            shear_share: linear.stiffness.shear_share(),
+            friction: linear.friction,
+            bond_share: 0.0,
+            multiplier: 1.0,
+            moment_factor: 0.0,
+            slope: 0.0,
+            dashpot: [linear.dashpot.normal, linear.dashpot.shear],
+            tensile_dashpot: linear.dashpot.tensile,
+            zero_shear: false,
+        };
+        match interaction.bond {
+            Bond::None => {}
+            Bond::Contact(bond) => c.zero_shear = bond.shear_break == ShearBreak::Zero,
+            Bond::Parallel(bond) => {
+                c.bond_share = bond.shear_share();
+                c.multiplier = bond.radius_multiplier;
+                c.moment_factor = bond.moment_factor;
+                c.slope = crate::math::elementary::tan(bond.friction_angle);
+            }
+        }
+        c
+    }
+}
+
+/// Viscous coefficients of some contacts over the time step: force = coefficient × displacement in the step.
+#[derive(Clone, Copy)]
+pub(crate) struct Viscous<L> {
+    pub(crate) normal: L,
+    pub(crate) shear: L,
+}
+
+/// Which contacts of a lane broke in this step.
+pub(crate) struct Broken<L: Lane> {
+    pub(crate) tension: L::Mask,
+    pub(crate) shear: L::Mask,
+}
+
+/// One law: how a contact answers a step, and what is left in its rows.
+pub(crate) trait Law<S: Space> {
+    /// Load on i, and the breaks if there was any.
+    fn respond<L: Lane>(
+        constants: &Constants,
+        touch: &Touch<S, L>,
+        viscous: Option<Viscous<L>>,
+        rows: &mut [Row],
+        at: usize,
+    ) -> (Load<S, L>, Option<Broken<L>>);
+}
+
+/// Loads the shear-like tuple that begins at row `first`.
+#[inline(always)]
+pub(crate) fn load_shear<S: Space, L: Lane>(rows: &[Row], first: usize, at: usize) -> S::Shear<L> {
+    S::Shear::<L>::build(|k| L::load(&rows[first + k], at))
+}
+
+/// Stores the shear-like tuple that begins at row `first`.
+#[inline(always)]
+pub(crate) fn store_shear<S: Space, L: Lane>(rows: &mut [Row], first: usize, at: usize, value: S::Shear<L>) {
+    for k in 0..S::SHEAR {
+        value.at(k).store(&mut rows[first + k], at);
+    }
+}

@@ -1,0 +1,202 @@
+//! The solid: spheres.
+//!
+//! Shear, bending and the like are vectors kept in the contact plane. Between two steps the contact frame turns by
+//! q = n × u̇_t dt / d (swing of the normal) plus the mean spin about it; a vector is turned by the rotation through |q|
+//! to second order, v + q×v + ½ q×(q×v), then laid into the new contact plane.
+
+use super::{End, Load, Space, Touch, Tuple};
+use crate::dem::simd::{Lane, Quad};
+use std::f64::consts::PI;
+
+/// Spheres.
+///
+/// Record: `x y z r`, `vx vy vz 0`, `ωx ωy ωz 0`. Loads: `fx fy fz 0`, `mx my mz 0`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct D3;
+
+#[inline(always)]
+pub(crate) fn cross<L: Lane>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The part of v normal to the unit vector n.
+#[inline(always)]
+fn flattened<L: Lane>(v: [L; 3], n: [L; 3]) -> [L; 3] {
+    v.minus(n.times(v.dot(n)))
+}
+
+impl Space for D3 {
+    const NAME: &'static str = "3D";
+    const DIMENSION: usize = 3;
+    const RECORD: usize = 3;
+    const LOADS: usize = 2;
+    const SHEAR: usize = 3;
+    const GYRATION: f64 = 0.25;
+    type Vector<L: Lane> = [L; 3];
+    type Spin<L: Lane> = [L; 3];
+    type Turn = [[f64; 3]; 3];
+    type Shear<L: Lane> = [L; 3];
+
+    fn volume(radius: f64) -> f64 {
+        4.0 / 3.0 * PI * radius * radius * radius
+    }
+
+    fn inertia(mass: f64, radius: f64) -> f64 {
+        0.4 * mass * radius * radius
+    }
+
+    fn section(radius: f64) -> f64 {
+        PI * radius * radius
+    }
+
+    #[inline(always)]
+    fn ends<L: Lane>(table: &[Quad], ends: &[u32]) -> End<Self, L> {
+        let [x, y, z, radius] = L::gather(table, Self::RECORD, 0, ends);
+        let [vx, vy, vz, _] = L::gather(table, Self::RECORD, 1, ends);
+        let [wx, wy, wz, _] = L::gather(table, Self::RECORD, 2, ends);
+        End { position: [x, y, z], radius, velocity: [vx, vy, vz], spin: [wx, wy, wz] }
+    }
+
+    #[inline(always)]
+    fn touch<L: Lane>(
+        i: &End<Self, L>,
+        j: &End<Self, L>,
+        normal: [L; 3],
+        gap: L,
+        arms: [L; 2],
+        inverse_distance: L,
+        dt: L,
+    ) -> Touch<Self, L> {
+        let apart = j.velocity.minus(i.velocity);
+        let speed = apart.dot(normal);
+        let rolling = i.spin.times(arms[0]).plus(j.spin.times(arms[1]));
+        let tangential = apart.minus(normal.times(speed));
+        let slide = tangential.minus(cross(rolling, normal));
+        let turn = j.spin.minus(i.spin).times(dt);
+        let twist = turn.dot(normal);
+        let swing = cross(normal, tangential).times(inverse_distance * dt);
+        let roll = i.spin.plus(j.spin).dot(normal) * (L::splat(0.5) * dt);
+        Touch {
+            normal,
+            gap,
+            arm_i: arms[0],
+            arm_j: arms[1],
+            radius: i.radius.min(j.radius),
+            opening: speed * dt,
+            slide: slide.times(dt),
+            twist,
+            bend: turn.minus(normal.times(twist)),
+            frame: swing.plus(normal.times(roll)),
+        }
+    }
+
+    #[inline(always)]
+    fn turned<L: Lane>(shear: [L; 3], touch: &Touch<Self, L>) -> [L; 3] {
+        let q = touch.frame;
+        let half = shear.plus(cross(q, shear).times(L::splat(0.5)));
+        flattened(shear.plus(cross(q, half)), touch.normal)
+    }
+
+    #[inline(always)]
+    fn limited<L: Lane>(shear: [L; 3], limit: L) -> [L; 3] {
+        let length = shear.norm().max(L::splat(f64::MIN_POSITIVE));
+        shear.times((limit / length).min(L::splat(1.0)))
+    }
+
+    #[inline(always)]
+    fn push_i<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
+        let zero = L::splat(0.0);
+        let [fx, fy, fz] = Self::force(touch, load);
+        let bending = touch.normal.times(load.twist).plus(load.bend);
+        let [mx, my, mz] = cross(touch.normal, load.shear).times(touch.arm_i).plus(bending);
+        L::scatter_add(loads, Self::LOADS, 0, ends, [fx, fy, fz, zero]);
+        L::scatter_add(loads, Self::LOADS, 1, ends, [mx, my, mz, zero]);
+    }
+
+    #[inline(always)]
+    fn push_j<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
+        let zero = L::splat(0.0);
+        let [fx, fy, fz] = Self::force(touch, load);
+        let bending = touch.normal.times(load.twist).plus(load.bend);
+        let [mx, my, mz] = cross(touch.normal, load.shear).times(touch.arm_j).minus(bending);
+        L::scatter_add(loads, Self::LOADS, 0, ends, [-fx, -fy, -fz, zero]);
+        L::scatter_add(loads, Self::LOADS, 1, ends, [mx, my, mz, zero]);
+    }
+
+    #[inline(always)]
+    fn force<L: Lane>(touch: &Touch<Self, L>, load: &Load<Self, L>) -> [L; 3] {
+        touch.normal.times(load.normal).plus(load.shear)
+    }
+
+    #[inline(always)]
+    fn bond_moment<L: Lane>(touch: &Touch<Self, L>, load: &Load<Self, L>) -> [L; 3] {
+        touch.normal.times(load.twist).plus(load.bend)
+    }
+
+    #[inline(always)]
+    fn moment<L: Lane>(arm: [L; 3], force: [L; 3]) -> [L; 3] {
+        cross(arm, force)
+    }
+
+    #[inline(always)]
+    fn carried<L: Lane>(spin: [L; 3], arm: [L; 3]) -> [L; 3] {
+        cross(spin, arm)
+    }
+
+    fn upright() -> [[f64; 3]; 3] {
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    }
+
+    fn turn_on(turn: [[f64; 3]; 3], rotation: [f64; 3]) -> [[f64; 3]; 3] {
+        // Cayley's map on the columns, then Gram-Schmidt against rounding.
+        let half = rotation.map(|x| 0.5 * x);
+        let scale = 2.0 / (1.0 + half.dot(half));
+        let column = |k: usize| {
+            let v = [turn[0][k], turn[1][k], turn[2][k]];
+            let first = cross(half, v);
+            v.plus(first.plus(cross(half, first)).times(scale))
+        };
+        let x = column(0);
+        let x = x.times(1.0 / x.norm());
+        let y = flattened(column(1), x);
+        let y = y.times(1.0 / y.norm());
+        let z = cross(x, y);
+        std::array::from_fn(|k| [x[k], y[k], z[k]])
+    }
+
+    fn outward(turn: [[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
+        turn.map(|row| row.dot(vector))
+    }
+
+    fn inward(turn: [[f64; 3]; 3], spin: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|k| turn[0][k] * spin[0] + turn[1][k] * spin[1] + turn[2][k] * spin[2])
+    }
+
+    fn outward_spin(turn: [[f64; 3]; 3], spin: [f64; 3]) -> [f64; 3] {
+        Self::outward(turn, spin)
+    }
+
+    fn spin_of(turn: [[f64; 3]; 3], inverse: &[[f64; 3]; 3], momentum: [f64; 3]) -> [f64; 3] {
+        let inward = Self::inward(turn, momentum);
+        Self::outward(turn, inverse.map(|row| row.dot(inward)))
+    }
+
+    fn momentum_of(inertia: &[[f64; 3]; 3], spin: [f64; 3]) -> [f64; 3] {
+        inertia.map(|row| row.dot(spin))
+    }
+
+    fn turned_inertia(turn: [[f64; 3]; 3], inertia: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
+        let half = turn.map(|row| std::array::from_fn::<f64, 3, _>(|k| (0..3).map(|m| row[m] * inertia[m][k]).sum()));
+        half.map(|row| turn.map(|other| row.dot(other)))
+    }
+
+    fn inverse_inertia(inertia: &[[f64; 3]; 3]) -> Option<[[f64; 3]; 3]> {
+        let [a, b, c] = *inertia;
+        let minor = a[0] * b[1] - a[1] * b[0];
+        let determinant = a.dot(cross(b, c));
+        let positive = a[0] > 0.0 && minor > 0.0 && determinant > 0.0 && determinant.is_finite();
+        // Columns of the inverse are the cross products of the rows over the determinant.
+        let columns = [cross(b, c), cross(c, a), cross(a, b)].map(|v: [f64; 3]| v.times(1.0 / determinant));
+        positive.then(|| std::array::from_fn(|k| [columns[0][k], columns[1][k], columns[2][k]]))
+    }
+}

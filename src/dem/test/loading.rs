@@ -1,0 +1,172 @@
+//! The loop that every loading test shares: advance, sample, note cracks and snapshots, stop after the peak.
+//!
+//! Samples are taken every `sample_strain` of axial strain. The run stops when the stress has fallen to `stop_fraction`
+//! of the largest one so far, armed only after that has passed `seating_stress`; or at `strain_limit`, which is a
+//! failure ("no peak"), as is whatever the engine reports. Failures are data: the record up to that point is kept.
+
+use super::curve::{Sample, peak};
+use super::material::{AGGREGATE, MORTAR};
+use super::snapshot::{Ladder, Snapshot};
+use crate::dem::measure::Mode;
+use crate::dem::{D2, Engine, Failure, Other, Watch};
+use serde::{Deserialize, Serialize};
+
+/// When to sample and when to stop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rule {
+    /// Strain between two samples.
+    pub sample_strain: f64,
+    /// Share of the peak at which the test ends.
+    pub stop_fraction: f64,
+    /// Stress (Pa) that must be passed before the test may end.
+    pub seating_stress: f64,
+    /// Strain at which a test without a peak is given up.
+    pub strain_limit: f64,
+    /// Shares of the peak at which the state is kept, besides the last state.
+    pub snapshots: Vec<f64>,
+}
+
+impl Default for Rule {
+    fn default() -> Self {
+        let snapshots = vec![0.5, 0.8, 1.0];
+        Self { sample_strain: 2e-6, stop_fraction: 0.75, seating_stress: 5e5, strain_limit: 0.02, snapshots }
+    }
+}
+
+/// Contact group of a crack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CrackGroup {
+    /// Between mortar balls.
+    Mortar,
+    /// Between mortar and aggregate.
+    Interface,
+}
+
+/// A broken bond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrackEvent {
+    /// Axial strain of the specimen.
+    pub strain: f64,
+    /// Tension or shear.
+    pub mode: Mode,
+    /// Contact group.
+    pub group: CrackGroup,
+    /// Place (m).
+    pub position: [f64; 2],
+    /// Unit normal of the contact; the crack lies across it.
+    pub normal: [f64; 2],
+    /// Length of the crack, the bond's diameter (m).
+    pub size: f64,
+}
+
+/// Why a test has no complete result.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum TestFailure {
+    /// Nothing broke it.
+    #[error("no peak up to a strain of {strain_limit}: the largest stress is {stress:.4e} Pa; raise the strain limit or check the strengths")]
+    NoPeak {
+        /// Strain limit.
+        strain_limit: f64,
+        /// Largest stress (Pa).
+        stress: f64,
+    },
+    /// The engine gave up.
+    #[error("{0}")]
+    Engine(#[from] Failure),
+}
+
+/// All that a loading test leaves.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Every sample.
+    pub samples: Vec<Sample>,
+    /// Every crack, in the order of breaking.
+    pub cracks: Vec<CrackEvent>,
+    /// States kept.
+    pub snapshots: Vec<Snapshot>,
+    /// Why it is not complete, if so.
+    pub failure: Option<TestFailure>,
+    /// Whether the watcher stopped it.
+    pub interrupted: bool,
+    /// Steps made.
+    pub steps: u64,
+    /// First time step (s).
+    pub time_step: f64,
+}
+
+/// Loads until the rule ends the test. `rate` is the strain rate at the start (1/s), `measure` reads axial strain,
+/// lateral strain and stress; `watch` sees every sample and may interrupt.
+pub fn drive(
+    engine: &mut Engine<D2>,
+    rate: f64,
+    rule: &Rule,
+    measure: impl Fn(&Engine<D2>) -> [f64; 3],
+    watch: &mut dyn FnMut(&Sample) -> Watch,
+) -> Run {
+    let mut run = Run {
+        samples: vec![Sample::default()],
+        cracks: Vec::new(),
+        snapshots: Vec::new(),
+        failure: None,
+        interrupted: false,
+        steps: 0,
+        time_step: engine.time_step(),
+    };
+    let mut ladder = Ladder::default();
+    let mut largest = 0.0_f64;
+    loop {
+        let before = (engine.steps(), run.samples[run.samples.len() - 1].axial);
+        let every = (rule.sample_strain / (rate * engine.time_step())).max(1.0) as u64;
+        let outcome = engine.advance(every);
+        let [axial, lateral, stress] = measure(engine);
+        let sample = Sample { axial, lateral, stress, cracks: engine.cracks().len() };
+        note_cracks(engine, &mut run.cracks, before, sample.axial);
+        if let Err(failure) = outcome {
+            run.failure = Some(failure.into());
+            break;
+        }
+        run.samples.push(sample);
+        ladder.offer(&sample, || state(engine));
+        largest = largest.max(stress);
+        if watch(&sample) == Watch::Stop {
+            run.interrupted = true;
+            break;
+        }
+        if largest > rule.seating_stress && stress <= rule.stop_fraction * largest {
+            break;
+        }
+        if axial >= rule.strain_limit {
+            run.failure = Some(TestFailure::NoPeak { strain_limit: rule.strain_limit, stress: largest });
+            break;
+        }
+    }
+    run.steps = engine.steps();
+    let top = peak(&run.samples).map_or(0.0, |k| run.samples[k].stress);
+    let last = run.samples[run.samples.len() - 1];
+    run.snapshots = ladder.keep(top, &rule.snapshots, Snapshot::new(&last, state(engine)));
+    run
+}
+
+/// Position and turn of every particle.
+fn state(engine: &Engine<D2>) -> Vec<[f64; 2]> {
+    (0..engine.particle_count()).map(|i| engine.position(i)).collect()
+}
+
+/// Adds the cracks since (step, strain), their strains interpolated by step.
+fn note_cracks(engine: &Engine<D2>, cracks: &mut Vec<CrackEvent>, (step, strain): (u64, f64), now: f64) {
+    let steps = (engine.steps() - step).max(1) as f64;
+    for crack in &engine.cracks()[cracks.len()..] {
+        let share = (crack.step - step) as f64 / steps;
+        let touches_aggregate = |particle: usize| engine.group(particle) == AGGREGATE;
+        let other = matches!(crack.other, Other::Particle(j) if touches_aggregate(j));
+        debug_assert!([MORTAR, AGGREGATE].contains(&engine.group(crack.particle)));
+        cracks.push(CrackEvent {
+            strain: strain + share * (now - strain),
+            mode: crack.mode,
+            group: if other || touches_aggregate(crack.particle) { CrackGroup::Interface } else { CrackGroup::Mortar },
+            position: crack.position,
+            normal: crack.normal,
+            size: crack.size,
+        });
+    }
+}

@@ -1,0 +1,87 @@
+//! States kept at shares of a peak that is known only afterwards.
+//!
+//! While the stress climbs, a state is kept for every 4 % of rise (the ladder), and the state of the largest stress so
+//! far for every 0.2 %. At the end the rung next to each wanted share remains. Rungs below a third of the largest
+//! stress are dropped on the way, so memory stays at about thirty states.
+
+use super::curve::Sample;
+use crate::dem::genesis::region::Point;
+
+/// Positions of all balls at one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// Axial strain.
+    pub strain: f64,
+    /// Stress (Pa).
+    pub stress: f64,
+    /// Cracks so far.
+    pub cracks: usize,
+    /// Centres (m).
+    pub centres: Vec<Point>,
+}
+
+impl Snapshot {
+    /// The state at a sample.
+    pub fn new(sample: &Sample, centres: Vec<Point>) -> Self {
+        Self { strain: sample.axial, stress: sample.stress, cracks: sample.cracks, centres }
+    }
+}
+
+/// States on the way up.
+#[derive(Clone, Debug, Default)]
+pub struct Ladder {
+    rungs: Vec<Snapshot>,
+    top: Option<Snapshot>,
+}
+
+const RUNG: f64 = 1.04;
+const TOP: f64 = 1.002;
+const FORGET: f64 = 1.0 / 3.0;
+
+impl Ladder {
+    /// Keeps the state of this sample if it is a rung or a new top.
+    pub fn offer(&mut self, sample: &Sample, state: impl Fn() -> Vec<Point>) {
+        if sample.stress > TOP * self.top.as_ref().map_or(0.0, |top| top.stress) {
+            self.top = Some(Snapshot::new(sample, state()));
+        }
+        if sample.stress > RUNG * self.rungs.last().map_or(0.0, |rung| rung.stress) {
+            self.rungs.push(Snapshot::new(sample, state()));
+            self.rungs.retain(|rung| rung.stress >= FORGET * sample.stress);
+        }
+    }
+
+    /// The states nearest to `shares` of `peak`, then `last`. Shares below a third find nothing nearer than a third.
+    pub fn keep(mut self, peak: f64, shares: &[f64], last: Snapshot) -> Vec<Snapshot> {
+        self.rungs.extend(self.top);
+        let nearest = |share: &f64| {
+            let off = |s: &&Snapshot| (s.stress - share * peak).abs();
+            self.rungs.iter().min_by(|a, b| off(a).total_cmp(&off(b))).cloned()
+        };
+        shares.iter().filter_map(nearest).chain([last]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_lie_near_the_wanted_shares() {
+        let mut ladder = Ladder::default();
+        let sample = |stress: f64, strain: f64| Sample { axial: strain, lateral: 0.0, stress, cracks: 0 };
+        let climb: Vec<f64> = (1..=1000).map(f64::from).chain((500..1000).rev().map(f64::from)).collect();
+        for (k, &stress) in climb.iter().enumerate() {
+            ladder.offer(&sample(stress, k as f64), || vec![[stress, 0.0]]);
+        }
+        assert!(ladder.rungs.len() < 40);
+        let last = Snapshot::new(&sample(500.0, 1500.0), vec![]);
+        let kept = ladder.keep(1000.0, &[0.5, 0.8, 1.0], last.clone());
+        for (snapshot, wanted) in kept.iter().zip([500.0, 800.0, 1000.0]) {
+            assert!((snapshot.stress / wanted - 1.0).abs() < 0.03, "{}", snapshot.stress);
+            assert_eq!(snapshot.centres[0][0], snapshot.stress);
+            assert!(snapshot.strain < 1000.0);
+        }
+        assert!(kept[2].stress > 997.0);
+        assert_eq!(kept[3], last);
+    }
+}
