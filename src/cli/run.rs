@@ -61,13 +61,14 @@ impl Run {
             keep_going: self.keep_going,
             dry: false,
             targets: self.stages.clone(),
+            memos: true,
         };
         let report = run(&workflow, &store, &settings, &Lines::new(self.quiet), &stop);
         let seconds = started.elapsed().as_secs_f64();
         if self.json {
             println!("{}", document(&workflow.name, &report, seconds));
         } else if !self.quiet {
-            let count = report.tasks();
+            let count = report.count();
             println!(
                 "{} tasks: {} ran, {} cached, {} failed, {} skipped in {seconds:.1} s",
                 count.total, count.ran, count.cached, count.failed, count.skipped
@@ -85,7 +86,7 @@ impl Plan {
     fn report(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load()?;
         let store = self.campaign.open()?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: self.stages.clone() };
+        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: self.stages.clone(), memos: true };
         let report = run(&workflow, &store, &settings, &Lines::new(true), &AtomicBool::new(false));
         for stage in &report.stages {
             let open = stage.tasks.total - stage.tasks.cached;
@@ -118,7 +119,7 @@ fn state(status: &StageStatus) -> &'static str {
 }
 
 fn document(workflow: &str, report: &Report, seconds: f64) -> Value {
-    let count = report.tasks();
+    let count = report.count();
     let stages: Vec<Value> = report
         .stages
         .iter()

@@ -31,7 +31,8 @@ impl Show {
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load()?;
         let store = self.campaign.open()?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: vec![self.stage.clone()] };
+        let settings =
+            Settings { jobs: 0, keep_going: true, dry: true, targets: vec![self.stage.clone()], memos: true };
         let report = run(&workflow, &store, &settings, &Lines::new(true), &AtomicBool::new(false));
         let Some(StageStatus::Done(content)) =
             report.stages.iter().find(|stage| stage.name == self.stage).map(|stage| &stage.status)
