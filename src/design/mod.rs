@@ -13,6 +13,7 @@ pub mod fractional;
 mod galois;
 pub mod given;
 mod hadamard;
+pub mod orthogonal;
 pub mod plackett_burman;
 pub mod table;
 
@@ -64,6 +65,8 @@ methods! {
     FullFactorial(factorial),
     /// A regular fraction of the two-level factorial.
     FractionalFactorial(fractional),
+    /// Tables of finite geometry and difference schemes.
+    Orthogonal(orthogonal),
     /// Two-level screening in multiples of four runs.
     PlackettBurman(plackett_burman),
     /// Cube, axial and centre points.
