@@ -13,8 +13,10 @@ pub mod fractional;
 mod galois;
 pub mod given;
 mod hadamard;
+pub mod latin_hypercube;
 pub mod orthogonal;
 pub mod plackett_burman;
+pub mod sobol;
 pub mod table;
 
 pub use coding::{Domain, Factor};
@@ -73,6 +75,10 @@ methods! {
     CentralComposite(central_composite),
     /// Edge midpoints and centre points.
     BoxBehnken(box_behnken),
+    /// A stratified sample.
+    LatinHypercube(latin_hypercube),
+    /// A low-discrepancy sample.
+    Sobol(sobol),
     /// Rows that are given.
     Given(given),
 }
