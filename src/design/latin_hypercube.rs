@@ -2,7 +2,7 @@
 //! range of every factor is cut into n equal strata and each stratum holds one of the n points.
 //!
 //! `maximin` spreads the points by exchanging two values of one factor under simulated annealing (Morris & Mitchell 1995,
-//! *J. Stat. Plan. Inference* 43, 381, doi:10.1016/0378-3758(94)00035-T): it minimises φ = (Σ d⁻²⁰)^(1/20) over the distances d of
+//! *J. Stat. Plan. Inference* 43, 381, doi:10.1016/0378-3758(94)00035-T): it minimises φ = (Σ d⁻⁴⁰)^(1/40) over the distances d of
 //! all pairs, measured in strata, which for so high a power pushes the smallest distance up. The best sample met is kept.
 
 use super::coding::Factor;
@@ -106,18 +106,19 @@ fn permutation(n: usize, stream: &mut Stream) -> Vec<usize> {
     items
 }
 
-/// A sample under improvement: strata by factor, squared distances of all pairs, and Σ d⁻²⁰.
+/// A sample under improvement: strata by factor, squared distances of all pairs, and Σ d⁻⁴⁰.
 struct Spread {
     columns: Vec<Vec<usize>>,
     squares: Vec<f64>,
     n: usize,
 }
 
-/// d⁻²⁰ from d².
+/// d⁻⁴⁰ from d².
 fn crowding(square: f64) -> f64 {
     let inverse = 1.0 / square;
     let fourth = inverse * inverse * inverse * inverse;
-    fourth * fourth * inverse * inverse
+    let sixteenth = fourth * fourth * fourth * fourth;
+    sixteenth * fourth
 }
 
 impl Spread {
@@ -143,7 +144,7 @@ impl Spread {
         (self.squares[a * self.n + j] + shift, self.squares[b * self.n + j] - shift)
     }
 
-    /// Change of Σ d⁻²⁰ by that exchange.
+    /// Change of Σ d⁻⁴⁰ by that exchange.
     fn change(&self, column: usize, a: usize, b: usize) -> f64 {
         let mut change = 0.0;
         for j in (0..self.n).filter(|&j| j != a && j != b) {
@@ -165,33 +166,45 @@ impl Spread {
         self.columns[column].swap(a, b);
     }
 
-    /// Simulated annealing on φ = (Σ d⁻²⁰)^(1/20), whose relative change is ln(Σ'/Σ)/20.
+    /// Simulated annealing on φ = (Σ d⁻⁴⁰)^(1/40), whose relative change is ln(Σ'/Σ)/40: [`CYCLES`] times from hot to cold.
     fn anneal(mut self, stream: &mut Stream) -> Vec<Vec<usize>> {
         let (n, k) = (self.n, self.columns.len());
-        let tries = (200 * n * k).max(20_000).min(100_000_000 / n);
-        let (mut now, mut best) = (self.total(), (f64::INFINITY, self.columns.clone()));
-        let (mut heat, cooling) = (0.05, exp(ln(1e-4 / 0.05) / tries as f64));
-        for step in 0..tries {
-            if step % 4096 == 0 {
-                // sums of changes lose digits
-                now = self.total();
-            }
-            let (column, a) = (stream.below(k), stream.below(n));
-            let b = (a + 1 + stream.below(n - 1)) % n;
-            let next = now + self.change(column, a, b);
-            let worse = if next > 0.0 { ln(next / now) / 20.0 } else { 0.0 };
-            if worse <= 0.0 || stream.uniform() < exp(-worse / heat) {
-                self.exchange(column, a, b);
-                now = next;
-                if now < best.0 * (1.0 - 1e-9) {
-                    best = (now, self.columns.clone());
+        let tries = (100 * n * k).max(10_000).min((50_000_000 / n).max(1));
+        let cooling = exp(ln(COLD / HOT) / tries as f64);
+        let mut best = (f64::INFINITY, self.columns.clone());
+        for _ in 0..CYCLES {
+            let (mut now, mut heat) = (self.total(), HOT);
+            let mut exact = now;
+            for _ in 0..tries {
+                let (column, a) = (stream.below(k), stream.below(n));
+                let b = (a + 1 + stream.below(n - 1)) % n;
+                let next = now + self.change(column, a, b);
+                let worse = if next > 0.0 { ln(next / now) / 40.0 } else { 0.0 };
+                if worse <= 0.0 || stream.uniform() < exp(-worse / heat) {
+                    self.exchange(column, a, b);
+                    now = next;
+                    // a sum of changes loses the digits of what was large before
+                    if now < 0.01 * exact || now > 100.0 * exact {
+                        now = self.total();
+                        exact = now;
+                    }
+                    if now < best.0 * (1.0 - 1e-9) {
+                        best = (now, self.columns.clone());
+                    }
                 }
+                heat *= cooling;
             }
-            heat *= cooling;
         }
         best.1
     }
 }
+
+/// Times the annealing is run from hot to cold.
+const CYCLES: usize = 5;
+/// Relative rise of φ that is accepted one time in e at first …
+const HOT: f64 = 0.05;
+/// … and at last.
+const COLD: f64 = 0.0005;
 
 #[cfg(test)]
 mod tests {
