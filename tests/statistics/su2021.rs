@@ -75,10 +75,10 @@ fn fitted(file: &str, response: &str, printed: &[Vec<String>]) -> Regression {
     regress(&table, response, &terms, &regression::Settings::default()).unwrap()
 }
 
-/// The computed value to the decimals of the print.
-fn as_printed(value: f64, print: &str) -> String {
+/// Whether a value rounds to the print; half a unit may have gone either way.
+fn rounds_to(value: f64, print: &str) -> bool {
     let decimals = print.split_once('.').map_or(0, |(_, d)| d.len());
-    format!("{value:.decimals$}")
+    (value - print.parse::<f64>().unwrap()).abs() <= 0.5 * 0.1_f64.powi(decimals as i32) * (1.0 + 1e-9)
 }
 
 #[test]
@@ -91,9 +91,9 @@ fn all_42_coefficients_of_table_12() {
         let found = fitted(file, response, &printed);
         for row in printed.iter().filter(|row| row[0] == response) {
             let own = found.natural.iter().find(|c| c.term == row[1]).unwrap();
-            assert_eq!(as_printed(own.estimate, &row[2]), row[2], "{response} {}", row[1]);
+            assert!(rounds_to(own.estimate, &row[2]), "{response} {}: {} for {}", row[1], own.estimate, row[2]);
         }
-        assert_eq!(as_printed(found.fit.r2, r2), r2, "{response}");
+        assert!(rounds_to(found.fit.r2, r2), "{response} R²: {}", found.fit.r2);
     }
 }
 
@@ -107,13 +107,13 @@ fn table_8_and_its_misprints() {
         let found = fitted("table06.csv", response, &printed);
         for row in printed.iter().filter(|row| row[0] == response) {
             let own = found.natural.iter().find(|c| c.term == row[1]).unwrap();
-            if as_printed(own.estimate, &row[2]) != row[2] {
+            if !rounds_to(own.estimate, &row[2]) {
                 off.push(format!("{response} {} {:.4}", row[1], own.estimate));
             }
         }
         // Printed 0.7598 is cut off, not rounded: 0.75986.
         let cut = (found.fit.r2 * 1e4).floor() / 1e4;
-        assert!(as_printed(found.fit.r2, r2) == r2 || cut.to_string() == r2, "{response}: {}", found.fit.r2);
+        assert!(rounds_to(found.fit.r2, r2) || cut.to_string() == r2, "{response}: {}", found.fit.r2);
     }
     assert_eq!(off, ["UCS const 1.6015", "UCS sigma_c 0.8352", "E kn_ks_j -0.2814", "nu const 0.0725"]);
 }

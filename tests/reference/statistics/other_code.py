@@ -110,9 +110,9 @@ def surface(name, file, factors, response, coding, weights=None):
     put('s', np.sqrt(fit.mse_resid))
     put('f', fit.fvalue)
     put('p', fit.f_pvalue)
-    put('vif', [variance_inflation_factor(u, i) for i in range(1, len(terms))])
-    put('natural_vif', [variance_inflation_factor(x, i) for i in range(1, len(terms))])
     if influence is not None:
+        put('vif', [variance_inflation_factor(u, i) for i in range(1, len(terms))])
+        put('natural_vif', [variance_inflation_factor(x, i) for i in range(1, len(terms))])
         put('leverage', influence.hat_matrix_diag)
         put('standardized', influence.resid_studentized_internal)
         put('studentized', influence.resid_studentized_external)
