@@ -1,4 +1,16 @@
 //! `flow` runs a numerical-experiment campaign with bonded-particle models that is written down as one TOML file.
 
+pub mod artifact;
+pub mod cli;
+pub mod exec;
+pub mod design;
+pub mod figure;
 pub mod dem;
 pub mod math;
+pub mod optim;
+pub mod plan;
+pub mod run;
+pub mod stage;
+pub mod stats;
+pub mod store;
+pub mod unit;

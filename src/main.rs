@@ -1,3 +1,5 @@
-//! The `flow` command.
+//! The `flow` command: arguments → `cli` → exit code.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    flow::cli::main()
+}

@@ -1,0 +1,44 @@
+//! Options that mean the same on every command that takes a workflow, and the two things each begins with.
+
+use super::Exit;
+use crate::plan::{self, Overrides, Workflow};
+use crate::store::Store;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Which campaign.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Campaign {
+    /// The workflow file.
+    pub(super) workflow: PathBuf,
+    /// Apply the overrides of `[profile.NAME]`.
+    #[arg(long, value_name = "NAME")]
+    pub(super) profile: Option<String>,
+    /// Override one value: `stage.anova.alpha=0.01`. May be given more than once.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(super) sets: Vec<String>,
+    /// The folder that keeps results.
+    #[arg(long, value_name = "FOLDER", default_value = "store")]
+    pub(super) store: PathBuf,
+}
+
+impl Campaign {
+    /// The checked workflow, or all its faults printed.
+    pub(super) fn load(&self) -> Result<Workflow, Exit> {
+        let overrides = Overrides { profile: self.profile.clone(), sets: self.sets.clone() };
+        plan::load(&self.workflow, &overrides).map_err(|faults| {
+            for fault in faults {
+                eprintln!("{fault}");
+            }
+            Exit::BadInput
+        })
+    }
+
+    /// The store.
+    pub(super) fn open(&self) -> Result<Store, Exit> {
+        Store::open(&self.store).map_err(|e| {
+            eprintln!("error: {e}");
+            Exit::System
+        })
+    }
+}

@@ -1,0 +1,188 @@
+//! The finished table of runs.
+
+use super::coding::Factor;
+use super::error::Fault;
+use crate::math::random::Stream;
+use serde::{Deserialize, Serialize};
+
+/// What a run is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PointType {
+    /// Centre of the region: curvature and pure error.
+    Centre,
+    /// Corner of the cube: every factor at −1 or +1.
+    Cube,
+    /// On an axis, at ±α.
+    Axial,
+    /// Middle of an edge (or face) of the cube, as in Box–Behnken designs.
+    Edge,
+    /// A combination of levels of a factorial or orthogonal table.
+    Grid,
+    /// A point of a space-filling sample.
+    Sample,
+    /// A row that was given.
+    Given,
+}
+
+impl PointType {
+    /// The word that stands in tables and files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Centre => "centre",
+            Self::Cube => "cube",
+            Self::Axial => "axial",
+            Self::Edge => "edge",
+            Self::Grid => "grid",
+            Self::Sample => "sample",
+            Self::Given => "given",
+        }
+    }
+}
+
+/// Where a factor stands in one run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// At its level of this index, from 0.
+    Level(usize),
+    /// At this coded value.
+    Coded(f64),
+    /// At this natural value.
+    Natural(f64),
+}
+
+/// The runs of a design in standard order, before they are given their natural values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    /// One row a run: the place of every factor, and the type of the point.
+    pub rows: Vec<(Vec<Place>, PointType)>,
+    /// What was built, in one line.
+    pub construction: String,
+    /// Who published it: author, year, DOI.
+    pub source: String,
+}
+
+impl Points {
+    /// Rows of coded values, all of one type.
+    pub(super) fn coded(rows: &[Vec<f64>], point_type: PointType) -> Vec<(Vec<Place>, PointType)> {
+        rows.iter().map(|row| (row.iter().map(|&x| Place::Coded(x)).collect(), point_type)).collect()
+    }
+
+    /// `count` runs at the centre of `factors` factors.
+    pub(super) fn centre(factors: usize, count: usize) -> Vec<(Vec<Place>, PointType)> {
+        vec![(vec![Place::Coded(0.0); factors], PointType::Centre); count]
+    }
+}
+
+/// Order of the runs in the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Order {
+    /// The order of the construction.
+    #[default]
+    Standard,
+    /// Shuffled by the seed.
+    Random,
+}
+
+/// A design: its factors and runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignTable {
+    /// The factors, in column order.
+    pub factors: Vec<Factor>,
+    /// Coded value of each factor (column) in each run (row).
+    pub coded: Vec<Vec<f64>>,
+    /// Natural value, in the factor's unit, of each factor (column) in each run (row).
+    pub natural: Vec<Vec<f64>>,
+    /// What each run is for.
+    pub point_type: Vec<PointType>,
+    /// Place of each run in the standard order, from 1.
+    pub standard_order: Vec<usize>,
+    /// What was built, in one line.
+    pub construction: String,
+    /// Who published it: author, year, DOI.
+    pub source: String,
+}
+
+impl DesignTable {
+    /// Number of runs.
+    pub fn runs(&self) -> usize {
+        self.coded.len()
+    }
+
+    /// Which occurrence of its row each run is, from 1: equal rows are replicates.
+    pub fn replicate(&self) -> Vec<usize> {
+        let mut seen = std::collections::BTreeMap::new();
+        let number = |row: &Vec<f64>| {
+            let bits: Vec<u64> = row.iter().map(|x| x.to_bits()).collect();
+            let count = seen.entry(bits).or_insert(0);
+            *count += 1;
+            *count
+        };
+        self.natural.iter().map(number).collect()
+    }
+
+    /// Gives the points their values, repeats them and puts them in order.
+    pub(super) fn lay_out(
+        factors: &[Factor],
+        points: &Points,
+        layout: Layout,
+        stream: &mut Stream,
+    ) -> Result<Self, Vec<Fault>> {
+        let once = points.rows.len();
+        if layout.replicates == 0 || layout.replicates.saturating_mul(once) > MOST_RUNS {
+            return Err(vec![Fault::BadOption {
+                option: "replicates".into(),
+                found: layout.replicates.to_string(),
+                wanted: format!("it must be at least 1, and the table of {once} runs may have at most {MOST_RUNS}"),
+            }]);
+        }
+        let mut order: Vec<usize> = (0..once * layout.replicates).collect();
+        if layout.order == Order::Random {
+            stream.shuffle(&mut order);
+        }
+        let values = |i: &usize| -> (Vec<f64>, Vec<f64>) {
+            let row = &points.rows[i % once].0;
+            row.iter().zip(factors).map(|(place, factor)| place.values(factor)).unzip()
+        };
+        let (coded, natural) = order.iter().map(values).unzip();
+        Ok(Self {
+            factors: factors.to_vec(),
+            coded,
+            natural,
+            point_type: order.iter().map(|i| points.rows[i % once].1).collect(),
+            standard_order: order.iter().map(|i| i + 1).collect(),
+            construction: points.construction.clone(),
+            source: points.source.clone(),
+        })
+    }
+}
+
+impl Place {
+    /// Coded and natural value.
+    fn values(self, factor: &Factor) -> (f64, f64) {
+        match self {
+            Self::Level(i) => (factor.coded(factor.level(i)), factor.level(i)),
+            Self::Coded(x) => (x, factor.natural(x)),
+            Self::Natural(x) => (factor.coded(x), x),
+        }
+    }
+}
+
+/// A table longer than this is a slip of the pen.
+pub const MOST_RUNS: usize = 1 << 20;
+
+/// How the runs of any design are repeated and ordered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// How often the whole design is run.
+    pub replicates: usize,
+    /// Order of the runs.
+    pub order: Order,
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self { replicates: 1, order: Order::Standard }
+    }
+}

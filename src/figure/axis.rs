@@ -1,0 +1,315 @@
+//! Axes: where the ticks stand, what they say, and where a value lies between the ends.
+//!
+//! Linear ticks are 1, 2, 2.5 or 5 times a power of ten; logarithmic ones are powers of ten with 2 … 9 as minor
+//! ticks (labelled too when the axis holds less than two powers). The largest exponents go into the tick labels as
+//! `4×10⁶`, so a number is never longer than six signs.
+
+use crate::math::elementary::{log10, pow};
+
+/// How values are spread along an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scale {
+    /// Equal steps.
+    #[default]
+    Linear,
+    /// Equal ratios; values must be above zero.
+    Log,
+}
+
+/// A labelled place on an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tick {
+    /// Value.
+    pub at: f64,
+    /// Label in the markup of [`super::text`]; may be empty.
+    pub label: String,
+}
+
+/// One axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Title with its unit, in the markup of [`super::text`].
+    pub label: String,
+    /// Spread of the values.
+    pub scale: Scale,
+    /// Value at the start.
+    pub low: f64,
+    /// Value at the end.
+    pub high: f64,
+    /// Labelled ticks.
+    pub ticks: Vec<Tick>,
+    /// Ticks without label.
+    pub minor: Vec<f64>,
+    /// Whether lines run across the panel at the ticks.
+    pub grid: bool,
+}
+
+impl Axis {
+    /// From `low` to `high` exactly, with about `want` labelled ticks.
+    pub fn between(label: impl Into<String>, scale: Scale, low: f64, high: f64, want: usize) -> Self {
+        let (low, high) = widened(scale, low, high);
+        let (ticks, minor) = match scale {
+            Scale::Linear => linear_ticks(low, high, want),
+            Scale::Log => log_ticks(low, high, want),
+        };
+        Self { label: label.into(), scale, low, high, ticks, minor, grid: true }
+    }
+
+    /// Around all finite values, with a margin of 5 % on both sides.
+    pub fn around(label: impl Into<String>, scale: Scale, values: impl IntoIterator<Item = f64>, want: usize) -> Self {
+        let (low, high) = extent(values.into_iter().filter(|v| scale == Scale::Linear || *v > 0.0));
+        let (low, high) = match scale {
+            Scale::Linear => (low - 0.05 * (high - low), high + 0.05 * (high - low)),
+            Scale::Log => {
+                let margin = pow(high / low, 0.05);
+                (low / margin, high * margin)
+            }
+        };
+        Self::between(label, scale, low, high, want)
+    }
+
+    /// From zero to a little above the largest value.
+    pub fn from_zero(label: impl Into<String>, values: impl IntoIterator<Item = f64>, want: usize) -> Self {
+        let (_, high) = extent(values.into_iter().chain([0.0]));
+        Self::between(label, Scale::Linear, 0.0, if high > 0.0 { 1.06 * high } else { 1.0 }, want)
+    }
+
+    /// One labelled place per category at 0, 1, 2 …, without lines across.
+    pub fn categories(label: impl Into<String>, names: &[String]) -> Self {
+        let ticks = names.iter().enumerate().map(|(i, n)| Tick { at: i as f64, label: n.clone() }).collect();
+        let high = names.len() as f64 - 0.5;
+        Self { label: label.into(), scale: Scale::Linear, low: -0.5, high, ticks, minor: Vec::new(), grid: false }
+    }
+
+    /// The same without lines across.
+    pub fn without_grid(mut self) -> Self {
+        self.grid = false;
+        self
+    }
+
+    /// Ticks at the given values only, such as the levels of a factor.
+    pub fn with_ticks_at(mut self, values: &[f64]) -> Self {
+        let step = values.windows(2).map(|w| (w[1] - w[0]).abs()).fold(f64::INFINITY, f64::min);
+        let step = if step.is_finite() && step > 0.0 { step } else { (self.high - self.low).abs() / 4.0 };
+        self.ticks = values.iter().map(|&at| Tick { at, label: shortest(at, step) }).collect();
+        self.minor = Vec::new();
+        self
+    }
+
+    /// Place of a value: 0 at the start of the axis, 1 at its end.
+    pub fn fraction(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => (value - self.low) / (self.high - self.low),
+            Scale::Log => {
+                let (low, high) = (log10(self.low), log10(self.high));
+                (log10(value.max(f64::MIN_POSITIVE)) - low) / (high - low)
+            }
+        }
+    }
+
+    /// Whether a value lies between the ends.
+    pub fn holds(&self, value: f64) -> bool {
+        value.is_finite() && self.low <= value && value <= self.high
+    }
+}
+
+/// Smallest and largest finite value; (0, 1) when there is none.
+pub fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let finite = values.into_iter().filter(|v| v.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    if low <= high { (low, high) } else { (0.0, 1.0) }
+}
+
+/// An axis needs a length: a single value gets room on both sides.
+fn widened(scale: Scale, low: f64, high: f64) -> (f64, f64) {
+    let (low, high) = if low.is_finite() && high.is_finite() { (low.min(high), low.max(high)) } else { (0.0, 1.0) };
+    match scale {
+        Scale::Linear if high - low > 1e-12 * high.abs().max(low.abs()) => (low, high),
+        Scale::Linear if low == 0.0 && high == 0.0 => (0.0, 1.0),
+        Scale::Linear => (low - 0.1 * low.abs().max(1e-12), high + 0.1 * high.abs().max(1e-12)),
+        Scale::Log => {
+            let high = high.max(f64::MIN_POSITIVE * 1e6);
+            let low = if low > 0.0 { low } else { high * 1e-3 };
+            if high > low * 1.001 { (low, high) } else { (low / 2.0, high * 2.0) }
+        }
+    }
+}
+
+/// The step among 1, 2, 2.5, 5 × 10ⁿ whose number of ticks is nearest to `want`.
+fn nice_step(length: f64, want: usize) -> f64 {
+    let rough = length / want.max(1) as f64;
+    let power = log10(rough).floor() as i32;
+    let mut best = (f64::INFINITY, rough);
+    for exponent in power - 1..=power + 1 {
+        for mantissa in [1.0, 2.0, 2.5, 5.0] {
+            let step = mantissa * power_of_ten(exponent);
+            let cost = (length / step - want as f64).abs() + if mantissa == 2.5 { 0.4 } else { 0.0 };
+            if cost < best.0 {
+                best = (cost, step);
+            }
+        }
+    }
+    best.1
+}
+
+/// Exact for the powers that a double holds exactly, correctly rounded for their inverses.
+fn power_of_ten(exponent: i32) -> f64 {
+    if exponent >= 0 { pow(10.0, f64::from(exponent)) } else { 1.0 / pow(10.0, f64::from(-exponent)) }
+}
+
+fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
+    let slack = 1e-9 * (high - low);
+    let first = ((low - slack) / step).ceil() as i64;
+    let last = ((high + slack) / step).floor() as i64;
+    // A division keeps 0.3 = 3/10 exact where a product gives 0.30000000000000004.
+    let inverse = (1.0 / step).round();
+    let exact = step < 1.0 && (inverse * step - 1.0).abs() < 1e-12;
+    (first..=last).map(|i| if exact { i as f64 / inverse } else { i as f64 * step }).collect()
+}
+
+fn linear_ticks(low: f64, high: f64, want: usize) -> (Vec<Tick>, Vec<f64>) {
+    let step = nice_step(high - low, want);
+    let at = multiples(low, high, step);
+    let lead = step / power_of_ten(log10(step).floor() as i32);
+    let parts = if (lead - 2.0).abs() < 0.01 { 4.0 } else { 5.0 };
+    let minor = multiples(low, high, step / parts)
+        .into_iter()
+        .filter(|m| at.iter().all(|a| (a - m).abs() > 1e-6 * step))
+        .collect();
+    (at.into_iter().map(|at| Tick { at, label: tick_label(at, step, low.abs().max(high.abs())) }).collect(), minor)
+}
+
+fn log_ticks(low: f64, high: f64, want: usize) -> (Vec<Tick>, Vec<f64>) {
+    let inside = |v: f64| v >= low * (1.0 - 1e-9) && v <= high * (1.0 + 1e-9);
+    let (first, last) = (log10(low).floor() as i32, log10(high).ceil() as i32);
+    let powers: Vec<i32> = (first..=last).filter(|&e| inside(power_of_ten(e))).collect();
+    let every = (powers.len() / want.max(1)).max(1) as i32;
+    let few = powers.len() < 2;
+    let (mut ticks, mut minor) = (Vec::new(), Vec::new());
+    for exponent in first..=last {
+        for m in 1..=9 {
+            let at = f64::from(m) * power_of_ten(exponent);
+            let labelled = if few { [1, 2, 5].contains(&m) } else { m == 1 && exponent.rem_euclid(every) == 0 };
+            match (inside(at), labelled) {
+                (true, true) => ticks.push(Tick { at, label: power_label(at, m, exponent, few) }),
+                (true, false) if every == 1 || m == 1 => minor.push(at),
+                _ => {}
+            }
+        }
+    }
+    (ticks, minor)
+}
+
+fn power_label(at: f64, m: i32, exponent: i32, few: bool) -> String {
+    match (few || (-2..=3).contains(&exponent), m) {
+        (true, _) if (-3..=4).contains(&exponent) => shortest(at, at),
+        (_, 1) => format!("$10^{{{exponent}}}$"),
+        _ => format!("{m}×$10^{{{exponent}}}$"),
+    }
+}
+
+/// Label of a linear tick: as many decimals as the step has; powers of ten beyond 10⁵ and below 10⁻³.
+fn tick_label(at: f64, step: f64, largest: f64) -> String {
+    if at == 0.0 {
+        return "0".into();
+    }
+    if largest >= 1e5 || largest < 1e-2 {
+        let exponent = log10(largest).floor() as i32;
+        let unit = power_of_ten(exponent);
+        return format!("{}×$10^{{{exponent}}}$", shortest(at / unit, step / unit));
+    }
+    fixed(at, decimals(step))
+}
+
+/// Decimals that tell multiples of `step` apart.
+fn decimals(step: f64) -> usize {
+    (0..12)
+        .find(|&d| {
+            let scaled = step * power_of_ten(d);
+            (scaled - scaled.round()).abs() < 1e-6 * scaled
+        })
+        .unwrap_or(12) as usize
+}
+
+fn shortest(value: f64, step: f64) -> String {
+    let digits = decimals(step).max(decimals(value.abs().max(1e-300))).min(decimals(step) + 3);
+    fixed(value, digits)
+}
+
+/// A number with fixed decimals and a true minus sign.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let zero = text.bytes().all(|b| b"-0.".contains(&b));
+    match text.strip_prefix('-') {
+        Some(rest) if zero => rest.into(),
+        Some(rest) => format!("−{rest}"),
+        None => text,
+    }
+}
+
+/// A number with so many significant digits, for annotations.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return fixed(value, 0);
+    }
+    let exponent = log10(value.abs()).floor() as i32;
+    if !(-4..=5).contains(&exponent) {
+        return format!("{}×$10^{{{exponent}}}$", fixed(value / power_of_ten(exponent), digits.saturating_sub(1)));
+    }
+    fixed(value, (digits as i32 - 1 - exponent).max(0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis) -> Vec<&str> {
+        axis.ticks.iter().map(|t| t.label.as_str()).collect()
+    }
+
+    #[test]
+    fn linear_ticks_are_round() {
+        let axis = Axis::between("x", Scale::Linear, 0.0, 62.09, 5);
+        assert_eq!(labels(&axis), ["0", "10", "20", "30", "40", "50", "60"]);
+        let axis = Axis::between("x", Scale::Linear, 0.083, 0.37, 5);
+        assert_eq!(labels(&axis), ["0.10", "0.15", "0.20", "0.25", "0.30", "0.35"]);
+        let axis = Axis::between("x", Scale::Linear, -1.0, 1.0, 4);
+        assert_eq!(labels(&axis), ["−1.0", "−0.5", "0", "0.5", "1.0"]);
+        assert_eq!(
+            labels(&Axis::between("x", Scale::Linear, 0.0, 4.0e7, 4)),
+            ["0", "1×$10^{7}$", "2×$10^{7}$", "3×$10^{7}$", "4×$10^{7}$"]
+        );
+    }
+
+    #[test]
+    fn log_ticks_are_powers() {
+        let axis = Axis::between("x", Scale::Log, 1e-6, 1.0, 7);
+        assert_eq!(labels(&axis), ["$10^{-6}$", "$10^{-5}$", "$10^{-4}$", "$10^{-3}$", "0.01", "0.1", "1"]);
+        assert_eq!(labels(&Axis::between("x", Scale::Log, 15.0, 90.0, 4)), ["20", "50"]);
+        assert!((axis.fraction(1e-3) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn levels_and_degenerate_ranges() {
+        assert_eq!(
+            labels(&Axis::between("x", Scale::Linear, 0.7, 4.3, 3).with_ticks_at(&[1.0, 2.5, 4.0])),
+            ["1.0", "2.5", "4.0"]
+        );
+        let flat = Axis::around("x", Scale::Linear, [3.0, 3.0], 4);
+        assert!(flat.low < 3.0 && flat.high > 3.0 && !flat.ticks.is_empty());
+        let none = Axis::around("x", Scale::Linear, [f64::NAN], 4);
+        assert!(none.low < none.high);
+        assert_eq!(fixed(-0.0001, 2), "0.00");
+        assert_eq!(significant(0.012345, 3), "0.0123");
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn ticks_lie_inside_and_are_few(low in -1e6..1e6f64, length in 1e-6..1e6f64, want in 3usize..9) {
+            let axis = Axis::between("x", Scale::Linear, low, low + length, want);
+            proptest::prop_assert!((2..=2 * want + 1).contains(&axis.ticks.len()), "{:?}", axis.ticks);
+            proptest::prop_assert!(axis.ticks.iter().all(|t| (-1e-6..=1.0 + 1e-6).contains(&axis.fraction(t.at))));
+        }
+    }
+}

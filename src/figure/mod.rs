@@ -1,0 +1,104 @@
+//! Figures: plain series → [`scene::Scene`] → SVG, PNG or PDF. Nothing here knows stages, files or HDF5.
+//!
+//! A figure is a struct of its data with `impl Figure`; one file each. What it draws is also handed out as columns
+//! ([`Figure::data`]), so every figure has its CSV. Sizes are millimetres on paper, text is 8 pt when printed.
+//!
+//! * page: [`scene`] (what is drawn), [`text`] and [`font`] (labels), [`svg`], [`png`], [`pdf`] (writers)
+//! * plot: [`axis`], [`panel`], [`legend`], [`palette`]
+//! * words and numbers: [`column`], [`table`]
+//! * every other file is a figure
+
+pub mod axis;
+pub mod bars;
+pub mod column;
+pub mod contour;
+pub mod curve;
+pub mod effects;
+pub mod font;
+pub mod isoline;
+pub mod legend;
+pub mod palette;
+pub mod panel;
+pub mod pdf;
+pub mod png;
+pub mod scene;
+pub mod svg;
+pub mod table;
+pub mod text;
+
+use column::Column;
+use scene::Scene;
+
+/// A picture of some data.
+pub trait Figure {
+    /// Draws it.
+    fn scene(&self, style: &Style) -> Scene;
+    /// The numbers it shows, one column each.
+    fn data(&self) -> Vec<Column>;
+}
+
+/// What is the same for all figures of a publication.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Style {
+    /// Width of the page in mm: 90 for one column of a journal, 190 for two.
+    pub width: f64,
+    /// Size of the text in points.
+    pub points: f64,
+    /// Colours of surfaces.
+    pub map: palette::Map,
+}
+
+/// Width of one journal column in mm.
+pub const SINGLE: f64 = 90.0;
+/// Width of two journal columns in mm.
+pub const DOUBLE: f64 = 190.0;
+
+impl Style {
+    /// Default look at a given width.
+    pub fn wide(width: f64) -> Self {
+        Self { width, points: 8.0, map: palette::Map::default() }
+    }
+
+    /// Size of the text in mm.
+    pub fn size(&self) -> f64 {
+        self.points * text::POINT
+    }
+}
+
+/// Name, symbol and unit of something that has values; each may be empty.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Quantity {
+    /// Plain words: "Peak strength".
+    pub name: String,
+    /// Symbol in LaTeX notation without dollar signs: `\sigma_u`.
+    pub symbol: String,
+    /// Unit: "MPa"; empty for a pure number.
+    pub unit: String,
+}
+
+impl Quantity {
+    /// From its three parts.
+    pub fn new(name: &str, symbol: &str, unit: &str) -> Self {
+        Self { name: name.into(), symbol: symbol.into(), unit: unit.into() }
+    }
+
+    /// Name, symbol and unit as an axis title.
+    pub fn title(&self) -> String {
+        text::quantity(&self.name, &self.symbol, &self.unit)
+    }
+
+    /// Symbol and unit, or name and unit when there is no symbol.
+    pub fn short(&self) -> String {
+        if self.symbol.is_empty() { self.title() } else { text::quantity("", &self.symbol, &self.unit) }
+    }
+
+    /// The symbol as markup, or the name.
+    pub fn sign(&self) -> String {
+        if self.symbol.is_empty() { self.name.clone() } else { format!("${}$", self.symbol) }
+    }
+
+    /// A column of values of this quantity.
+    pub fn column(&self, key: &str, values: Vec<f64>) -> Column {
+        Column { symbol: self.symbol.clone(), unit: self.unit.clone(), ..Column::reals(key, values) }
+    }
+}

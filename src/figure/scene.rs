@@ -1,0 +1,426 @@
+//! A picture as plain data: paths, discs, text and clipped groups on a page.
+//!
+//! Units are millimetres on the page, origin in the upper left corner, y down. Colours are opaque or carry one
+//! opacity. The writers ([`super::svg`], [`super::png`], [`super::pdf`]) draw a scene and decide nothing, so two
+//! scenes that are equal give the same bytes.
+
+use super::text::Line;
+use crate::math::elementary::sin_cos;
+use std::fmt;
+
+/// A place on the page in mm: right, down.
+pub type Point = [f64; 2];
+
+/// An opaque sRGB colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Color(pub u8, pub u8, pub u8);
+
+impl Color {
+    /// The colour between `self` (0) and `other` (1), mixed in sRGB.
+    pub fn mix(self, other: Self, t: f64) -> Self {
+        let part = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * t).round().clamp(0.0, 255.0) as u8;
+        Self(part(self.0, other.0), part(self.1, other.1), part(self.2, other.2))
+    }
+
+    /// Relative luminance after WCAG 2 (0 black, 1 white): what a grey print keeps of the colour.
+    pub fn luminance(self) -> f64 {
+        let linear = |c: u8| {
+            let c = f64::from(c) / 255.0;
+            if c <= 0.04045 { c / 12.92 } else { crate::math::elementary::pow((c + 0.055) / 1.055, 2.4) }
+        };
+        0.2126 * linear(self.0) + 0.7152 * linear(self.1) + 0.0722 * linear(self.2)
+    }
+
+    /// The grey of equal luminance.
+    pub fn grey(self) -> Self {
+        let y = self.luminance();
+        let c = if y <= 0.003_130_8 { 12.92 * y } else { 1.055 * crate::math::elementary::pow(y, 1.0 / 2.4) - 0.055 };
+        let c = (c * 255.0).round() as u8;
+        Self(c, c, c)
+    }
+}
+
+/// One step of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// Starts a new part.
+    Move(Point),
+    /// Straight to a point.
+    Line(Point),
+    /// Cubic Bézier by two control points.
+    Cubic(Point, Point, Point),
+    /// Back to the start of the part.
+    Close,
+}
+
+/// Lines and curves; several closed parts are filled by the even–odd rule.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Path(pub Vec<Step>);
+
+impl Path {
+    /// An open line through the points.
+    pub fn polyline(points: &[Point]) -> Self {
+        let mut path = Self::default();
+        path.add_polyline(points);
+        path
+    }
+
+    /// A closed polygon.
+    pub fn polygon(points: &[Point]) -> Self {
+        let mut path = Self::default();
+        path.add_polygon(points);
+        path
+    }
+
+    /// An axis-parallel rectangle.
+    pub fn rect(r: Rect) -> Self {
+        Self::polygon(&[[r.left, r.top], [r.right, r.top], [r.right, r.bottom], [r.left, r.bottom]])
+    }
+
+    /// A circle of four cubic arcs (largest radial error 0.03 %).
+    pub fn circle(centre: Point, radius: f64) -> Self {
+        let [x, y] = centre;
+        let (r, k) = (radius, radius * 4.0 / 3.0 * (2.0_f64.sqrt() - 1.0));
+        Self(vec![
+            Step::Move([x + r, y]),
+            Step::Cubic([x + r, y + k], [x + k, y + r], [x, y + r]),
+            Step::Cubic([x - k, y + r], [x - r, y + k], [x - r, y]),
+            Step::Cubic([x - r, y - k], [x - k, y - r], [x, y - r]),
+            Step::Cubic([x + k, y - r], [x + r, y - k], [x + r, y]),
+            Step::Close,
+        ])
+    }
+
+    /// A ring sector between two radii and two angles (radians, anticlockwise from the right), by short chords.
+    pub fn sector(centre: Point, inner: f64, outer: f64, from: f64, to: f64) -> Self {
+        let n = (((to - from).abs() / 0.05).ceil() as usize).max(1);
+        let at = |r: f64, i: usize| {
+            let (s, c) = sin_cos(from + (to - from) * i as f64 / n as f64);
+            [centre[0] + r * c, centre[1] - r * s]
+        };
+        let mut points: Vec<Point> = (0..=n).map(|i| at(outer, i)).collect();
+        if inner > 0.0 {
+            points.extend((0..=n).rev().map(|i| at(inner, i)));
+        } else {
+            points.push(centre);
+        }
+        Self::polygon(&points)
+    }
+
+    /// Adds an open line.
+    pub fn add_polyline(&mut self, points: &[Point]) {
+        for (i, &p) in points.iter().enumerate() {
+            self.0.push(if i == 0 { Step::Move(p) } else { Step::Line(p) });
+        }
+    }
+
+    /// Adds a closed polygon.
+    pub fn add_polygon(&mut self, points: &[Point]) {
+        if points.len() > 1 {
+            self.add_polyline(points);
+            self.0.push(Step::Close);
+        }
+    }
+
+    /// The smallest rectangle around all points and control points; `None` without points.
+    pub fn bounds(&self) -> Option<Rect> {
+        let points = self.0.iter().flat_map(|step| match *step {
+            Step::Move(p) | Step::Line(p) => vec![p],
+            Step::Cubic(a, b, p) => vec![a, b, p],
+            Step::Close => vec![],
+        });
+        Rect::around(points)
+    }
+}
+
+/// An axis-parallel rectangle on the page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    /// Smallest x.
+    pub left: f64,
+    /// Smallest y (the upper edge).
+    pub top: f64,
+    /// Largest x.
+    pub right: f64,
+    /// Largest y (the lower edge).
+    pub bottom: f64,
+}
+
+impl Rect {
+    /// From the upper left corner and a size.
+    pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+        Self { left, top, right: left + width, bottom: top + height }
+    }
+
+    /// The smallest rectangle that holds the points.
+    pub fn around(points: impl IntoIterator<Item = Point>) -> Option<Self> {
+        points.into_iter().fold(None, |sum: Option<Self>, [x, y]| {
+            Some(match sum {
+                None => Self { left: x, top: y, right: x, bottom: y },
+                Some(r) => {
+                    Self { left: r.left.min(x), top: r.top.min(y), right: r.right.max(x), bottom: r.bottom.max(y) }
+                }
+            })
+        })
+    }
+
+    /// Width in mm.
+    pub fn width(&self) -> f64 {
+        self.right - self.left
+    }
+
+    /// Height in mm.
+    pub fn height(&self) -> f64 {
+        self.bottom - self.top
+    }
+
+    /// Middle.
+    pub fn centre(&self) -> Point {
+        [(self.left + self.right) / 2.0, (self.top + self.bottom) / 2.0]
+    }
+
+    /// The rectangle moved inwards by the four margins.
+    pub fn inset(&self, left: f64, top: f64, right: f64, bottom: f64) -> Self {
+        Self { left: self.left + left, top: self.top + top, right: self.right - right, bottom: self.bottom - bottom }
+    }
+
+    /// Whether the insides of the two meet.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
+    }
+
+    /// Whether `other` lies inside, borders included.
+    pub fn holds(&self, other: &Self) -> bool {
+        self.left <= other.left && self.top <= other.top && self.right >= other.right && self.bottom >= other.bottom
+    }
+}
+
+/// How a path is painted inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fill {
+    /// Colour.
+    pub color: Color,
+    /// 1 is opaque.
+    pub opacity: f64,
+}
+
+impl From<Color> for Fill {
+    fn from(color: Color) -> Self {
+        Self { color, opacity: 1.0 }
+    }
+}
+
+/// How a path is drawn along its line; ends and corners are round.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    /// Colour.
+    pub color: Color,
+    /// Width in mm.
+    pub width: f64,
+    /// Lengths of dash and gap in mm by turns; empty is solid.
+    pub dash: Vec<f64>,
+    /// 1 is opaque.
+    pub opacity: f64,
+}
+
+impl Stroke {
+    /// A solid line.
+    pub fn new(color: Color, width: f64) -> Self {
+        Self { color, width, dash: Vec::new(), opacity: 1.0 }
+    }
+
+    /// The same with dashes.
+    pub fn dashed(mut self, dash: &[f64]) -> Self {
+        self.dash = dash.to_vec();
+        self
+    }
+
+    /// The same, see-through.
+    pub fn with_opacity(mut self, opacity: f64) -> Self {
+        self.opacity = opacity;
+        self
+    }
+}
+
+/// One thing on the page; later ones cover earlier ones.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// A filled and stroked path.
+    Shape {
+        /// Outline.
+        path: Path,
+        /// Inside.
+        fill: Option<Fill>,
+        /// Line.
+        stroke: Option<Stroke>,
+    },
+    /// Many discs of one colour; cheap in every format.
+    Discs {
+        /// Centre and radius of each.
+        discs: Vec<(Point, f64)>,
+        /// Colour.
+        color: Color,
+    },
+    /// A set line of text.
+    Text {
+        /// Glyphs relative to the start of the baseline.
+        line: Line,
+        /// Start of the baseline.
+        at: Point,
+        /// Degrees anticlockwise.
+        angle: f64,
+        /// Colour.
+        color: Color,
+    },
+    /// Items drawn together.
+    Group {
+        /// Nothing is drawn outside.
+        clip: Option<Rect>,
+        /// Facts for a reader of the SVG: written as `data-…` attributes.
+        facts: Vec<(&'static str, String)>,
+        /// Content.
+        items: Vec<Item>,
+    },
+}
+
+/// A page with its items.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Width in mm.
+    pub width: f64,
+    /// Height in mm.
+    pub height: f64,
+    /// Short title, for screen readers and file properties.
+    pub title: String,
+    /// One or two sentences that tell what the picture shows, for those who cannot see it.
+    pub description: String,
+    /// Content.
+    pub items: Vec<Item>,
+}
+
+/// Where a text is placed relative to its point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// The text starts there.
+    Start,
+    /// The text is centred there.
+    Middle,
+    /// The text ends there.
+    End,
+}
+
+impl Scene {
+    /// An empty white page.
+    pub fn new(width: f64, height: f64) -> Self {
+        Self { width, height, title: String::new(), description: String::new(), items: Vec::new() }
+    }
+
+    /// The whole page.
+    pub fn page(&self) -> Rect {
+        Rect::new(0.0, 0.0, self.width, self.height)
+    }
+
+    /// Fills a path.
+    pub fn fill(&mut self, path: Path, fill: impl Into<Fill>) {
+        self.items.push(Item::Shape { path, fill: Some(fill.into()), stroke: None });
+    }
+
+    /// Draws along a path.
+    pub fn stroke(&mut self, path: Path, stroke: Stroke) {
+        self.items.push(Item::Shape { path, fill: None, stroke: Some(stroke) });
+    }
+
+    /// Fills a path and draws along it.
+    pub fn shape(&mut self, path: Path, fill: impl Into<Fill>, stroke: Stroke) {
+        self.items.push(Item::Shape { path, fill: Some(fill.into()), stroke: Some(stroke) });
+    }
+
+    /// Sets a line of text on its baseline at `at`, turned by `angle` degrees anticlockwise around that point.
+    pub fn text(&mut self, line: Line, at: Point, anchor: Anchor, angle: f64, color: Color) {
+        let shift = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => line.width / 2.0,
+            Anchor::End => line.width,
+        };
+        let (s, c) = sin_cos(angle.to_radians());
+        let at = [at[0] - shift * c, at[1] + shift * s];
+        self.items.push(Item::Text { line, at, angle, color });
+    }
+
+    /// Sets a text whose middle line of capitals is at `at`: labels beside ticks and markers.
+    pub fn text_centred(&mut self, line: Line, at: Point, anchor: Anchor, color: Color) {
+        let drop = line.size * super::text::CAP_HEIGHT / 2.0;
+        self.text(line, [at[0], at[1] + drop], anchor, 0.0, color);
+    }
+
+    /// Puts all items from number `first` on into one group.
+    pub fn group_from(&mut self, first: usize, clip: Option<Rect>, facts: Vec<(&'static str, String)>) {
+        let items = self.items.split_off(first);
+        self.items.push(Item::Group { clip, facts, items });
+    }
+
+    /// Every text with the rectangle it takes, groups included.
+    pub fn texts(&self) -> Vec<(String, Rect)> {
+        fn walk(items: &[Item], out: &mut Vec<(String, Rect)>) {
+            for item in items {
+                match item {
+                    Item::Text { line, at, angle, .. } => out.push((line.plain.clone(), line.bounds(*at, *angle))),
+                    Item::Group { items, .. } => walk(items, out),
+                    Item::Shape { .. } | Item::Discs { .. } => {}
+                }
+            }
+        }
+        let mut out = Vec::new();
+        walk(&self.items, &mut out);
+        out
+    }
+
+    /// What a careful eye would object to: text beyond the page, text over text. Empty when all is well.
+    pub fn faults(&self) -> Vec<String> {
+        let texts = self.texts();
+        let page = self.page();
+        let mut faults = Vec::new();
+        for (i, (text, place)) in texts.iter().enumerate() {
+            if !page.holds(place) {
+                faults.push(format!("“{text}” leaves the page: {place:.1?}"));
+            }
+            let over = texts[..i].iter().filter(|(_, other)| place.meets(other));
+            faults.extend(over.map(|(other, _)| format!("“{text}” covers “{other}”")));
+        }
+        faults
+    }
+}
+
+/// One line per item with its place, to compare and to read.
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "page {:.2} x {:.2} mm: {}", self.width, self.height, self.title)?;
+        self.items.iter().try_for_each(|item| show(f, item, 1))
+    }
+}
+
+fn show(f: &mut fmt::Formatter<'_>, item: &Item, depth: usize) -> fmt::Result {
+    write!(f, "{:1$}", "", 2 * depth)?;
+    let place = |r: Rect| format!("{:.2} {:.2} .. {:.2} {:.2}", r.left, r.top, r.right, r.bottom);
+    match item {
+        Item::Shape { path, fill, stroke } => {
+            let bounds = path.bounds().map(place).unwrap_or_default();
+            write!(f, "path {bounds} steps {}", path.0.len())?;
+            if let Some(Fill { color: Color(r, g, b), opacity }) = fill {
+                write!(f, " fill {r:02x}{g:02x}{b:02x} {opacity:.2}")?;
+            }
+            if let Some(Stroke { color: Color(r, g, b), width, dash, opacity }) = stroke {
+                write!(f, " stroke {r:02x}{g:02x}{b:02x} {width:.2} {dash:?} {opacity:.2}")?;
+            }
+            writeln!(f)
+        }
+        Item::Discs { discs, color: Color(r, g, b) } => writeln!(f, "discs {} {r:02x}{g:02x}{b:02x}", discs.len()),
+        Item::Text { line, at, angle, .. } => {
+            writeln!(f, "text {:.2} {:.2} angle {angle:.0} size {:.2} “{}”", at[0], at[1], line.size, line.plain)
+        }
+        Item::Group { clip, items, .. } => {
+            writeln!(f, "group {}", clip.map(place).unwrap_or_default())?;
+            items.iter().try_for_each(|item| show(f, item, depth + 1))
+        }
+    }
+}

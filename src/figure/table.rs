@@ -1,0 +1,241 @@
+//! Tables as CSV, LaTeX (booktabs) and Markdown from columns. Symbols and units stand in the heads.
+
+use super::column::{Column, Digits, Values};
+
+/// A table with the words above it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Caption; may be empty.
+    pub caption: String,
+    /// Label for references in LaTeX; may be empty.
+    pub label: String,
+    /// Columns of equal length.
+    pub columns: Vec<Column>,
+    /// Remarks under the table.
+    pub notes: Vec<String>,
+}
+
+/// All digits, one head row `key [unit]`, RFC 4180 quoting, lines end with a newline.
+pub fn csv(columns: &[Column]) -> String {
+    let head = columns
+        .iter()
+        .map(|c| quoted(&if c.unit.is_empty() { c.key.clone() } else { format!("{} [{}]", c.key, c.unit) }));
+    let mut out = head.collect::<Vec<_>>().join(",") + "\n";
+    for row in 0..rows(columns) {
+        let cells = columns.iter().map(|c| quoted(&exact(c, row)));
+        out += &cells.collect::<Vec<_>>().join(",");
+        out.push('\n');
+    }
+    out
+}
+
+fn rows(columns: &[Column]) -> usize {
+    columns.iter().map(Column::len).max().unwrap_or(0)
+}
+
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.into() }
+}
+
+/// A cell without loss; empty when missing.
+fn exact(column: &Column, row: usize) -> String {
+    match &column.values {
+        Values::Reals(v) => v.get(row).filter(|x| x.is_finite()).map(|&x| lossless(x)).unwrap_or_default(),
+        Values::Whole(v) => v.get(row).map(i64::to_string).unwrap_or_default(),
+        Values::Words(v) => v.get(row).cloned().unwrap_or_default(),
+    }
+}
+
+/// The shortest text that reads back as the same number; with an exponent when very small or large.
+fn lossless(x: f64) -> String {
+    if x != 0.0 && !(1e-5..1e15).contains(&x.abs()) { format!("{x:e}") } else { format!("{x}") }
+}
+
+/// A cell for people, with a hyphen for minus; `None` when missing.
+fn shown(column: &Column, row: usize) -> Option<String> {
+    let Values::Reals(v) = &column.values else { return Some(exact(column, row)).filter(|c| !c.is_empty()) };
+    let x = *v.get(row)?;
+    if !x.is_finite() {
+        return None;
+    }
+    Some(match column.digits {
+        Digits::Shortest => lossless(x),
+        Digits::Fixed(n) => unsigned_zero(format!("{x:.n$}")),
+        Digits::Significant(n) => significant(x, n),
+    })
+}
+
+/// `1.234e-7` beyond ten-thousandths and millions, else plain.
+fn significant(x: f64, digits: usize) -> String {
+    let digits = digits.max(1);
+    let rounded = format!("{x:.*e}", digits - 1);
+    let exponent: i32 = rounded.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    if x != 0.0 && !(-4..7).contains(&exponent) {
+        return rounded;
+    }
+    unsigned_zero(format!("{x:.*}", (digits as i32 - 1 - exponent).max(0) as usize))
+}
+
+fn unsigned_zero(text: String) -> String {
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.into(),
+        _ => text,
+    }
+}
+
+impl Table {
+    /// A `table` environment with booktabs rules.
+    pub fn latex(&self) -> String {
+        let align: String =
+            self.columns.iter().map(|c| if matches!(c.values, Values::Words(_)) { 'l' } else { 'r' }).collect();
+        let mut out = String::from("\\begin{table}\n\\centering\n");
+        if !self.caption.is_empty() {
+            out += &format!("\\caption{{{}}}\n", latex_text(&self.caption));
+        }
+        if !self.label.is_empty() {
+            out += &format!("\\label{{{}}}\n", self.label);
+        }
+        out += &format!("\\begin{{tabular}}{{{align}}}\n\\toprule\n");
+        let head: Vec<String> = self.columns.iter().map(latex_head).collect();
+        out += &format!("{} \\\\\n\\midrule\n", head.join(" & "));
+        for row in 0..rows(&self.columns) {
+            let cells: Vec<String> = self.columns.iter().map(|c| latex_cell(c, row)).collect();
+            out += &format!("{} \\\\\n", cells.join(" & "));
+        }
+        out += "\\bottomrule\n\\end{tabular}\n";
+        for note in &self.notes {
+            out += &format!("\\par\\smallskip\\footnotesize {}\n", latex_text(note));
+        }
+        out + "\\end{table}\n"
+    }
+
+    /// A pipe table.
+    pub fn markdown(&self) -> String {
+        let mut out = String::new();
+        if !self.caption.is_empty() {
+            out += &format!("**{}**\n\n", self.caption);
+        }
+        let head: Vec<String> = self.columns.iter().map(markdown_head).collect();
+        let rule = self.columns.iter().map(|c| if matches!(c.values, Values::Words(_)) { ":--" } else { "--:" });
+        out += &format!("| {} |\n| {} |\n", head.join(" | "), rule.collect::<Vec<_>>().join(" | "));
+        for row in 0..rows(&self.columns) {
+            let cells = self.columns.iter().map(|c| shown(c, row).unwrap_or("–".into()).replace('|', "\\|"));
+            out += &format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "));
+        }
+        for note in &self.notes {
+            out += &format!("\n{note}\n");
+        }
+        out
+    }
+
+    /// [`csv`] of the columns.
+    pub fn csv(&self) -> String {
+        csv(&self.columns)
+    }
+}
+
+fn latex_head(c: &Column) -> String {
+    let name = if c.symbol.is_empty() { latex_text(&c.key) } else { format!("${}$", c.symbol) };
+    if c.unit.is_empty() { name } else { format!("{name} / {}", latex_unit(&c.unit)) }
+}
+
+fn latex_unit(unit: &str) -> String {
+    latex_text(unit)
+        .replace("\\textasciicircum{}", "^")
+        .replace('*', "\\cdot ")
+        .split_once('^')
+        .map_or_else(|| latex_text(unit), |(base, power)| format!("{base}$^{{{power}}}$"))
+}
+
+fn latex_cell(c: &Column, row: usize) -> String {
+    let Some(text) = shown(c, row) else { return "--".into() };
+    if matches!(c.values, Values::Words(_)) {
+        return latex_text(&text);
+    }
+    match text.split_once('e') {
+        Some((mantissa, power)) => format!("${mantissa}\\times 10^{{{power}}}$"),
+        None if text.starts_with('-') => format!("${text}$"),
+        None => text,
+    }
+}
+
+/// Escapes what LaTeX takes for commands; mathematics between dollar signs passes.
+fn latex_text(text: &str) -> String {
+    let mut out = String::new();
+    for (i, part) in text.split('$').enumerate() {
+        if i % 2 == 1 {
+            out += &format!("${part}$");
+            continue;
+        }
+        for c in part.chars() {
+            match c {
+                '%' | '&' | '#' | '_' | '{' | '}' => {
+                    out.push('\\');
+                    out.push(c);
+                }
+                '\\' => out += "\\textbackslash{}",
+                '^' => out += "\\textasciicircum{}",
+                '~' => out += "\\textasciitilde{}",
+                _ => out.push(c),
+            }
+        }
+    }
+    out
+}
+
+fn markdown_head(c: &Column) -> String {
+    let name = if c.symbol.is_empty() { c.key.clone() } else { format!("${}$", c.symbol) };
+    (if c.unit.is_empty() { name } else { format!("{name} / {}", c.unit) }).replace('|', "\\|")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let columns = vec![
+            Column::words("source", vec!["Ec".into(), "a, b & c".into(), "error".into()]),
+            Column::reals("F", vec![3003.42, 0.1712, f64::NAN]).with_digits(Digits::Significant(4)),
+            Column::reals("p", vec![8.935_220_99e-41, 0.5, -0.000_01])
+                .with_symbol("p")
+                .with_digits(Digits::Significant(3)),
+            Column::reals("rho", vec![2650.0, 2000.5, -1.0]).with_symbol(r"\rho").with_unit("kg/m^3"),
+            Column::whole("df", vec![2, 2, 36]),
+        ];
+        Table {
+            caption: "Analysis of 5 % & more".into(),
+            label: "tab:a".into(),
+            columns,
+            notes: vec!["One note.".into()],
+        }
+    }
+
+    #[test]
+    fn csv_is_quoted_and_complete() {
+        let got = table().csv();
+        assert!(got.starts_with("source,F,p,rho [kg/m^3],df\nEc,3003.42,8.93522099e-41,2650,2\n"), "{got}");
+        assert!(
+            got.contains("\"a, b & c\",0.1712,0.5,2000.5,2\n") && got.ends_with("error,,-0.00001,-1,36\n"),
+            "{got}"
+        );
+    }
+
+    #[test]
+    fn latex_has_rules_and_escapes() {
+        let got = table().latex();
+        assert!(
+            got.contains("\\caption{Analysis of 5 \\% \\& more}\n\\label{tab:a}\n\\begin{tabular}{lrrrr}\n\\toprule\n")
+        );
+        assert!(got.contains("source & F & $p$ & $\\rho$ / kg/m$^{3}$ & df \\\\\n\\midrule\n"), "{got}");
+        assert!(got.contains("Ec & 3003 & $8.94\\times 10^{-41}$ & 2650 & 2 \\\\\n"), "{got}");
+        assert!(got.contains("a, b \\& c & 0.1712 & 0.500 & 2000.5 & 2 \\\\\n"), "{got}");
+        assert!(got.contains("error & -- & $-1.00\\times 10^{-5}$ & $-1$ & 36 \\\\\n\\bottomrule"), "{got}");
+    }
+
+    #[test]
+    fn markdown_aligns_numbers_right() {
+        let got = table().markdown();
+        assert!(got.starts_with("**Analysis of 5 % & more**\n\n| source | F | $p$ | $\\rho$ / kg/m^3 | df |\n| :-- | --: | --: | --: | --: |\n"), "{got}");
+        assert!(got.contains("| error | – | -1.00e-5 | -1 | 36 |\n\nOne note.\n"), "{got}");
+    }
+}

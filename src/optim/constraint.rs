@@ -1,0 +1,328 @@
+//! Where the parameters may lie: a box, and linear constraints in it.
+//!
+//! Optimisers see the unit box u, with x = low + u (high − low). A linear constraint Σ aᵢ xᵢ ≤ b becomes
+//! Σ aᵢ wᵢ uᵢ ≤ b − Σ aᵢ lowᵢ with the widths wᵢ, scaled to a normal of unit length. A point outside is brought to
+//! the nearest allowed one by [`least_distance`].
+
+use super::Error;
+use super::least_distance::least_distance;
+use crate::math::random::Stream;
+use std::collections::BTreeMap;
+
+/// How far outside a bound, in the unit box, still counts as on it.
+pub const SLACK: f64 = 1e-9;
+
+/// A calibrated parameter and its range, in the unit the model takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    /// Name.
+    pub name: String,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Σ terms ≤ `at_most`, in natural units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    /// Coefficient of each factor named.
+    pub terms: BTreeMap<String, f64>,
+    /// Upper bound of the sum.
+    pub at_most: f64,
+}
+
+/// The allowed parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Domain {
+    factors: Vec<Factor>,
+    /// Unit normal in the unit box, bound, and the constraint written out.
+    walls: Vec<(Vec<f64>, f64, String)>,
+    centre: Vec<f64>,
+}
+
+impl Domain {
+    /// Checks the box and the constraints; every fault is reported.
+    pub fn new(factors: Vec<Factor>, constraints: &[Linear]) -> Result<Self, Vec<Error>> {
+        let mut faults = box_faults(&factors);
+        let known: Vec<String> = factors.iter().map(|f| f.name.clone()).collect();
+        let mut walls = Vec::new();
+        for constraint in constraints {
+            match wall(constraint, &factors, &known) {
+                Ok(wall) => walls.extend(wall),
+                Err(mut found) => faults.append(&mut found),
+            }
+        }
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        let mut domain = Self { centre: vec![0.5; factors.len()], factors, walls };
+        domain.centre = domain.project(&domain.centre).map_err(|fault| vec![fault])?;
+        Ok(domain)
+    }
+
+    /// Number of parameters.
+    pub fn len(&self) -> usize {
+        self.factors.len()
+    }
+
+    /// Never: a domain has at least one factor.
+    pub fn is_empty(&self) -> bool {
+        self.factors.is_empty()
+    }
+
+    /// The parameters with their ranges.
+    pub fn factors(&self) -> &[Factor] {
+        &self.factors
+    }
+
+    /// Whether only the box bounds the parameters.
+    pub fn is_box(&self) -> bool {
+        self.walls.is_empty()
+    }
+
+    /// The allowed point nearest the centre of the box, in the unit box.
+    pub fn centre(&self) -> &[f64] {
+        &self.centre
+    }
+
+    /// Natural units of a point of the unit box; 0 and 1 give the ends of the range exactly.
+    pub fn natural(&self, unit: &[f64]) -> Vec<f64> {
+        let lerp = |(f, &u): (&Factor, &f64)| if u >= 1.0 { f.high } else { f.low + u * (f.high - f.low) };
+        self.factors.iter().zip(unit).map(lerp).collect()
+    }
+
+    /// Place of a natural point in the unit box; outside the range it lies outside 0 … 1.
+    pub fn unit(&self, natural: &[f64]) -> Vec<f64> {
+        self.factors.iter().zip(natural).map(|(f, x)| (x - f.low) / (f.high - f.low)).collect()
+    }
+
+    /// Whether a point of the unit box is allowed.
+    pub fn contains(&self, unit: &[f64]) -> bool {
+        unit.iter().all(|&u| (-SLACK..=1.0 + SLACK).contains(&u))
+            && self.walls.iter().all(|(normal, bound, _)| dot(normal, unit) <= bound + SLACK)
+    }
+
+    /// Refuses a natural point outside, naming the bound it breaks.
+    pub fn check(&self, natural: &[f64]) -> Result<(), Error> {
+        let unit = self.unit(natural);
+        let outside = |reason| Err(Error::Outside { point: natural.to_vec(), reason });
+        for (factor, (u, x)) in self.factors.iter().zip(unit.iter().zip(natural)) {
+            if !(-SLACK..=1.0 + SLACK).contains(u) {
+                let Factor { name, low, high } = factor;
+                return outside(format!("`{name}` = {x} is not within {low} … {high}"));
+            }
+        }
+        match self.walls.iter().find(|(normal, bound, _)| dot(normal, &unit) > bound + SLACK) {
+            Some((_, _, text)) => outside(format!("{text} does not hold")),
+            None => Ok(()),
+        }
+    }
+
+    /// The allowed point nearest to one of the unit box (the point itself when it is allowed).
+    pub fn repair(&self, unit: &[f64]) -> Vec<f64> {
+        let clipped: Vec<f64> = unit.iter().map(|u| u.clamp(0.0, 1.0)).collect();
+        if self.contains(&clipped) {
+            return clipped;
+        }
+        self.project(&clipped).unwrap_or_else(|_| self.centre.clone())
+    }
+
+    /// A random allowed point: uniform, or the repair of a uniform one where nearly all of the box is forbidden.
+    pub fn sample(&self, random: &mut Stream) -> Vec<f64> {
+        let mut draw = || (0..self.len()).map(|_| random.uniform()).collect::<Vec<_>>();
+        let mut point = draw();
+        for _ in 0..100 {
+            if self.contains(&point) {
+                return point;
+            }
+            point = draw();
+        }
+        self.repair(&point)
+    }
+
+    /// How far one may go from `from` (allowed) along `direction` before a bound; infinite without one.
+    pub fn reach(&self, from: &[f64], direction: &[f64]) -> f64 {
+        let sides = from.iter().zip(direction).map(|(&u, &d)| match d {
+            d if d > 0.0 => (1.0 - u) / d,
+            d if d < 0.0 => -u / d,
+            _ => f64::INFINITY,
+        });
+        let walls = self.walls.iter().map(|(normal, bound, _)| {
+            let speed = dot(normal, direction);
+            if speed > 0.0 { (bound - dot(normal, from)) / speed } else { f64::INFINITY }
+        });
+        sides.chain(walls).fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
+    fn project(&self, unit: &[f64]) -> Result<Vec<f64>, Error> {
+        if self.contains(unit) {
+            return Ok(unit.to_vec());
+        }
+        let n = unit.len();
+        let (mut rows, mut bounds) = (Vec::new(), Vec::new());
+        for (normal, bound, _) in &self.walls {
+            rows.push(normal.iter().map(|a| -a).collect());
+            bounds.push(dot(normal, unit) - bound);
+        }
+        for (i, &u) in unit.iter().enumerate() {
+            let along = |sign: f64| (0..n).map(|j| if i == j { sign } else { 0.0 }).collect::<Vec<_>>();
+            rows.extend([along(1.0), along(-1.0)]);
+            bounds.extend([-u, u - 1.0]);
+        }
+        let step = least_distance(&rows, &bounds).map_err(|rows| self.contradiction(&rows))?;
+        Ok(unit.iter().zip(step).map(|(u, s)| (u + s).clamp(0.0, 1.0)).collect())
+    }
+
+    fn contradiction(&self, rows: &[usize]) -> Error {
+        let name = |&row: &usize| match self.walls.get(row) {
+            Some((_, _, text)) => text.clone(),
+            None => {
+                let Factor { name, low, high } = &self.factors[(row - self.walls.len()) / 2];
+                if (row - self.walls.len()).is_multiple_of(2) {
+                    format!("{name} ≥ {low}")
+                } else {
+                    format!("{name} ≤ {high}")
+                }
+            }
+        };
+        Error::Contradiction { constraints: rows.iter().map(name).collect() }
+    }
+}
+
+fn box_faults(factors: &[Factor]) -> Vec<Error> {
+    let mut faults = Vec::new();
+    if factors.is_empty() {
+        faults.push(Error::Nothing { what: "factor" });
+    }
+    for (i, factor) in factors.iter().enumerate() {
+        let Factor { name, low, high } = factor;
+        if factors[..i].iter().any(|other| other.name == *name) {
+            faults.push(Error::Twice { name: name.clone() });
+        }
+        if let Some(&value) = [low, high].into_iter().find(|v| !v.is_finite()) {
+            faults.push(Error::NotFinite { what: format!("an end of the range of `{name}`"), value });
+        } else if low >= high {
+            faults.push(Error::EmptyRange { factor: name.clone(), low: *low, high: *high });
+        }
+    }
+    faults
+}
+
+type Wall = (Vec<f64>, f64, String);
+
+/// The constraint in the unit box; nothing when it always holds.
+fn wall(constraint: &Linear, factors: &[Factor], known: &[String]) -> Result<Option<Wall>, Vec<Error>> {
+    let mut faults = Vec::new();
+    let text = written(constraint);
+    for (name, &value) in &constraint.terms {
+        if !known.contains(name) {
+            faults.push(Error::UnknownFactor { found: name.clone(), known: known.to_vec() });
+        }
+        if !value.is_finite() {
+            faults.push(Error::NotFinite { what: format!("the coefficient of `{name}` in {text}"), value });
+        }
+    }
+    if !constraint.at_most.is_finite() {
+        faults.push(Error::NotFinite { what: format!("the bound of {text}"), value: constraint.at_most });
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let of = |f: &Factor| constraint.terms.get(&f.name).copied().unwrap_or(0.0);
+    let normal: Vec<f64> = factors.iter().map(|f| of(f) * (f.high - f.low)).collect();
+    let bound = constraint.at_most - factors.iter().map(|f| of(f) * f.low).sum::<f64>();
+    let length = dot(&normal, &normal).sqrt();
+    if length == 0.0 {
+        let holds = bound >= 0.0;
+        return if holds { Ok(None) } else { Err(vec![Error::Contradiction { constraints: vec![text] }]) };
+    }
+    Ok(Some((normal.iter().map(|a| a / length).collect(), bound / length, text)))
+}
+
+/// "sigma_c − 3 tau_c ≤ 0".
+fn written(constraint: &Linear) -> String {
+    let mut text = String::new();
+    for (name, &a) in &constraint.terms {
+        let sign = match (text.is_empty(), a < 0.0) {
+            (true, false) => "",
+            (true, true) => "−",
+            (false, false) => " + ",
+            (false, true) => " − ",
+        };
+        let factor = if a.abs() == 1.0 { String::new() } else { format!("{} ", a.abs()) };
+        text += &format!("{sign}{factor}{name}");
+    }
+    format!("{text} ≤ {}", constraint.at_most)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn factor(name: &str, low: f64, high: f64) -> Factor {
+        Factor { name: name.into(), low, high }
+    }
+
+    fn linear(terms: &[(&str, f64)], at_most: f64) -> Linear {
+        Linear { terms: terms.iter().map(|(n, a)| ((*n).to_owned(), *a)).collect(), at_most }
+    }
+
+    #[test]
+    fn all_faults_are_reported_at_once() {
+        let factors = vec![factor("a", 2.0, 1.0), factor("b", 0.0, f64::NAN), factor("a", 0.0, 1.0)];
+        let faults = Domain::new(factors, &[linear(&[("c", 1.0)], 0.0)]).expect_err("bad");
+        let texts: Vec<String> = faults.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            texts,
+            [
+                "the range of `a` is empty: from 2 to 1; the lower end must be below the upper one",
+                "an end of the range of `b` is NaN; a finite number is needed",
+                "`a` is given twice",
+                "unknown factor `c`; the factors are `a`, `b`, `a`"
+            ]
+        );
+    }
+
+    #[test]
+    fn contradictory_constraints_are_named() {
+        let factors = vec![factor("sigma_c", 10.0, 30.0), factor("tau_c", 10.0, 30.0)];
+        let apart = [linear(&[("sigma_c", -1.0), ("tau_c", 2.0)], -45.0), linear(&[("tau_c", -1.0)], -5.0)];
+        let faults = Domain::new(factors, &apart).expect_err("empty");
+        assert_eq!(
+            faults[0].to_string(),
+            "no point of the box meets `−sigma_c + 2 tau_c ≤ -45`, `sigma_c ≤ 30`, `tau_c ≥ 10` together"
+        );
+    }
+
+    #[test]
+    fn repair_gives_the_nearest_allowed_point() {
+        let domain =
+            Domain::new(vec![factor("a", 0.0, 1.0), factor("b", 0.0, 1.0)], &[linear(&[("a", 1.0), ("b", 1.0)], 1.0)]);
+        let domain = domain.expect("good");
+        let near = |u: [f64; 2], v: [f64; 2]| {
+            let r = domain.repair(&u);
+            assert!((r[0] - v[0]).abs() < 1e-12 && (r[1] - v[1]).abs() < 1e-12, "{r:?}");
+            assert!(domain.contains(&r));
+        };
+        near([0.2, 0.3], [0.2, 0.3]);
+        near([0.8, 0.6], [0.6, 0.4]);
+        near([2.0, 0.5], [0.75, 0.25]);
+        near([-1.0, 0.5], [0.0, 0.5]);
+        assert!((domain.reach(&[0.0, 0.0], &[1.0, 1.0]) - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_ends_of_a_range_come_back_exactly() {
+        let domain = Domain::new(vec![factor("a", 0.1, 0.7)], &[]).expect("good");
+        assert_eq!((domain.natural(&[0.0]), domain.natural(&[1.0])), (vec![0.1], vec![0.7]));
+        assert_eq!(
+            domain.check(&[0.71]).map_err(|e| e.to_string()),
+            Err("the point [0.71] leaves the domain: `a` = 0.71 is not within 0.1 … 0.7".into())
+        );
+    }
+}

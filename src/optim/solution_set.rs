@@ -1,0 +1,1 @@
+//! All the parameters that meet the targets, when there is more than one answer.

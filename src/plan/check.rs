@@ -1,0 +1,176 @@
+//! From the tree to the workflow: every table read, every name resolved.
+
+use super::fault::{Fault, Source};
+use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
+use super::node::{Entry, Node, Sources, Step, Table, Value};
+use super::read::read;
+use super::{Overrides, Workflow, overlay, stages, syntax};
+use crate::stage::Context;
+use crate::unit::Unit;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Keys of the root.
+const ROOT: [&str; 6] = ["workflow", "factor", "response", "material", "stage", "profile"];
+
+/// Longest name of a stage, factor, response or profile.
+const LONGEST_NAME: usize = 64;
+
+/// The checked workflow, or every fault of it in the order of the file.
+pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
+    let mut sources = Sources(vec![Arc::new(Source { name: name.to_owned(), text: text.to_owned() })]);
+    let (tree, mut faults) = syntax::tree(&sources, 0);
+    let Some(Node { value: Value::Table(mut root), .. }) = tree else { return Err(faults) };
+    overlay::profile(&mut root, overrides.profile.as_deref(), &mut sources, &mut faults);
+    overlay::sets(&mut root, &overrides.sets, &mut sources, &mut faults);
+    let mut check = Check { sources: &sources, faults };
+    check.root_keys(&root);
+    let head = check.head(&mut root);
+    let context = Context {
+        seed: head.as_ref().map_or(0, |head| head.seed),
+        factors: check.named(&mut root, "factor", Check::factor),
+        responses: check.named(&mut root, "response", Check::response),
+        materials: check.named(&mut root, "material", Check::material),
+    };
+    let stages = stages::read_all(&mut check, &mut root, &context);
+    let mut faults = check.faults;
+    let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
+        faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.source.name != name, place.span.start)));
+        return Err(faults);
+    };
+    Ok(Workflow {
+        name: Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        path: PathBuf::from(name),
+        title: head.title,
+        about: head.about,
+        context,
+        profile: overrides.profile.clone(),
+        stages,
+    })
+}
+
+/// Collects faults.
+pub(super) struct Check<'a> {
+    /// For the places of faults.
+    pub(super) sources: &'a Sources,
+    /// The faults so far.
+    pub(super) faults: Vec<Fault>,
+}
+
+impl Check<'_> {
+    fn root_keys(&mut self, root: &Table) {
+        for (name, entry) in root.in_order() {
+            if !ROOT.contains(&name) {
+                let fault = Fault::new(format!("unknown key `{name}`")).at(self.sources.place(entry.key));
+                self.faults.push(fault.known(name, "tables", ROOT));
+            }
+        }
+    }
+
+    fn head(&mut self, root: &mut Table) -> Option<Head> {
+        match root.0.get_mut("workflow") {
+            Some(entry) => read(&mut entry.node, self.sources, &mut self.faults, |reader| Head::deserialize(reader)),
+            None => {
+                let empty = if root.0.is_empty() { "the file is empty: " } else { "" };
+                let hint = "begin with\n[workflow]\ntitle = \"what it is\"\nseed = 1";
+                self.faults.push(Fault::new(format!("{empty}the table [workflow] is missing")).hint(hint));
+                None
+            }
+        }
+    }
+
+    /// The tables below `key`, each read by `one`.
+    fn named<T>(
+        &mut self,
+        root: &mut Table,
+        key: &str,
+        one: impl Fn(&mut Self, &str, &mut Node) -> Option<T>,
+    ) -> BTreeMap<String, T> {
+        let Some(table) = self.tables(root, key) else { return BTreeMap::new() };
+        let mut found = BTreeMap::new();
+        for (name, entry) in &mut table.0 {
+            self.name(name, entry);
+            if let Some(value) = one(self, name, &mut entry.node) {
+                found.insert(name.clone(), value);
+            }
+        }
+        found
+    }
+
+    /// The table of tables below `key`.
+    pub(super) fn tables<'t>(&mut self, root: &'t mut Table, key: &str) -> Option<&'t mut Table> {
+        let node = &mut root.0.get_mut(key)?.node;
+        let (span, found) = (node.span, node.describe());
+        if let Value::Table(table) = &mut node.value {
+            return Some(table);
+        }
+        let message = format!("wanted tables such as [{key}.NAME], found {found}");
+        self.faults.push(Fault::new(message).at(self.sources.place(span)));
+        None
+    }
+
+    /// Names stand in file names, on the command line and in figures.
+    pub(super) fn name(&mut self, name: &str, entry: &Entry) {
+        let inner = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
+        if begins && name.chars().all(inner) && name.len() <= LONGEST_NAME {
+            return;
+        }
+        let fault = Fault::new(format!("`{}` cannot be a name", super::node::shortened(name)));
+        let hint = format!("a letter first, then letters, digits, `_` and `-`, at most {LONGEST_NAME} in all");
+        self.faults.push(fault.at(self.sources.place(entry.key)).hint(hint));
+    }
+
+    fn factor(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Factor> {
+        let table = read(node, self.sources, &mut self.faults, |reader| FactorTable::deserialize(reader))?;
+        let before = self.faults.len();
+        self.unit(&table.unit, node);
+        if table.levels.is_empty() && table.range.is_none() {
+            let fault = Fault::new(format!("factor `{name}` has neither levels nor a range"));
+            let hint = "give it `levels = [10, 20, 30]` or `range = [10, 30]`";
+            self.faults.push(fault.at(self.sources.place(node.span)).hint(hint));
+        }
+        if let Some(range) = table.range
+            && range[0] >= range[1]
+        {
+            let message = format!("the range must rise: {} is not below {}", range[0], range[1]);
+            self.complain(node, &steps(["range"]), Fault::new(message));
+        }
+        let mut sorted: Vec<(f64, usize)> = table.levels.iter().copied().zip(0..).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for pair in sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            let path = [Step::Key("levels".to_owned()), Step::Index(pair[1].1)];
+            self.complain(node, &path, Fault::new(format!("level {} stands here twice", pair[1].0)));
+        }
+        (self.faults.len() == before).then(|| table.factor(name))
+    }
+
+    fn response(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Response> {
+        let table = read(node, self.sources, &mut self.faults, |reader| ResponseTable::deserialize(reader))?;
+        self.unit(&table.unit, node);
+        Some(table.response(name))
+    }
+
+    fn material(&mut self, _: &str, node: &mut Node) -> Option<BTreeMap<String, crate::stage::Parameter>> {
+        let read_table = |reader: super::read::Reader<'_>| MaterialTable::deserialize(reader);
+        read(node, self.sources, &mut self.faults, read_table).map(MaterialTable::material)
+    }
+
+    fn unit(&mut self, unit: &str, node: &Node) {
+        if let Err(e) = Unit::parse(unit) {
+            self.complain(node, &steps(["unit"]), Fault::new(e.to_string()));
+        }
+    }
+
+    /// A fault at `path` below `node`, or as near to it as the file goes.
+    pub(super) fn complain(&mut self, node: &Node, path: &[Step], fault: Fault) {
+        self.faults.push(fault.at(self.sources.place(node.nearest(path).span)));
+    }
+}
+
+/// A path below a table, as names.
+pub(super) fn steps<'p>(path: impl IntoIterator<Item = &'p str>) -> Vec<Step> {
+    path.into_iter().map(|part| Step::Key(part.to_owned())).collect()
+}

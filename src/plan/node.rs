@@ -1,0 +1,157 @@
+//! A workflow as a tree of values that know where they stand.
+
+use super::fault::{Place, Source};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A stretch of one of the [`Sources`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Span {
+    /// Which source: 0 is the file, the `--set` options follow.
+    pub(super) source: u32,
+    /// First byte.
+    pub(super) start: u32,
+    /// Byte after the last.
+    pub(super) end: u32,
+}
+
+/// The texts that spans point into.
+pub(super) struct Sources(pub(super) Vec<Arc<Source>>);
+
+impl Sources {
+    /// Adds a text; gives the span of all of it.
+    pub(super) fn add(&mut self, name: &str, text: &str) -> Span {
+        self.0.push(Arc::new(Source { name: name.to_owned(), text: text.to_owned() }));
+        Span { source: self.0.len() as u32 - 1, start: 0, end: text.len() as u32 }
+    }
+
+    /// The place of a span.
+    pub(super) fn place(&self, span: Span) -> Place {
+        let source = Arc::clone(&self.0[span.source as usize]);
+        Place { source, span: span.start as usize..span.end as usize }
+    }
+}
+
+/// One value of the tree.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// Where it stands.
+    pub(super) span: Span,
+    /// What it is.
+    pub(super) value: Value,
+}
+
+/// What a value can be.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Text(String),
+    Int(i64),
+    Real(f64),
+    Flag(bool),
+    /// A date or time; nothing in a workflow is one, so it is kept as text for messages only.
+    Date(String),
+    List(Vec<Node>),
+    Table(Table),
+    /// A value whose fault is reported already: it reads as whatever is wanted.
+    Hole,
+}
+
+/// Named values; names are unique.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Table(pub(super) BTreeMap<String, Entry>);
+
+/// A value in a table, with the place of its name.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// Where its name stands.
+    pub(super) key: Span,
+    /// The value.
+    pub(super) node: Node,
+}
+
+/// One step from a value to a value inside it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    Key(String),
+    Index(usize),
+}
+
+impl Table {
+    /// Names in the order of the file.
+    pub(super) fn in_order(&self) -> Vec<(&str, &Entry)> {
+        let mut entries: Vec<_> = self.0.iter().map(|(name, entry)| (name.as_str(), entry)).collect();
+        entries.sort_by_key(|(_, entry)| entry.key);
+        entries
+    }
+
+    /// The value called `name`.
+    pub(super) fn get(&self, name: &str) -> Option<&Node> {
+        self.0.get(name).map(|entry| &entry.node)
+    }
+}
+
+impl Node {
+    /// As a table.
+    pub(super) fn table(&self) -> Option<&Table> {
+        match &self.value {
+            Value::Table(table) => Some(table),
+            Value::Text(_)
+            | Value::Int(_)
+            | Value::Real(_)
+            | Value::Flag(_)
+            | Value::Date(_)
+            | Value::List(_)
+            | Value::Hole => None,
+        }
+    }
+
+    /// The value at the end of `path`.
+    pub(super) fn find_mut(&mut self, path: &[Step]) -> Option<&mut Self> {
+        path.iter().try_fold(self, |node, step| match (&mut node.value, step) {
+            (Value::Table(table), Step::Key(key)) => table.0.get_mut(key).map(|entry| &mut entry.node),
+            (Value::List(list), Step::Index(i)) => list.get_mut(*i),
+            _ => None,
+        })
+    }
+
+    /// The value at the end of `path`, or the last one on the way there.
+    pub(super) fn nearest(&self, path: &[Step]) -> &Self {
+        let mut node = self;
+        for step in path {
+            let next = match (&node.value, step) {
+                (Value::Table(table), Step::Key(key)) => table.get(key),
+                (Value::List(list), Step::Index(i)) => list.get(*i),
+                (Value::List(list), Step::Key(key)) => key.parse().ok().and_then(|i: usize| list.get(i)),
+                _ => None,
+            };
+            match next {
+                Some(next) => node = next,
+                None => break,
+            }
+        }
+        node
+    }
+
+    /// What it is, in a person's words.
+    pub(super) fn describe(&self) -> String {
+        match &self.value {
+            Value::Text(text) => format!("the text {}", shortened(&format!("{text:?}"))),
+            Value::Int(value) => format!("the number {value}"),
+            Value::Real(value) => format!("the number {value}"),
+            Value::Flag(value) => format!("{value}"),
+            Value::Date(text) => format!("the date {text}"),
+            Value::List(list) => format!("a list of {} value{}", list.len(), if list.len() == 1 { "" } else { "s" }),
+            Value::Table(_) => "a table".to_owned(),
+            Value::Hole => "nothing".to_owned(),
+        }
+    }
+}
+
+/// A long text cut for a message.
+pub(super) fn shortened(text: &str) -> String {
+    const MOST: usize = 60;
+    if text.chars().count() <= MOST {
+        return text.to_owned();
+    }
+    text.chars().take(MOST - 1).chain(['…']).collect()
+}

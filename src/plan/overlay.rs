@@ -1,0 +1,144 @@
+//! Profiles and `--set`: values laid over those of the file, by path. Tables merge, everything else is replaced.
+//!
+//! What is laid over a stage, factor or response must name one that exists; whether its keys exist is seen when the
+//! merged table is read, and the fault then points at the profile or the option.
+
+use super::fault::Fault;
+use super::node::{Entry, Node, Sources, Span, Table, Value};
+use super::syntax;
+
+/// Tables of named things: their names must exist.
+const NAMED: [(&str, &str); 3] = [("stage", "stages"), ("factor", "factors"), ("response", "responses")];
+
+/// Takes `[profile]` out of the root, checks every profile's paths, and lays the named one over it.
+pub(super) fn profile(root: &mut Table, name: Option<&str>, sources: &mut Sources, faults: &mut Vec<Fault>) {
+    let profiles = root.0.remove("profile").map(|entry| entry.node);
+    let none = Table::default();
+    let table = match &profiles {
+        None => &none,
+        Some(node) => node.table().unwrap_or_else(|| {
+            let message = format!("wanted tables such as [profile.quick.stage.NAME], found {}", node.describe());
+            faults.push(Fault::new(message).at(sources.place(node.span)));
+            &none
+        }),
+    };
+    for (name, entry) in table.in_order() {
+        match entry.node.table() {
+            Some(table) => check_paths(root, table, &format!("profile `{name}`"), sources, faults),
+            None => {
+                faults.push(Fault::new(format!("profile `{name}` is not a table")).at(sources.place(entry.node.span)))
+            }
+        }
+    }
+    let Some(name) = name else { return };
+    match table.get(name).map(Node::table) {
+        Some(Some(profile)) => lay_over(root, profile),
+        Some(None) => {}
+        None => {
+            let whole = sources.add("--profile", name);
+            let fault = Fault::new(format!("there is no profile `{name}`")).at(sources.place(whole));
+            faults.push(fault.known(name, "profiles", table.in_order().into_iter().map(|(name, _)| name)));
+        }
+    }
+}
+
+/// Lays the options `path=value` over the root.
+pub(super) fn sets(root: &mut Table, sets: &[String], sources: &mut Sources, faults: &mut Vec<Fault>) {
+    for set in sets {
+        let whole = sources.add("--set", set);
+        match option(set, sources, whole) {
+            Ok(table) => {
+                let before = faults.len();
+                check_paths(root, &table, "the option", sources, faults);
+                if faults.len() == before {
+                    lay_over(root, &table);
+                }
+            }
+            Err(mut new) => faults.append(&mut new),
+        }
+    }
+}
+
+/// The tables that `path=value` stands for.
+fn option(set: &str, sources: &Sources, whole: Span) -> Result<Table, Vec<Fault>> {
+    let form = "write --set stage.NAME.key=value";
+    let refused = |message: String| vec![Fault::new(message).at(sources.place(whole)).hint(form)];
+    let (path, text) = set.split_once('=').ok_or_else(|| refused(format!("`{set}` has no `=`")))?;
+    let steps = path_steps(path).ok_or_else(|| refused(format!("`{}` is not a path of keys", path.trim())))?;
+    let span = Span { start: path.len() as u32 + 1, ..whole };
+    let text_node = |text: &str| Node { span, value: Value::Text(text.trim().to_owned()) };
+    let node = syntax::value(sources, whole.source, path.len() + 1).unwrap_or_else(|_| text_node(text));
+    let key = Span { end: path.len() as u32, ..whole };
+    let nested = steps.into_iter().rev().fold(node, |node, step| {
+        let table = Table([(step, Entry { key, node })].into());
+        Node { span: key, value: Value::Table(table) }
+    });
+    match nested.value {
+        Value::Table(table) => Ok(table),
+        _ => Err(refused("the path is empty".to_owned())),
+    }
+}
+
+/// The keys of a dotted path as TOML writes them.
+fn path_steps(path: &str) -> Option<Vec<String>> {
+    if path.contains(['\n', '\r', '#', '=', '{', '[']) {
+        return None;
+    }
+    let document: toml::Table = toml::from_str(&format!("{path} = 0")).ok()?;
+    let mut steps = Vec::new();
+    let mut table = &document;
+    loop {
+        let (name, value) = table.iter().next()?;
+        steps.push(name.clone());
+        match value {
+            toml::Value::Table(inner) => table = inner,
+            _ => return Some(steps),
+        }
+    }
+}
+
+/// What the overlay names must be there.
+fn check_paths(root: &Table, over: &Table, whose: &str, sources: &Sources, faults: &mut Vec<Fault>) {
+    for (name, entry) in over.in_order() {
+        let place = sources.place(entry.key);
+        let Some((_, things)) = NAMED.iter().find(|(key, _)| *key == name) else {
+            if name != "workflow" {
+                let fault = Fault::new(format!("{whose} cannot set `{name}`")).at(place);
+                faults.push(fault.known(name, "keys", ["workflow", "factor", "response", "stage"]));
+            }
+            continue;
+        };
+        let Some(table) = entry.node.table() else {
+            let message = format!("{whose} must name one of the {things} below `{name}`");
+            faults.push(Fault::new(message).at(place));
+            continue;
+        };
+        let known = root.get(name).and_then(Node::table);
+        for (inner, entry) in table.in_order() {
+            if known.is_some_and(|known| known.0.contains_key(inner)) {
+                continue;
+            }
+            let fault = Fault::new(format!("{whose} sets `{name}.{inner}`, which does not exist"));
+            let names = known.map(Table::in_order).unwrap_or_default();
+            faults.push(fault.at(sources.place(entry.key)).known(
+                inner,
+                things,
+                names.into_iter().map(|(name, _)| name),
+            ));
+        }
+    }
+}
+
+fn lay_over(base: &mut Table, over: &Table) {
+    for (name, entry) in &over.0 {
+        match (base.0.get_mut(name), &entry.node.value) {
+            (Some(Entry { node: Node { value: Value::Table(base), .. }, .. }), Value::Table(over)) => {
+                lay_over(base, over)
+            }
+            (Some(found), _) => *found = Entry { key: found.key.min(entry.key), node: entry.node.clone() },
+            (None, _) => {
+                base.0.insert(name.clone(), entry.clone());
+            }
+        }
+    }
+}

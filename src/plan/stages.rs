@@ -1,0 +1,183 @@
+//! The `[stage.NAME]` tables: each is read by its kind, then the ports are connected.
+
+use super::check::{Check, steps};
+use super::fault::Fault;
+use super::node::{Entry, Node, Step, Table, Value};
+use super::read::{Reader, Unread, read};
+use super::{StageNode, graph};
+use crate::stage::{Context, KINDS, Port, Stage};
+use std::collections::BTreeMap;
+
+/// A stage that was read.
+struct Configured {
+    name: String,
+    kind: &'static str,
+    stage: Box<dyn Stage>,
+    ports: Vec<Port>,
+}
+
+/// The stages in order; all faults go to `check`, and then stages may be missing.
+pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Context) -> Option<Vec<StageNode>> {
+    if !root.0.contains_key("stage") {
+        let hint = "add a table such as [stage.runs] with its `kind`";
+        check.faults.push(Fault::new("the workflow has no stage").hint(hint));
+        return None;
+    }
+    let table = check.tables(root, "stage")?;
+    let stages = configure(check, table, context);
+    same_but_for_case(check, table);
+    let inputs = connect(check, table, &stages);
+    let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| inputs.iter().map(|(_, i)| *i).collect()).collect();
+    for cycle in graph::cycles(&needs) {
+        tell_cycle(check, table, &stages, &inputs, &cycle);
+    }
+    Some(in_order(stages, inputs, &graph::order(&needs)))
+}
+
+/// Reads every stage by its kind, in the order of the file.
+fn configure(check: &mut Check<'_>, table: &mut Table, context: &Context) -> Vec<Configured> {
+    let mut entries: Vec<(&String, &mut Entry)> = table.0.iter_mut().collect();
+    entries.sort_by_key(|(_, entry)| entry.key);
+    let mut stages = Vec::new();
+    for (name, entry) in entries {
+        check.name(name, entry);
+        let Some(kind) = take_kind(check, name, &mut entry.node) else { continue };
+        let by_kind = |reader: Reader<'_>| stage_of(kind, reader);
+        let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, by_kind) else { continue };
+        for complaint in stage.check(context) {
+            let fault = Fault { hint: complaint.hint, ..Fault::new(complaint.message) };
+            check.complain(&entry.node, &steps(complaint.path.iter().map(String::as_str)), fault);
+        }
+        stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
+    }
+    stages
+}
+
+fn stage_of(kind: &str, reader: Reader<'_>) -> Result<Box<dyn Stage>, Unread> {
+    crate::stage::read(kind, reader).unwrap_or_else(|| panic!("BUG: kind `{kind}` is in the list"))
+}
+
+/// Takes `kind` out of the table of a stage.
+fn take_kind(check: &mut Check<'_>, name: &str, node: &mut Node) -> Option<&'static str> {
+    let place = check.sources.place(node.span);
+    let Value::Table(table) = &mut node.value else {
+        let message = format!("stage `{name}` must be a table, found {}", node.describe());
+        check.faults.push(Fault::new(message).at(place));
+        return None;
+    };
+    let names = || KINDS.iter().map(|kind| kind.name);
+    let Some(entry) = table.0.remove("kind") else {
+        let fault = Fault::new(format!("stage `{name}` has no `kind`")).at(place);
+        check.faults.push(fault.label("`kind` is needed here").known("", "kinds", names()));
+        return None;
+    };
+    let place = check.sources.place(entry.node.span);
+    let Value::Text(word) = &entry.node.value else {
+        let message = format!("wanted a kind of stage, found {}", entry.node.describe());
+        check.faults.push(Fault::new(message).at(place).known("", "kinds", names()));
+        return None;
+    };
+    let found = names().find(|kind| kind == word);
+    if found.is_none() {
+        let fault = Fault::new(format!("there is no kind of stage `{}`", super::node::shortened(word))).at(place);
+        check.faults.push(fault.known(word, "kinds", names()));
+    }
+    found
+}
+
+/// Results are files named after stages, and some file systems do not know the difference.
+fn same_but_for_case(check: &mut Check<'_>, table: &Table) {
+    let mut seen: BTreeMap<String, (&str, &Entry)> = BTreeMap::new();
+    for (name, entry) in table.in_order() {
+        if let Some((other, first)) = seen.insert(name.to_lowercase(), (name, entry)) {
+            let fault = Fault::new(format!("stages `{other}` and `{name}` differ only by upper and lower case"));
+            let fault = fault.at(check.sources.place(entry.key)).also(check.sources.place(first.key), "the other one");
+            check.faults.push(fault);
+        }
+    }
+}
+
+/// The inputs of every stage: port and number of the stage it names.
+fn connect(check: &mut Check<'_>, table: &Table, stages: &[Configured]) -> Vec<Vec<(&'static str, usize)>> {
+    let numbers: BTreeMap<&str, usize> = stages.iter().map(|stage| stage.name.as_str()).zip(0..).collect();
+    let mut inputs = Vec::new();
+    for stage in stages {
+        let mut found = Vec::new();
+        for (port, at, name) in
+            stage.ports.iter().flat_map(|p| p.stages.iter().enumerate().map(move |(i, s)| (p, i, s)))
+        {
+            match numbers.get(name.as_str()) {
+                Some(&number) => {
+                    fits(check, table, stage, port, at, &stages[number]);
+                    found.push((port.key, number));
+                }
+                None if table.0.contains_key(name) => {}
+                None => {
+                    let fault = Fault::new(format!("`{}` names no stage", super::node::shortened(name)));
+                    let known = table.in_order().into_iter().map(|(name, _)| name).filter(|known| *known != stage.name);
+                    place_at_port(check, table, stage, port.key, at, fault.known(name, "stages", known));
+                }
+            }
+        }
+        inputs.push(found);
+    }
+    inputs
+}
+
+/// The input gives what the port accepts.
+fn fits(check: &mut Check<'_>, table: &Table, stage: &Configured, port: &Port, at: usize, input: &Configured) {
+    let gives = input.stage.gives();
+    if port.accepts.contains(&gives) {
+        return;
+    }
+    let wanted = port.accepts.join(" or ");
+    let message = format!("`{}` wants {wanted}, but stage `{}` gives {gives}", port.key, input.name);
+    place_at_port(check, table, stage, port.key, at, Fault::new(message));
+}
+
+fn place_at_port(check: &mut Check<'_>, table: &Table, stage: &Configured, key: &str, at: usize, fault: Fault) {
+    let mut path = steps(key.split('.'));
+    path.push(Step::Index(at));
+    if let Some(node) = table.get(&stage.name) {
+        check.complain(node, &path, fault);
+    }
+}
+
+fn tell_cycle(
+    check: &mut Check<'_>,
+    table: &Table,
+    stages: &[Configured],
+    inputs: &[Vec<(&'static str, usize)>],
+    cycle: &[usize],
+) {
+    let around = cycle.iter().chain(&cycle[..1]);
+    let names: Vec<&str> = around.clone().map(|&i| stages[i].name.as_str()).collect();
+    let fault = Fault::new(format!("stages need one another in a circle: {}", names.join(" → ")));
+    let mut fault = fault.hint("a stage can only use results of stages that do not need its own");
+    for pair in cycle.iter().chain(&cycle[..1]).collect::<Vec<_>>().windows(2) {
+        let (needing, needed) = (*pair[0], *pair[1]);
+        let Some((key, _)) = inputs[needing].iter().find(|(_, i)| *i == needed) else { continue };
+        let Some(node) = table.get(&stages[needing].name) else { continue };
+        let place = check.sources.place(node.nearest(&steps(key.split('.'))).span);
+        fault = match fault.place {
+            None => fault.at(place).label(format!("`{}` needs `{}`", stages[needing].name, stages[needed].name)),
+            Some(_) => fault.also(place, format!("`{}` needs `{}`", stages[needing].name, stages[needed].name)),
+        };
+    }
+    check.faults.push(fault);
+}
+
+/// The stages in the given order, their inputs renumbered.
+fn in_order(stages: Vec<Configured>, inputs: Vec<Vec<(&'static str, usize)>>, order: &[usize]) -> Vec<StageNode> {
+    let mut new_number = vec![usize::MAX; stages.len()];
+    order.iter().zip(0..).for_each(|(&old, new)| new_number[old] = new);
+    let mut nodes: Vec<(usize, StageNode)> = Vec::with_capacity(order.len());
+    for ((stage, inputs), &new) in stages.into_iter().zip(inputs).zip(&new_number) {
+        if new != usize::MAX {
+            let inputs = inputs.into_iter().map(|(port, old)| (port, new_number[old])).collect();
+            nodes.push((new, StageNode { name: stage.name, kind: stage.kind, stage: stage.stage, inputs }));
+        }
+    }
+    nodes.sort_by_key(|(new, _)| *new);
+    nodes.into_iter().map(|(_, node)| node).collect()
+}

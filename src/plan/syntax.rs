@@ -1,0 +1,181 @@
+//! From bytes to a tree of values with places: TOML, and nothing about workflows.
+//!
+//! The limits keep every file, whatever it holds, within a second and the stack: [`LARGEST`] bytes, [`DEEPEST`] levels.
+
+use super::fault::Fault;
+use super::node::{Entry, Node, Sources, Span, Table, Value, shortened};
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The largest workflow file, in bytes.
+pub(super) const LARGEST: usize = 4 << 20;
+
+/// The deepest table or list.
+const DEEPEST: usize = 32;
+
+/// So many faults of one text are told.
+const MOST_FAULTS: usize = 20;
+
+/// Reads a workflow file.
+pub(super) fn read_file(path: &Path) -> Result<String, Fault> {
+    let name = path.display();
+    let unread = |e: std::io::Error| {
+        let fault = Fault::new(format!("{name}: cannot be read: {e}"));
+        match e.kind() {
+            std::io::ErrorKind::NotFound => fault.hint("`flow new NAME` writes a workflow to start from"),
+            std::io::ErrorKind::IsADirectory => fault.hint("name the workflow file in this folder"),
+            _ => fault,
+        }
+    };
+    let mut bytes = Vec::new();
+    File::open(path).and_then(|file| file.take(LARGEST as u64 + 1).read_to_end(&mut bytes)).map_err(unread)?;
+    if bytes.len() > LARGEST {
+        let message = format!("{name}: the file is larger than {} MiB, which no workflow is", LARGEST >> 20);
+        return Err(Fault::new(message).hint("keep tables in CSV files and name them with `kind = \"data\"`"));
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        let line = e.as_bytes()[..at].iter().filter(|&&byte| byte == b'\n').count() + 1;
+        let message = format!("{name}: not a text file: byte {at}, in line {line}, is not UTF-8");
+        Fault::new(message).hint("a workflow is TOML text in UTF-8")
+    })
+}
+
+/// The tree of the source with this index. With faults of syntax there may be no tree; a tree with other faults has a
+/// hole where each is.
+pub(super) fn tree(sources: &Sources, index: u32) -> (Option<Node>, Vec<Fault>) {
+    let text = &sources.0[index as usize].text;
+    if text.len() > LARGEST {
+        return (None, vec![Fault::new(format!("the workflow is larger than {} MiB", LARGEST >> 20))]);
+    }
+    on_a_large_stack(|| {
+        let (root, errors) = DeTable::parse_recoverable(text);
+        let whole = errors.iter().all(|error| error.message() == DUPLICATE);
+        let mut convert = Convert { sources, index, faults: syntax_faults(sources, index, &errors) };
+        let span = convert.span(root.span());
+        let value = Value::Table(convert.table(root.into_inner(), 0));
+        (whole.then_some(Node { span, value }), convert.faults)
+    })
+}
+
+/// Keys nested to the reader's own limit take more stack to walk and to drop than a thread may have.
+fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    const STACK: usize = 32 << 20;
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+        let joined = thread.unwrap_or_else(|e| panic!("no memory for a thread: {e}")).join();
+        joined.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// What the TOML reader says of a key that stands twice; its tree is complete all the same.
+const DUPLICATE: &str = "duplicate key";
+
+fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> Vec<Fault> {
+    let text = &sources.0[index as usize].text;
+    let mut faults = Vec::new();
+    let mut last = None;
+    for error in errors {
+        let span = span(sources, index, error.span().unwrap_or(text.len()..text.len()));
+        if last.replace(span.start) == Some(span.start) {
+            continue;
+        }
+        if faults.len() == MOST_FAULTS {
+            faults.push(Fault::new("… and more faults of this sort"));
+            break;
+        }
+        let fault = match error.message() {
+            DUPLICATE => {
+                let name = &text[span.start as usize..span.end as usize];
+                Fault::new(format!("`{}` stands here a second time", shortened(name))).label("give it another name")
+            }
+            message if message.contains("recurs") => Fault::new("nested too deeply"),
+            message => Fault::new(message),
+        };
+        faults.push(fault.at(sources.place(span)));
+    }
+    faults
+}
+
+/// A single value, as in `--set path=value`; `offset` is where it begins in its source.
+pub(super) fn value(sources: &Sources, index: u32, offset: usize) -> Result<Node, Vec<Fault>> {
+    let text = &sources.0[index as usize].text[offset..];
+    let parsed = DeValue::parse(text).map_err(|e| vec![Fault::new(e.message())])?;
+    let mut convert = Convert { sources, index, faults: Vec::new() };
+    let mut node = convert.node(parsed, 0);
+    shift(&mut node, offset as u32);
+    if convert.faults.is_empty() { Ok(node) } else { Err(convert.faults) }
+}
+
+fn shift(node: &mut Node, offset: u32) {
+    let moved = |span: &mut Span| (span.start, span.end) = (span.start + offset, span.end + offset);
+    moved(&mut node.span);
+    match &mut node.value {
+        Value::List(list) => list.iter_mut().for_each(|node| shift(node, offset)),
+        Value::Table(table) => table.0.values_mut().for_each(|entry| {
+            moved(&mut entry.key);
+            shift(&mut entry.node, offset);
+        }),
+        Value::Text(_) | Value::Int(_) | Value::Real(_) | Value::Flag(_) | Value::Date(_) | Value::Hole => {}
+    }
+}
+
+/// A span inside the text and on its character boundaries, whatever the TOML reader said.
+fn span(sources: &Sources, index: u32, range: Range<usize>) -> Span {
+    let text = &sources.0[index as usize].text;
+    let end = text.floor_char_boundary(range.end.min(text.len()));
+    let start = text.floor_char_boundary(range.start.min(end));
+    Span { source: index, start: start as u32, end: end as u32 }
+}
+
+struct Convert<'a> {
+    sources: &'a Sources,
+    index: u32,
+    faults: Vec<Fault>,
+}
+
+impl Convert<'_> {
+    fn span(&self, range: Range<usize>) -> Span {
+        span(self.sources, self.index, range)
+    }
+
+    fn table(&mut self, table: DeTable<'_>, depth: usize) -> Table {
+        let entry = |(key, value): (Spanned<_>, _)| {
+            let key_span = self.span(key.span());
+            (std::borrow::Cow::into_owned(key.into_inner()), Entry { key: key_span, node: self.node(value, depth + 1) })
+        };
+        Table(table.into_iter().map(entry).collect())
+    }
+
+    fn node(&mut self, value: Spanned<DeValue<'_>>, depth: usize) -> Node {
+        let span = self.span(value.span());
+        let value = match value.into_inner() {
+            DeValue::Array(_) | DeValue::Table(_) if depth > DEEPEST => self.hole(span, "nested too deeply".to_owned()),
+            DeValue::String(text) => Value::Text(text.into_owned()),
+            DeValue::Boolean(flag) => Value::Flag(flag),
+            DeValue::Datetime(date) => Value::Date(date.to_string()),
+            DeValue::Array(list) => Value::List(list.into_iter().map(|item| self.node(item, depth + 1)).collect()),
+            DeValue::Table(table) => Value::Table(self.table(table, depth)),
+            DeValue::Integer(whole) => match i64::from_str_radix(whole.as_str(), whole.radix()) {
+                Ok(whole) => Value::Int(whole),
+                Err(_) => self.hole(span, format!("`{whole}` is too large for a whole number")),
+            },
+            DeValue::Float(real) => match real.as_str().parse::<f64>() {
+                Ok(real) if real.is_finite() => Value::Real(real),
+                _ => self.hole(span, format!("`{real}` is not a finite number")),
+            },
+        };
+        Node { span, value }
+    }
+
+    fn hole(&mut self, span: Span, message: String) -> Value {
+        if self.faults.len() < MOST_FAULTS {
+            self.faults.push(Fault::new(message).at(self.sources.place(span)));
+        }
+        Value::Hole
+    }
+}

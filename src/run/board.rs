@@ -1,0 +1,253 @@
+//! Every task known so far, as a graph that grows while the campaign runs.
+//!
+//! A node stands for one task; equal tasks are one node, whichever stage asked first. Equality is that of the
+//! *recipe*: the task text with the recipe of each input task in place of its result, so it is known before anything ran.
+
+use crate::artifact::{ContentHash, Key};
+use crate::plan::key::task_text;
+use crate::stage::{Source, Task};
+use std::collections::HashMap;
+use std::ops::Add;
+use std::sync::Arc;
+
+pub(super) type NodeId = usize;
+
+/// Where a task stands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TaskState {
+    /// Not started: inputs are missing, or it waits for a worker.
+    Open,
+    /// A worker has it.
+    Running,
+    /// Its result is in the store.
+    Done {
+        /// The result.
+        content: ContentHash,
+        /// Whether it was there already.
+        cached: bool,
+    },
+    /// It failed; why.
+    Failed(String),
+    /// A task that it needs failed.
+    Skipped,
+}
+
+/// How many tasks stand where.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TaskCount {
+    /// All that are known.
+    pub total: usize,
+    /// Computed in this run.
+    pub ran: usize,
+    /// Found in the store.
+    pub cached: usize,
+    /// Failed.
+    pub failed: usize,
+    /// Left out because something they need failed.
+    pub skipped: usize,
+}
+
+impl Add for TaskCount {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            total: self.total + other.total,
+            ran: self.ran + other.ran,
+            cached: self.cached + other.cached,
+            failed: self.failed + other.failed,
+            skipped: self.skipped + other.skipped,
+        }
+    }
+}
+
+struct Node {
+    task: Arc<Task>,
+    stage: usize,
+    /// The node of each input that is a task, in the order of the task's inputs.
+    inputs: Vec<Option<NodeId>>,
+    dependents: Vec<NodeId>,
+    recipe: Key,
+    state: TaskState,
+}
+
+/// The graph of tasks.
+#[derive(Default)]
+pub(super) struct Board {
+    nodes: Vec<Node>,
+    by_recipe: HashMap<Key, NodeId>,
+    /// Tasks seen already, by address; the board keeps them alive, so an address stays theirs.
+    by_address: HashMap<*const Task, NodeId>,
+    kept: Vec<Arc<Task>>,
+    counts: Vec<TaskCount>,
+}
+
+impl Board {
+    /// Puts a task and all that it needs on the board; new nodes are pushed to `new`, inputs first.
+    pub(super) fn put(&mut self, task: &Arc<Task>, stage: usize, new: &mut Vec<NodeId>) -> NodeId {
+        if let Some(&node) = self.by_address.get(&Arc::as_ptr(task)) {
+            return node;
+        }
+        let inputs: Vec<Option<NodeId>> = task
+            .inputs
+            .iter()
+            .map(|(_, source)| match source {
+                Source::Content(_) => None,
+                Source::Task(task) => Some(self.put(task, stage, new)),
+            })
+            .collect();
+        let recipe = self.recipe(task, &inputs);
+        self.kept.push(Arc::clone(task));
+        let node = match self.by_recipe.get(&recipe) {
+            Some(&node) => node,
+            None => {
+                let (task, dependents, state) = (Arc::clone(task), Vec::new(), TaskState::Open);
+                let node = self.add(Node { task, stage, inputs, dependents, recipe, state });
+                new.push(node);
+                node
+            }
+        };
+        self.by_address.insert(Arc::as_ptr(task), node);
+        node
+    }
+
+    fn add(&mut self, node: Node) -> NodeId {
+        let id = self.nodes.len();
+        for input in node.inputs.iter().flatten() {
+            self.nodes[*input].dependents.push(id);
+        }
+        if self.counts.len() <= node.stage {
+            self.counts.resize(node.stage + 1, TaskCount::default());
+        }
+        self.counts[node.stage].total += 1;
+        self.by_recipe.insert(node.recipe, id);
+        self.nodes.push(node);
+        id
+    }
+
+    fn recipe(&self, task: &Task, inputs: &[Option<NodeId>]) -> Key {
+        let parts: Vec<ContentHash> = task
+            .inputs
+            .iter()
+            .zip(inputs)
+            .map(|((_, source), node)| match (source, node) {
+                (Source::Content(content), _) => *content,
+                (Source::Task(_), Some(node)) => ContentHash(self.nodes[*node].recipe.0),
+                (Source::Task(_), None) => panic!("BUG: an input task without a node"),
+            })
+            .collect();
+        Key::of(&task_text(task, &parts))
+    }
+
+    /// The node of a task that was put on the board before.
+    pub(super) fn find(&self, task: &Task) -> Option<NodeId> {
+        let inputs: Option<Vec<Option<NodeId>>> = task
+            .inputs
+            .iter()
+            .map(|(_, source)| match source {
+                Source::Content(_) => Some(None),
+                Source::Task(task) => self.find(task).map(Some),
+            })
+            .collect();
+        self.by_recipe.get(&self.recipe(task, &inputs?)).copied()
+    }
+
+    /// Contents of a node's inputs, when all are known.
+    pub(super) fn inputs(&self, node: NodeId) -> Option<Vec<ContentHash>> {
+        let node = &self.nodes[node];
+        node.task
+            .inputs
+            .iter()
+            .zip(&node.inputs)
+            .map(|((_, source), input)| match (source, input) {
+                (Source::Content(content), _) => Some(*content),
+                (Source::Task(_), Some(input)) => match self.nodes[*input].state {
+                    TaskState::Done { content, .. } => Some(content),
+                    _ => None,
+                },
+                (Source::Task(_), None) => None,
+            })
+            .collect()
+    }
+
+    /// The text of an open node whose inputs are known.
+    pub(super) fn text(&self, node: NodeId) -> Option<String> {
+        if self.nodes[node].state != TaskState::Open {
+            return None;
+        }
+        Some(task_text(&self.nodes[node].task, &self.inputs(node)?))
+    }
+
+    /// The key of an open node whose inputs are known.
+    pub(super) fn key(&self, node: NodeId) -> Option<Key> {
+        self.text(node).map(|text| Key::of(&text))
+    }
+
+    /// Notes a result; answers with the nodes that may be decided now.
+    pub(super) fn done(&mut self, node: NodeId, content: ContentHash, cached: bool) -> Vec<NodeId> {
+        self.nodes[node].state = TaskState::Done { content, cached };
+        let count = self.count_mut(node);
+        if cached {
+            count.cached += 1
+        } else {
+            count.ran += 1
+        }
+        self.nodes[node].dependents.clone()
+    }
+
+    pub(super) fn started(&mut self, node: NodeId) {
+        self.nodes[node].state = TaskState::Running;
+    }
+
+    pub(super) fn is_running(&self, node: NodeId) -> bool {
+        self.nodes[node].state == TaskState::Running
+    }
+
+    /// An interrupted task is as if it had not been started.
+    pub(super) fn stopped(&mut self, node: NodeId) {
+        self.nodes[node].state = TaskState::Open;
+    }
+
+    /// Notes a failure; all that needs this task is skipped.
+    pub(super) fn failed(&mut self, node: NodeId, why: &str) {
+        self.nodes[node].state = TaskState::Failed(why.to_owned());
+        self.count_mut(node).failed += 1;
+        let mut open = self.nodes[node].dependents.clone();
+        while let Some(next) = open.pop() {
+            if self.nodes[next].state == TaskState::Open {
+                self.nodes[next].state = TaskState::Skipped;
+                self.count_mut(next).skipped += 1;
+                open.extend(self.nodes[next].dependents.iter().copied());
+            }
+        }
+    }
+
+    pub(super) fn state(&self, node: NodeId) -> &TaskState {
+        &self.nodes[node].state
+    }
+
+    pub(super) fn stage(&self, node: NodeId) -> usize {
+        self.nodes[node].stage
+    }
+
+    pub(super) fn task(&self, node: NodeId) -> &Arc<Task> {
+        &self.nodes[node].task
+    }
+
+    /// The first failure among a node and all that it needs.
+    pub(super) fn cause(&self, node: NodeId) -> Option<(NodeId, &str)> {
+        match &self.nodes[node].state {
+            TaskState::Failed(why) => Some((node, why)),
+            TaskState::Skipped => self.nodes[node].inputs.iter().flatten().find_map(|&input| self.cause(input)),
+            TaskState::Open | TaskState::Running | TaskState::Done { .. } => None,
+        }
+    }
+
+    pub(super) fn count(&self, stage: usize) -> TaskCount {
+        self.counts.get(stage).copied().unwrap_or_default()
+    }
+
+    fn count_mut(&mut self, node: NodeId) -> &mut TaskCount {
+        let stage = self.nodes[node].stage;
+        &mut self.counts[stage]
+    }
+}

@@ -1,0 +1,40 @@
+//! What stages may look up while a campaign runs.
+
+use super::board::{Board, TaskState};
+use crate::artifact::{Artifact, ContentHash};
+use crate::plan::Workflow;
+use crate::stage::{FileInput, Library, Outcome, StageError, Task};
+use crate::store::Store;
+use std::path::Path;
+use std::sync::Arc;
+
+pub(super) struct Shelf<'a> {
+    pub(super) workflow: &'a Workflow,
+    pub(super) store: &'a Store,
+    pub(super) board: &'a Board,
+}
+
+impl Library for Shelf<'_> {
+    fn load(&self, content: &ContentHash) -> Result<Arc<Artifact>, StageError> {
+        self.store.get(content).map_err(|e| StageError::new(e.to_string()).hint("run again: it will be recomputed"))
+    }
+
+    fn outcome(&self, task: &Task) -> Option<Outcome> {
+        let node = self.board.find(task)?;
+        match self.board.state(node) {
+            TaskState::Done { content, .. } => Some(Outcome::Done(*content)),
+            TaskState::Failed(_) | TaskState::Skipped => {
+                Some(Outcome::Failed(self.board.cause(node).map_or_else(String::new, |(_, why)| why.to_owned())))
+            }
+            TaskState::Open | TaskState::Running => None,
+        }
+    }
+
+    fn file(&self, name: &str, path: &str) -> Result<FileInput, StageError> {
+        let full = self.workflow.path.parent().unwrap_or(Path::new("")).join(path);
+        let bytes = std::fs::read(&full).map_err(|e| {
+            StageError::new(format!("{}: {e}", full.display())).hint("paths are relative to the workflow file")
+        })?;
+        Ok(FileInput { name: name.to_owned(), path: full, digest: *blake3::hash(&bytes).as_bytes() })
+    }
+}

@@ -1,0 +1,275 @@
+//! The run loop: from a checked workflow to results in the store.
+//!
+//! One thread decides, workers compute. The deciding thread keeps three things:
+//!
+//! * the [`board`]: every task known so far, as a graph that grows; equal tasks are one node;
+//! * the [`stages`]: where each stage of the workflow stands;
+//! * a queue of nodes whose inputs are known and whose result is not in the store.
+//!
+//! It goes round: ask each stage that can say more for its next step; put its tasks on the board; settle every node
+//! whose inputs are known by looking its key up in the store; start what is ready; wait for one answer. `plan` is the
+//! same loop that starts nothing, so it cannot disagree with `run`.
+
+mod board;
+mod library;
+mod stages;
+mod task;
+
+pub use board::{TaskCount, TaskState};
+pub use stages::{StageReport, StageStatus};
+
+use crate::exec::Threads;
+use crate::plan::Workflow;
+use crate::stage::{Failure, Progress};
+use crate::store::{Store, StoreError};
+use board::{Board, NodeId};
+use stages::Stages;
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+/// How a campaign is run.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Worker threads.
+    pub jobs: usize,
+    /// Go on with what does not depend on a failed task.
+    pub keep_going: bool,
+    /// Only decide, start nothing.
+    pub dry: bool,
+    /// Stages that are wanted, with all they need; all stages when empty.
+    pub targets: Vec<String>,
+}
+
+/// What the person watching is told.
+pub enum Event<'a> {
+    /// A task of a stage was started.
+    Started {
+        /// The stage.
+        stage: &'a str,
+        /// Its row.
+        row: Option<usize>,
+    },
+    /// A running task says where it stands.
+    Said {
+        /// The stage.
+        stage: &'a str,
+        /// Its row.
+        row: Option<usize>,
+        /// Where it stands.
+        progress: &'a Progress,
+    },
+    /// A task ended, well or not.
+    Ended {
+        /// The stage.
+        stage: &'a str,
+        /// Its row.
+        row: Option<usize>,
+        /// The stage's counts after it.
+        count: TaskCount,
+        /// Why it failed.
+        failure: Option<&'a str>,
+    },
+    /// A stage ended.
+    Stage {
+        /// What became of it.
+        report: &'a StageReport,
+    },
+}
+
+/// Takes events; called from any thread.
+pub trait Watch: Sync {
+    /// One event.
+    fn event(&self, event: Event<'_>);
+}
+
+/// What became of a campaign.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Every wanted stage, in the order of the workflow.
+    pub stages: Vec<StageReport>,
+    /// Whether it was interrupted.
+    pub interrupted: bool,
+    /// The store could not be read; what was wrong.
+    pub broken: Option<String>,
+}
+
+impl Report {
+    /// Counts over all stages.
+    pub fn tasks(&self) -> TaskCount {
+        self.stages.iter().fold(TaskCount::default(), |sum, stage| sum + stage.tasks)
+    }
+}
+
+/// Runs what is missing of `workflow`, or only decides when the settings say so.
+pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn Watch, stop: &AtomicBool) -> Report {
+    let (answers, inbox) = channel();
+    std::thread::scope(|scope| {
+        let pool = Threads::start(scope, if settings.dry { 0 } else { settings.jobs.max(1) });
+        let run = Loop {
+            workflow,
+            store,
+            settings,
+            watch,
+            stop,
+            pool,
+            answers,
+            board: Board::default(),
+            stages: Stages::new(workflow, &settings.targets),
+            ready: BTreeSet::new(),
+            running: 0,
+            failed: false,
+            fatal: None,
+        };
+        run.go(&inbox)
+    })
+}
+
+/// What a worker sends back.
+struct Answer {
+    node: NodeId,
+    result: Result<task::Finished, Failure>,
+}
+
+struct Loop<'env> {
+    workflow: &'env Workflow,
+    store: &'env Store,
+    settings: &'env Settings,
+    watch: &'env dyn Watch,
+    stop: &'env AtomicBool,
+    pool: Threads<'env>,
+    answers: Sender<Answer>,
+    board: Board,
+    stages: Stages,
+    /// Nodes to start, in the order they were put on the board.
+    ready: BTreeSet<NodeId>,
+    running: usize,
+    failed: bool,
+    /// The store cannot be read: nothing more is started.
+    fatal: Option<StoreError>,
+}
+
+impl Loop<'_> {
+    fn go(mut self, inbox: &Receiver<Answer>) -> Report {
+        loop {
+            while self.advance() {}
+            self.start();
+            if self.running == 0 {
+                break;
+            }
+            match inbox.recv() {
+                Ok(answer) => self.take(answer),
+                Err(_) => panic!("BUG: the run loop lost its own inbox"),
+            }
+        }
+        let interrupted = self.stop.load(Ordering::Relaxed);
+        let broken = self.fatal.map(|error| error.to_string());
+        Report { stages: self.stages.reports(self.workflow, &self.board), interrupted, broken }
+    }
+
+    /// Asks each stage that can say more; whether any did.
+    fn advance(&mut self) -> bool {
+        let mut moved = false;
+        for index in self.stages.due(self.workflow, &self.board) {
+            moved = true;
+            let library = library::Shelf { workflow: self.workflow, store: self.store, board: &self.board };
+            let step = self.stages.ask(self.workflow, index, &library);
+            let new = self.stages.take(index, step, &mut self.board);
+            for node in new {
+                self.settle(node);
+            }
+        }
+        for report in self.stages.close(self.workflow, &self.board) {
+            moved = true;
+            self.failed |= matches!(report.status, StageStatus::Failed(_));
+            if !self.settings.dry {
+                self.watch.event(Event::Stage { report: &report });
+            }
+        }
+        moved
+    }
+
+    /// Decides about a node whose inputs may be known, and about all that follow from it.
+    fn settle(&mut self, first: NodeId) {
+        let mut open = vec![first];
+        while let Some(node) = open.pop() {
+            let Some(key) = self.board.key(node) else { continue };
+            match self.store.find(&key) {
+                Ok(Some(record)) => open.extend(self.board.done(node, record.content, true)),
+                Ok(None) => {
+                    self.ready.insert(node);
+                }
+                Err(error) => {
+                    self.fatal.get_or_insert(error);
+                }
+            }
+        }
+    }
+
+    fn start(&mut self) {
+        let ended = self.stop.load(Ordering::Relaxed) || self.fatal.is_some();
+        if self.settings.dry || ended || (self.failed && !self.settings.keep_going) {
+            return;
+        }
+        while self.running < self.pool.count() {
+            let Some(node) = self.ready.pop_first() else { return };
+            let idle = self.pool.count() - self.running;
+            let threads = (idle / (self.ready.len() + 1)).max(1);
+            match task::Order::new(&self.board, node, self.store, threads) {
+                Ok(order) => self.give(order),
+                Err(e) => self.take(Answer { node, result: Err(e) }),
+            }
+        }
+    }
+
+    fn give(&mut self, order: task::Order) {
+        let node = order.node;
+        let (store, watch, stop, answers) = (self.store, self.watch, self.stop, self.answers.clone());
+        let stage = self.workflow.stages[self.board.stage(node)].name.as_str();
+        let row = self.board.task(node).row;
+        self.board.started(node);
+        self.running += 1;
+        self.pool.give(move || {
+            watch.event(Event::Started { stage, row });
+            let say = |progress: Progress| watch.event(Event::Said { stage, row, progress: &progress });
+            let result = order.execute(store, &say, stop);
+            // The loop may be gone only when it panicked; then nobody waits for this answer.
+            let _ = answers.send(Answer { node, result });
+        });
+    }
+
+    fn take(&mut self, answer: Answer) {
+        let node = answer.node;
+        if self.board.is_running(node) {
+            self.running -= 1;
+        }
+        let failure = match answer.result {
+            Ok(finished) => {
+                for next in self.board.done(node, finished.content, finished.shared) {
+                    self.settle(next);
+                }
+                None
+            }
+            Err(Failure::Stopped) => {
+                self.board.stopped(node);
+                return;
+            }
+            Err(Failure::Failed(error)) => {
+                self.failed = true;
+                let text = match error.hint {
+                    Some(hint) => format!("{} ({hint})", error.message),
+                    None => error.message,
+                };
+                self.board.failed(node, &text);
+                Some(text)
+            }
+        };
+        let stage = self.board.stage(node);
+        self.watch.event(Event::Ended {
+            stage: &self.workflow.stages[stage].name,
+            row: self.board.task(node).row,
+            count: self.board.count(stage),
+            failure: failure.as_deref(),
+        });
+    }
+}

@@ -1,0 +1,96 @@
+//! One task, from its text to its stored result: the same for every way of starting it.
+
+use super::board::{Board, NodeId};
+use crate::artifact::{Artifact, ContentHash, Key};
+use crate::stage::{Failure, Job, Progress, StageError, Task, work};
+use crate::store::{Claim, Store, Timing};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Instant, SystemTime};
+
+/// A task whose inputs are loaded.
+pub(super) struct Order {
+    pub(super) node: NodeId,
+    task: Arc<Task>,
+    text: String,
+    inputs: Vec<(String, Arc<Artifact>)>,
+    threads: usize,
+}
+
+/// A stored result.
+pub(super) struct Finished {
+    pub(super) content: ContentHash,
+    /// Whether another process computed it meanwhile.
+    pub(super) shared: bool,
+}
+
+impl Order {
+    /// Loads the inputs of an open node.
+    pub(super) fn new(board: &Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Failure> {
+        let (Some(text), Some(contents)) = (board.text(node), board.inputs(node)) else {
+            panic!("BUG: a task was started before its inputs were known");
+        };
+        let task = Arc::clone(board.task(node));
+        let load = |content: &ContentHash| store.get(content).map_err(failure);
+        let inputs = task
+            .inputs
+            .iter()
+            .zip(&contents)
+            .map(|((name, _), content)| Ok((name.clone(), load(content)?)))
+            .collect::<Result<_, Failure>>()?;
+        Ok(Self { node, task, text, inputs, threads })
+    }
+
+    /// Computes and stores the result, unless another process does: then waits for its result.
+    pub(super) fn execute(
+        &self,
+        store: &Store,
+        say: &(dyn Fn(Progress) + Sync),
+        stop: &AtomicBool,
+    ) -> Result<Finished, Failure> {
+        let key = Key::of(&self.text);
+        loop {
+            match store.claim(&key).map_err(failure)? {
+                Claim::Done(record) => return Ok(Finished { content: record.content, shared: true }),
+                Claim::Mine(_guard) => {
+                    let content = self.compute(store, say, stop)?;
+                    return Ok(Finished { content, shared: false });
+                }
+                Claim::Theirs(waiting) => {
+                    say(Progress { fraction: None, note: format!("waits for {}", waiting.holder_now()) });
+                    if !waiting.wait(|| stop.load(Ordering::Relaxed)) {
+                        return Err(Failure::Stopped);
+                    }
+                }
+            }
+        }
+    }
+
+    fn compute(
+        &self,
+        store: &Store,
+        say: &(dyn Fn(Progress) + Sync),
+        stop: &AtomicBool,
+    ) -> Result<ContentHash, Failure> {
+        let Some(work) = work(self.task.work) else { panic!("BUG: no work is called `{}`", self.task.work) };
+        let job = Job {
+            params: &self.task.params,
+            seed: self.task.seed,
+            inputs: &self.inputs,
+            files: &self.task.files,
+            threads: self.threads,
+            time_limit: self.task.time_limit,
+            say,
+            stop,
+        };
+        let (started, clock) = (SystemTime::now(), Instant::now());
+        let artifact = (work.run)(&job)?;
+        let timing = Timing { started, seconds: clock.elapsed().as_secs_f64() };
+        let (record, _) = store.put(&self.text, artifact, &timing).map_err(failure)?;
+        Ok(record.content)
+    }
+}
+
+fn failure(error: impl std::fmt::Display) -> Failure {
+    StageError::new(error.to_string()).into()
+}

@@ -1,0 +1,153 @@
+//! The folder of one run: filled before, watched while the program runs, removed after.
+
+use super::Params;
+use crate::stage::{Failure, Job, StageError};
+use rustix::process::{Pid, Signal, kill_process_group};
+use std::fs::File;
+use std::os::unix::process::CommandExt;
+use std::path::{Component, Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// Largest text file that is read back.
+const LARGEST: u64 = 64 << 20;
+
+/// Whether a name stays inside the folder it is put in.
+pub(super) fn is_plain(name: &str) -> bool {
+    !name.is_empty() && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// A run's own temporary folder; `stdout` and `stderr` lie beside what the program writes.
+pub(super) struct Folder {
+    root: TempDir,
+}
+
+impl Folder {
+    /// Makes the folder with its files and filled templates.
+    pub(super) fn fill(job: &Job, params: &Params) -> Result<Self, Failure> {
+        let root = tempfile::Builder::new().prefix("flow-run-").tempdir().map_err(|e| io("make a folder", e))?;
+        let folder = Self { root };
+        for file in job.files {
+            let bytes = job.file(&file.name)?;
+            let (bytes, name) = match file.name.split_once(':') {
+                Some(("template", name)) => (filled(&bytes, name, job, params)?, name),
+                Some((_, name)) => (bytes, name),
+                None => panic!("BUG: a file of a command without a kind"),
+            };
+            let path = folder.path(name);
+            if let Some(parent) = path.parent() {
+                std::fs::create_dir_all(parent).map_err(|e| io("make a folder", e))?;
+            }
+            std::fs::write(&path, bytes).map_err(|e| io("write the input", e))?;
+        }
+        Ok(folder)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.root.path().join(name)
+    }
+
+    /// Runs the program; the inner error is a failure of the program, the outer one of the machine or an interruption.
+    pub(super) fn run(&self, job: &Job, params: &Params) -> Result<Result<(), String>, Failure> {
+        let mut command = match params.shell {
+            true => Command::new("sh"),
+            false => Command::new(&params.run[0]),
+        };
+        match params.shell {
+            true => command.arg("-c").arg(&params.run[0]),
+            false => command.args(&params.run[1..]),
+        };
+        let output = |name: &str| File::create(self.path(name)).map_err(|e| io("write its output", e));
+        command.current_dir(self.root.path()).stdin(Stdio::null()).process_group(0);
+        command.stdout(output("stdout")?).stderr(output("stderr")?);
+        command.env_clear().envs(std::env::var_os("PATH").map(|path| ("PATH", path))).envs(&params.environment);
+        let child = command.spawn().map_err(|e| {
+            StageError::new(format!("`{}` cannot be started: {e}", params.run[0]))
+                .hint("is it installed and on the PATH?")
+        })?;
+        let status = wait(child, job)?;
+        Ok(if status.success() { Ok(()) } else { Err(format!("`{}` ended with {status}", params.run.join(" "))) })
+    }
+
+    /// A text file that the program left.
+    pub(super) fn text(&self, name: &str) -> Result<String, String> {
+        let path = self.path(name);
+        let size = std::fs::metadata(&path).map_err(|_| format!("the program left no file `{name}`"))?.len();
+        if size > LARGEST {
+            return Err(format!("`{name}` has {size} bytes; at most {LARGEST} are read"));
+        }
+        std::fs::read_to_string(&path).map_err(|e| format!("`{name}` cannot be read as text: {e}"))
+    }
+
+    /// The end of what the program said, for the message of a failure.
+    pub(super) fn last_words(&self) -> String {
+        let said =
+            ["stderr", "stdout"].iter().filter_map(|name| self.text(name).ok()).find(|text| !text.trim().is_empty());
+        said.map_or_else(
+            || "it said nothing".to_owned(),
+            |text| {
+                let lines: Vec<&str> = text.trim_end().lines().rev().take(5).collect();
+                format!("it said: {}", lines.into_iter().rev().collect::<Vec<_>>().join(" | "))
+            },
+        )
+    }
+}
+
+/// Waits for the end, the time limit or the interruption, whichever is first; leaves no process of the run behind.
+fn wait(mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
+    let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
+    let group = Pid::from_child(&child);
+    loop {
+        if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
+            // What it started and left running ends with it.
+            let _ = kill_process_group(group, Signal::KILL);
+            return Ok(status);
+        }
+        let late = job.time_limit.is_some_and(|limit| started.elapsed().as_secs_f64() > limit);
+        if late || job.stopped() {
+            let _ = kill_process_group(group, Signal::KILL);
+            let _ = child.wait();
+            return Err(match job.time_limit {
+                Some(limit) if late => StageError::new(format!("the program ran longer than its limit of {limit} s"))
+                    .hint("raise `time_limit`, or find out why it hangs")
+                    .into(),
+                Some(_) | None => Failure::Stopped,
+            });
+        }
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(Duration::from_millis(20));
+    }
+}
+
+/// Fills `{{name}}` with the values of the run.
+fn filled(template: &[u8], file: &str, job: &Job, params: &Params) -> Result<Vec<u8>, StageError> {
+    let text = std::str::from_utf8(template).map_err(|e| StageError::new(format!("template `{file}`: {e}")))?;
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once("{{") {
+        out.push_str(before);
+        let line = text[..text.len() - after.len()].lines().count();
+        let fail = |what: String| StageError::new(format!("template `{file}`, line {line}: {what}"));
+        let (name, after) = after.split_once("}}").ok_or_else(|| fail("`{{` without `}}`".to_owned()))?;
+        out.push_str(&match name.trim() {
+            "seed" => job.seed.unwrap_or(0).to_string(),
+            "replicate" => params.replicate.to_string(),
+            name => match params.values.get(name) {
+                Some(value) => value.to_string(),
+                None => {
+                    let known: Vec<&str> = params.values.keys().map(String::as_str).collect();
+                    return Err(fail(format!("`{name}` is not a value of this run"))
+                        .hint(format!("known are seed, replicate, {}", known.join(", "))));
+                }
+            },
+        });
+        rest = after;
+    }
+    out.push_str(rest);
+    Ok(out.into_bytes())
+}
+
+fn io(doing: &str, error: std::io::Error) -> Failure {
+    StageError::new(format!("cannot {doing}: {error}")).into()
+}

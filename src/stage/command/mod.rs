@@ -1,0 +1,204 @@
+//! `kind = "command"`: an external program stands wherever `simulate` stands.
+//!
+//! For every row of the design (or once, without a design) the program runs in a folder of its own: files are copied
+//! there, templates are filled with the row's parameters, the command is started without a shell (unless asked for),
+//! with no standard input, with `PATH` and the declared environment and nothing else; then the responses are read from
+//! what it left (CSV, JSON, or a pattern on a text file). Command, templates, files and parameters are in the key,
+//! the time limit is not.
+//!
+//! A template names values in double braces: `{{mortar.Ec}}` (parameter, SI), `{{Ec}}` (factor, in its unit),
+//! `{{seed}}`, `{{replicate}}`.
+//!
+//! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
+//! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
+//! Running out of time or being stopped is never recorded, because it says nothing about the model.
+
+mod folder;
+mod read;
+
+use super::rows::{self, GATHER};
+use super::{Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, Group, Node};
+use crate::unit;
+use read::Read;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Settings of a `command` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Command {
+    /// Program and arguments, such as `["python3", "engine.py", "input.json"]`; with `shell` one text for `sh -c`.
+    pub run: Vec<String>,
+    /// Give the one text of `run` to a shell.
+    #[serde(default)]
+    pub shell: bool,
+    /// The design whose rows are run; once when not given.
+    pub design: Option<String>,
+    /// The `[material.NAME]` whose parameters rows vary and templates may name.
+    pub material: Option<String>,
+    /// Files copied into the folder: name there = file beside the workflow.
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
+    /// Templates filled with the row's values: name in the folder = file beside the workflow.
+    #[serde(default)]
+    pub templates: BTreeMap<String, String>,
+    /// Environment variables besides `PATH`.
+    #[serde(default)]
+    pub environment: BTreeMap<String, String>,
+    /// A run that takes longer is ended and has failed.
+    pub time_limit: Option<unit::Time>,
+    /// Whether a failed run stops the campaign or is recorded with its reason.
+    #[serde(default)]
+    pub on_failure: OnFailure,
+    /// How each response is read, by its name.
+    pub read: BTreeMap<String, Read>,
+}
+
+/// What becomes of a run that failed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OnFailure {
+    /// The task failed; it runs again next time.
+    #[default]
+    Stop,
+    /// The run is a result without responses, with the reason.
+    Record,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Params {
+    run: Vec<String>,
+    #[serde(default, skip_serializing_if = "is_false")]
+    shell: bool,
+    environment: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "stops")]
+    on_failure: OnFailure,
+    read: BTreeMap<String, Read>,
+    /// Parameters and factors by the name that templates use.
+    values: BTreeMap<String, f64>,
+    replicate: u64,
+}
+
+fn is_false(flag: &bool) -> bool {
+    !flag
+}
+
+fn stops(on_failure: &OnFailure) -> bool {
+    *on_failure == OnFailure::Stop
+}
+
+impl Stage for Command {
+    fn inputs(&self) -> Vec<Port> {
+        let design = Port { key: "design", stages: self.design.iter().cloned().collect(), accepts: &["design"] };
+        if self.design.is_some() { vec![design] } else { Vec::new() }
+    }
+
+    fn gives(&self) -> &'static str {
+        if self.design.is_some() { "results" } else { "run" }
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = rows::check_units(context);
+        if self.run.is_empty() || self.run[0].trim().is_empty() {
+            found.push(Complaint::new("run", "no program is named").hint("run = [\"program\", \"argument\"]"));
+        }
+        if self.shell && self.run.len() > 1 {
+            found.push(Complaint::new("run", "with `shell` the command is one text").hint("run = [\"a | b\"]"));
+        }
+        if let Some(name) = self.material.as_ref().filter(|name| !context.materials.contains_key(*name)) {
+            let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
+            found.push(Complaint::new("material", format!("there is no [material.{name}]")).hint(known.join(", ")));
+        }
+        for name in self.files.keys().chain(self.templates.keys()).filter(|name| !folder::is_plain(name)) {
+            let message = format!("`{name}` must be a plain name inside the run's folder");
+            found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`"));
+        }
+        if self.read.is_empty() {
+            found.push(Complaint::new("read", "no response is read").hint("add [stage.NAME.read.RESPONSE]"));
+        }
+        found.extend(self.read.iter().flat_map(|(name, read)| read.check(name)));
+        found
+    }
+
+    fn settings(&self) -> Value {
+        json!({
+            "run": self.run, "shell": self.shell, "design": self.design, "material": self.material,
+            "files": self.files, "templates": self.templates, "environment": self.environment,
+            "time_limit": self.time_limit, "on_failure": self.on_failure, "read": self.read,
+        })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        if self.design.is_none() {
+            return Ok(Step::Finish(self.sample(known, &Point::new(), 1)?));
+        }
+        let design = known.one("design")?;
+        let runs = rows::rows(&*known.load(design)?, known.context)?
+            .into_iter()
+            .map(|row| Ok(Arc::new(self.sample(known, &row.point, row.replicate)?.row(row.index))))
+            .collect::<Result<Vec<_>, StageError>>()?;
+        Ok(Step::Finish(rows::gather(known, design, runs)?))
+    }
+
+    fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
+        let base = self.material.as_ref().and_then(|name| known.context.materials.get(name));
+        let base = base.into_iter().flatten().map(|(path, parameter)| (path.clone(), parameter.value)).collect();
+        let mut values = match self.material {
+            Some(_) => rows::apply(&base, point, known.context)?,
+            None => BTreeMap::new(),
+        };
+        let set = |name: &&String| known.context.factors.get(*name).is_none_or(|factor| !factor.sets.is_empty());
+        values.extend(point.iter().filter(|(name, _)| set(name)).map(|(name, value)| (name.clone(), *value)));
+        let params = Params {
+            run: self.run.clone(),
+            shell: self.shell,
+            environment: self.environment.clone(),
+            on_failure: self.on_failure,
+            read: self.read.clone(),
+            values,
+            replicate: number,
+        };
+        let mut task = Task::new("command", json!(params)).seed(known.context.seed);
+        for (kind, files) in [("file", &self.files), ("template", &self.templates)] {
+            for (name, path) in files {
+                task.files.push(known.library.file(&format!("{kind}:{name}"), path)?);
+            }
+        }
+        task.time_limit = self.time_limit.map(unit::Quantity::get);
+        Ok(task)
+    }
+}
+
+impl Kind for Command {
+    const NAME: &'static str = "command";
+    const ABOUT: &'static str = "an external program, once or per design row";
+    const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
+}
+
+fn execute(job: &Job) -> Result<Artifact, Failure> {
+    let params: Params = job.params()?;
+    let folder = folder::Folder::fill(job, &params)?;
+    let outcome = match folder.run(job, &params)? {
+        Ok(()) => params.read.iter().map(|(name, read)| Ok((name, read.value(&folder)?, read.unit()))).collect(),
+        Err(reason) => Err(reason),
+    };
+    let responses: Vec<(&String, f64, &str)> = match (outcome, params.on_failure) {
+        (Ok(responses), _) => responses,
+        (Err(reason), OnFailure::Record) => return Ok(artifact(&[], &reason)),
+        (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
+    };
+    let responses: Vec<(&str, f64, &str)> =
+        responses.iter().map(|(name, v, unit)| (name.as_str(), *v, *unit)).collect();
+    Ok(artifact(&responses, ""))
+}
+
+fn artifact(responses: &[(&str, f64, &str)], failure: &str) -> Artifact {
+    let root = Group::new()
+        .with("failure", Node::Text(failure.to_owned()))
+        .with("responses", Node::Table(rows::response_table(responses)));
+    Artifact::new("run", 1, root)
+}

@@ -1,0 +1,133 @@
+//! What a stage can see when it decides what to do next.
+
+use super::{StageError, Task};
+use crate::artifact::{Artifact, ContentHash};
+use crate::unit::Dimension;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What the whole workflow shares: its seed, its factors and its responses.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Context {
+    /// The workflow's seed.
+    pub seed: u64,
+    /// `[factor.NAME]` tables.
+    pub factors: BTreeMap<String, Factor>,
+    /// `[response.NAME]` tables.
+    pub responses: BTreeMap<String, Response>,
+    /// `[material.NAME]` tables: values by path (`mortar.Ec`).
+    pub materials: BTreeMap<String, BTreeMap<String, Parameter>>,
+}
+
+/// One value of a material, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// The value.
+    pub value: f64,
+    /// Its dimension, to be checked by whoever knows what the path stands for.
+    pub dimension: Dimension,
+}
+
+/// An experimental factor: the parameter it sets, its unit and symbol, and its levels or range in that unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Factor {
+    /// Path of the parameter that it sets, such as `mortar.Ec`; empty for a column that sets nothing.
+    pub sets: String,
+    /// Unit of levels and range, `""` for a pure number.
+    pub unit: String,
+    /// Symbol for tables and figures, such as `\bar\sigma_c`.
+    pub symbol: String,
+    /// Levels, in `unit`; empty when only a range is given.
+    pub levels: Vec<f64>,
+    /// Low and high end, in `unit`; from the levels when not given.
+    pub range: Option<[f64; 2]>,
+}
+
+/// A response: the unit and symbol it is shown with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Response {
+    /// Unit in tables and figures, such as `MPa`.
+    pub unit: String,
+    /// Symbol, such as `\sigma_u`.
+    pub symbol: String,
+}
+
+/// A finished input of a stage.
+pub struct Input<'a> {
+    /// The port's key.
+    pub key: &'static str,
+    /// The stage's name.
+    pub stage: &'a str,
+    /// Hash of its result.
+    pub content: ContentHash,
+    /// [`super::Stage::replicate`] of that stage.
+    pub replicate: Box<dyn Fn(u64) -> Option<Task> + 'a>,
+    /// [`super::Stage::sample`] of that stage.
+    pub sample: Sampler<'a>,
+}
+
+/// Makes the task that tries a point on a replicate.
+pub type Sampler<'a> = Box<dyn Fn(&Point, u64) -> Result<Task, StageError> + 'a>;
+
+/// Values of factors by name, in the factors' units.
+pub type Point = BTreeMap<String, f64>;
+
+/// What became of a task that the stage asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// Its artifact.
+    Done(ContentHash),
+    /// It failed; the reason.
+    Failed(String),
+}
+
+/// Access to artifacts, outcomes and files, given by the runner.
+pub trait Library {
+    /// The artifact of this content.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    fn load(&self, content: &ContentHash) -> Result<Arc<Artifact>, StageError>;
+
+    /// What became of a task asked for earlier; `None` when it was not asked for yet.
+    fn outcome(&self, task: &Task) -> Option<Outcome>;
+
+    /// A file beside the workflow, with its hash taken.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    fn file(&self, name: &str, path: &str) -> Result<super::FileInput, StageError>;
+}
+
+/// All that a stage knows when it decides.
+pub struct Known<'a> {
+    /// What the workflow shares.
+    pub context: &'a Context,
+    /// Finished inputs, port by port in the order of [`super::Stage::inputs`].
+    pub inputs: Vec<Input<'a>>,
+    /// Artifacts, outcomes and files.
+    pub library: &'a dyn Library,
+}
+
+impl Known<'_> {
+    /// The inputs of one port, in the order the workflow names them.
+    pub fn port(&self, key: &str) -> impl Iterator<Item = &Input<'_>> {
+        self.inputs.iter().filter(move |input| input.key == key)
+    }
+
+    /// The only input of a port.
+    ///
+    /// # Errors
+    /// The port has none.
+    pub fn one(&self, key: &str) -> Result<&Input<'_>, StageError> {
+        self.port(key).next().ok_or_else(|| StageError::new(format!("`{key}` names no stage")))
+    }
+
+    /// The artifact of an input.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn load(&self, input: &Input<'_>) -> Result<Arc<Artifact>, StageError> {
+        self.library.load(&input.content)
+    }
+}

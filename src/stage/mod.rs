@@ -1,0 +1,199 @@
+//! Stages: where the domain folders meet workflows and artifacts.
+//!
+//! A workflow's `[stage.NAME]` table is read into the config type of its kind (`kind = "anova"` → [`Kind`]), which *is*
+//! the configured stage: it implements [`Stage`]. A stage is a pure function of what is known: its context, the
+//! artifacts of its inputs and the outcomes of tasks it asked for earlier. [`Stage::next`] answers with a [`Step`]:
+//!
+//! * `Finish(task)`: the artifact of this task is the stage's result. A task may take other tasks as inputs, so a
+//!   stage that fans out (a simulation per design row, each on its own specimen) finishes at once with a gathering
+//!   task whose inputs are the runs, whose input is the specimen. The runner walks the tree, computes keys from the
+//!   bottom up, runs what is missing in parallel, and shares equal tasks wherever they come from.
+//! * `Ask(tasks)`: a stage that must see outcomes before it can say more (calibration with the simulation in the loop).
+//!   When all are done, `next` is called again and sees their outcomes in [`Known`]; a killed run resumes by replay.
+//!
+//! A [`Task`] holds everything that decides its result and nothing else. Its `work` names a function in
+//! [`works`]; bump that function's version when its results change, with a line that says what moved.
+//!
+//! # Artifacts that several kinds exchange
+//! * `results`: a table `runs` with one row per run: factors (in their units), `replicate`, responses (in the units of
+//!   `[response.NAME]`), `failure` (text, empty when all went well; the responses are then missing). From `simulate`,
+//!   `command` and `data`.
+//! * `design`: a table `design` with `point_type` and the factors, and a table `report`.
+//! * `run`: one run of a simulator: a table `responses` (`response,value,unit`) and, for `simulate`, curve, cracks, ….
+//! * `surfaces`: fitted models (tables `coefficients`, `fit`, `residuals`, `stationary` and what prediction needs).
+//! * `solution`: calibrated sets (tables `solution`, `history`, `solution_set`).
+//!
+//! Columns that are factors bear the names of `[factor.NAME]` tables, responses those of `[response.NAME]`.
+//!
+//! # A new kind
+//! One file with the config struct (serde, schemars, `deny_unknown_fields`; quantities as [`crate::unit::Quantity`]),
+//! `impl Stage`, `impl Kind` and its work functions, and one line in the list below. Options added later are skipped
+//! when at their default (`skip_serializing_if`), so that they rerun nothing. Parameters of tasks are plain SI numbers
+//! (the domain's own spec types), built from the config in `next`.
+
+pub mod command;
+mod context;
+pub mod data;
+pub mod rows;
+mod task;
+
+pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
+pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Deserializer;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// One configured stage of a workflow.
+pub trait Stage: Send + Sync {
+    /// The stages it takes as inputs, in a fixed order.
+    fn inputs(&self) -> Vec<Port>;
+
+    /// Kind of the artifact that is its result.
+    fn gives(&self) -> &'static str;
+
+    /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
+    fn check(&self, context: &Context) -> Vec<Complaint>;
+
+    /// All settings as canonical values (SI numbers), for `flow diff` and for recognising an unchanged stage at once.
+    fn settings(&self) -> Value;
+
+    /// What to do next, given all that is known; a pure function.
+    ///
+    /// # Errors
+    /// What makes the stage impossible now that its inputs are known, such as a design that lacks a factor.
+    fn next(&self, known: &Known) -> Result<Step, StageError>;
+
+    /// The task that makes replicate `number` (counted from 1) of this stage's result, for kinds that have replicates
+    /// (specimens): the result of the stage itself is replicate 1.
+    fn replicate(&self, _context: &Context, _number: u64) -> Option<Task> {
+        None
+    }
+
+    /// The task that tries one point of the factor space on replicate `number` of whatever it is tried on, for kinds
+    /// that can stand as a simulator (`simulate`, `command`): calibration and verification ask for such tasks. Its
+    /// artifact is that of a single run.
+    ///
+    /// # Errors
+    /// The kind is no simulator, or a factor of the point is not one that it can set.
+    fn sample(&self, _known: &Known, _point: &Point, _number: u64) -> Result<Task, StageError> {
+        Err(StageError::new("this stage is no simulator").hint("name a stage of kind simulate or command"))
+    }
+}
+
+/// A kind of stage: its config type is the configured stage.
+pub trait Kind: Stage + DeserializeOwned + JsonSchema + 'static {
+    /// The word after `kind =`.
+    const NAME: &'static str;
+    /// One line for the schema and for `flow` help.
+    const ABOUT: &'static str;
+    /// The work that its tasks name.
+    const WORKS: &'static [Work];
+}
+
+/// A named input of a stage: the key under which the workflow names other stages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// The key in the stage's table, such as `design`.
+    pub key: &'static str,
+    /// The stages named there, in order.
+    pub stages: Vec<String>,
+    /// Artifact kinds that are accepted.
+    pub accepts: &'static [&'static str],
+}
+
+/// A fault in a stage's settings, found before anything runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Complaint {
+    /// Path below the stage's table, such as `["levels", "Ec"]`; empty for the table itself.
+    pub path: Vec<String>,
+    /// What was found and what was expected.
+    pub message: String,
+    /// What to do.
+    pub hint: Option<String>,
+}
+
+impl Complaint {
+    /// A complaint about the value at `path` (keys separated by dots).
+    pub fn new(path: &str, message: impl Into<String>) -> Self {
+        let path = path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect();
+        Self { path, message: message.into(), hint: None }
+    }
+
+    /// Adds what to do.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+}
+
+/// Why a stage or a task cannot go on, in a person's words.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct StageError {
+    /// What was found, where, and what was expected.
+    pub message: String,
+    /// What to do.
+    pub hint: Option<String>,
+}
+
+impl StageError {
+    /// An error with its message.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), hint: None }
+    }
+
+    /// Adds what to do.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+}
+
+/// What the list knows of one kind.
+pub struct KindEntry {
+    /// The word after `kind =`.
+    pub name: &'static str,
+    /// One line on it.
+    pub about: &'static str,
+    /// The work its tasks name.
+    pub works: &'static [Work],
+    /// Schema of its table.
+    pub schema: fn(&mut SchemaGenerator) -> Schema,
+}
+
+/// Makes [`KINDS`] and [`read`] from the list of config types:
+/// `kinds! { data::Data }` becomes a constant with one entry per type, and a function that tries each name in turn.
+macro_rules! kinds {
+    ($($config:ty),* $(,)?) => {
+        /// Every kind of stage.
+        pub const KINDS: &[KindEntry] = &[$(KindEntry {
+            name: <$config as Kind>::NAME,
+            about: <$config as Kind>::ABOUT,
+            works: <$config as Kind>::WORKS,
+            schema: <$config as JsonSchema>::json_schema,
+        }),*];
+
+        /// Reads the table of a stage of the named kind; `None` when there is no such kind.
+        pub fn read<'de, D: Deserializer<'de>>(kind: &str, table: D) -> Option<Result<Box<dyn Stage>, D::Error>> {
+            $(if kind == <$config as Kind>::NAME {
+                return Some(<$config as serde::Deserialize>::deserialize(table).map(|stage| Box::new(stage) as _));
+            })*
+            let _ = table;
+            None
+        }
+    };
+}
+
+kinds! {
+    command::Command,
+    data::Data,
+}
+
+/// The work called `name`.
+pub fn work(name: &str) -> Option<&'static Work> {
+    KINDS.iter().flat_map(|kind| kind.works).find(|work| work.name == name)
+}

@@ -1,0 +1,274 @@
+//! Fanning out over the rows of a design, and gathering the runs into one table: shared by every simulator kind.
+//!
+//! Rows are known by content. Equal rows of one design are replicates, numbered from 1 by occurrence, so adding rows
+//! changes nothing for the others, and the same row and replicate in two designs is one run.
+
+use super::{Complaint, Context, Failure, Input, Job, Known, Point, StageError, Task, Work};
+use crate::artifact::{Artifact, Column, Group, Node, Table, Values};
+use crate::unit::Unit;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// One row of a design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its place in the design, from 0.
+    pub index: usize,
+    /// Values of its factors, in the factors' units.
+    pub point: Point,
+    /// Which of the equal rows it is, from 1.
+    pub replicate: u64,
+}
+
+/// The columns of a design that are factors, by name.
+fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a Column>, StageError> {
+    let table = design.table("design").ok_or_else(|| StageError::new("the design holds no table `design`"))?;
+    Ok(table.columns.iter().filter(|column| context.factors.contains_key(&column.name)).collect())
+}
+
+/// The rows of a design.
+///
+/// # Errors
+/// It has none, or a factor column holds no numbers.
+pub fn rows(design: &Artifact, context: &Context) -> Result<Vec<Row>, StageError> {
+    let columns = factor_columns(design, context)?;
+    let numbers: Vec<(&str, &Values)> = columns.iter().map(|column| (column.name.as_str(), &column.values)).collect();
+    let count = columns.first().map_or(0, |column| column.values.len());
+    if count == 0 {
+        return Err(StageError::new("the design has no rows of known factors"));
+    }
+    let mut seen: HashMap<Vec<u64>, u64> = HashMap::new();
+    (0..count)
+        .map(|index| {
+            let mut point = Point::new();
+            for (name, values) in &numbers {
+                let value = match values {
+                    Values::Reals(values) => values[index],
+                    Values::Ints(values) => values[index] as f64,
+                    Values::Texts(_) => return Err(StageError::new(format!("factor `{name}` holds texts"))),
+                };
+                point.insert((*name).to_owned(), value);
+            }
+            let content = point.values().map(|value| (value + 0.0).to_bits()).collect();
+            let replicate = seen.entry(content).or_insert(0);
+            *replicate += 1;
+            Ok(Row { index, point, replicate: *replicate })
+        })
+        .collect()
+}
+
+/// Parameters by path in SI units after a point of the factor space was applied to them.
+///
+/// # Errors
+/// A factor of the point is not known, or sets a parameter that is not there.
+pub fn apply(
+    base: &BTreeMap<String, f64>,
+    point: &Point,
+    context: &Context,
+) -> Result<BTreeMap<String, f64>, StageError> {
+    let mut set = base.clone();
+    for (name, value) in point {
+        let factor = context.factors.get(name).ok_or_else(|| StageError::new(format!("`{name}` is not a factor")))?;
+        if factor.sets.is_empty() {
+            continue;
+        }
+        let unit = Unit::parse(&factor.unit).map_err(|e| StageError::new(format!("factor `{name}`: {e}")))?;
+        let place = set.get_mut(&factor.sets).ok_or_else(|| {
+            let known: Vec<&str> = base.keys().map(String::as_str).collect();
+            StageError::new(format!("factor `{name}` sets `{}`, which the material does not have", factor.sets))
+                .hint(format!("the material has {}", known.join(", ")))
+        })?;
+        *place = value * unit.factor;
+    }
+    Ok(set)
+}
+
+#[derive(Serialize, Deserialize)]
+struct GatherParams {
+    /// Factor columns to take from the design.
+    factors: Vec<String>,
+    /// Unit to show each response in; a response that is not named keeps the unit of the runs.
+    units: BTreeMap<String, String>,
+}
+
+/// The task that gathers `runs`, one per row of the design, into the table `runs` of a `results` artifact.
+///
+/// # Errors
+/// The design cannot be read.
+pub fn gather(known: &Known, design: &Input<'_>, runs: Vec<Arc<Task>>) -> Result<Task, StageError> {
+    let artifact = known.load(design)?;
+    let factors = factor_columns(&artifact, known.context)?.iter().map(|column| column.name.clone()).collect();
+    let unit = |(name, response): (&String, &super::Response)| (name.clone(), response.unit.clone());
+    let units = known.context.responses.iter().map(unit).collect();
+    let mut task = Task::new("gather", json!(GatherParams { factors, units })).input("design", design.content);
+    for run in runs {
+        task = task.after("run", run);
+    }
+    Ok(task)
+}
+
+/// Work that every simulator kind lists.
+pub const GATHER: Work = Work { name: "gather", version: 1, run: gathered };
+
+/// Complaints about responses whose unit cannot be read; for [`super::Stage::check`] of simulator kinds.
+pub fn check_units(context: &Context) -> Vec<Complaint> {
+    let units = context.responses.iter().map(|(name, response)| (name, &response.unit));
+    units
+        .filter_map(|(name, unit)| {
+            Unit::parse(unit).err().map(|e| Complaint::new("", format!("response `{name}`: {e}")))
+        })
+        .collect()
+}
+
+fn gathered(job: &Job) -> Result<Artifact, Failure> {
+    let params: GatherParams = job.params()?;
+    let design = job.input("design")?;
+    let design = design.table("design").ok_or_else(|| StageError::new("the design holds no table `design`"))?;
+    let runs: Vec<&Artifact> = job.inputs.iter().filter(|(name, _)| name == "run").map(|(_, run)| &**run).collect();
+    let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() };
+    for name in &params.factors {
+        let column = design.column(name).ok_or_else(|| StageError::new(format!("the design lost factor `{name}`")))?;
+        table.columns.push(column.clone());
+    }
+    let results = runs.iter().map(|run| responses(run)).collect::<Result<Vec<_>, _>>()?;
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _, _) in results.iter().flat_map(|(_, found)| found) {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    for name in names {
+        table = response_column(table, name, params.units.get(name), &results)?;
+    }
+    let failures = results.iter().map(|(failure, _)| (*failure).to_owned()).collect();
+    table = table.texts_column("failure", "why the run gave no result; empty when it did", failures);
+    Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
+}
+
+type Responses<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
+
+/// Failure text and (name, value, unit) of every response of a run.
+fn responses(run: &Artifact) -> Result<Responses<'_>, StageError> {
+    let wrong = |what: &str| StageError::new(format!("a run holds no {what}"));
+    let failure = match run.root.get("failure") {
+        Some(Node::Text(text)) => text.as_str(),
+        Some(_) | None => "",
+    };
+    let table = run.table("responses").ok_or_else(|| wrong("table `responses`"))?;
+    let texts = |name: &str| match table.column(name).map(|column| &column.values) {
+        Some(Values::Texts(texts)) => Ok(texts),
+        Some(_) | None => Err(wrong(&format!("texts `responses.{name}`"))),
+    };
+    let values = table.reals("value").ok_or_else(|| wrong("reals `responses.value`"))?;
+    let (names, units) = (texts("response")?, texts("unit")?);
+    let found = names.iter().zip(values).zip(units).map(|((name, value), unit)| (name.as_str(), value, unit.as_str()));
+    Ok((failure, found.collect()))
+}
+
+fn response_column(
+    table: Table,
+    name: &str,
+    shown: Option<&String>,
+    results: &[Responses<'_>],
+) -> Result<Table, StageError> {
+    let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("response `{name}`: {e}")));
+    let own = results.iter().flat_map(|(_, found)| found).find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
+    let unit = shown.map_or(own, String::as_str);
+    let target = parse(unit)?;
+    let mut values = Vec::with_capacity(results.len());
+    for (failure, found) in results {
+        let value = found.iter().find(|(n, _, _)| *n == name);
+        values.push(match value {
+            Some((_, value, from)) if failure.is_empty() => {
+                let from = parse(from)?;
+                if from.dimension != target.dimension {
+                    let message = format!("response `{name}` comes in `{own}` and cannot be shown in `{unit}`");
+                    return Err(StageError::new(message).hint("mend the unit of [response] in the workflow"));
+                }
+                value * (from.factor / target.factor)
+            }
+            Some(_) | None => f64::NAN,
+        });
+    }
+    Ok(table.reals_column(name, unit, "", values))
+}
+
+/// A `run` artifact's table of responses, in SI units.
+pub fn response_table(responses: &[(&str, f64, &str)]) -> Table {
+    let texts = |pick: fn(&(&str, f64, &str)) -> String| responses.iter().map(pick).collect();
+    Table { about: "what the run gave".to_owned(), columns: Vec::new() }
+        .texts_column("response", "name", texts(|(name, _, _)| (*name).to_owned()))
+        .reals_column("value", "", "in the unit beside it", responses.iter().map(|(_, value, _)| *value).collect())
+        .texts_column("unit", "unit of the value", texts(|(_, _, unit)| (*unit).to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::Factor;
+
+    fn context() -> Context {
+        let mut context = Context::default();
+        context
+            .factors
+            .insert("Ec".into(), Factor { sets: "mortar.Ec".into(), unit: "GPa".into(), ..Factor::default() });
+        context.factors.insert("null".into(), Factor::default());
+        context
+    }
+
+    fn design(moduli: &[f64]) -> Artifact {
+        let types = moduli.iter().map(|_| "cube".to_owned()).collect();
+        let table =
+            Table::default().texts_column("point_type", "", types).reals_column("Ec", "GPa", "", moduli.to_vec());
+        Artifact::new("design", 1, Group::new().with("design", Node::Table(table)))
+    }
+
+    #[test]
+    fn equal_rows_are_replicates_by_occurrence() {
+        let found = rows(&design(&[10.0, 20.0, 10.0]), &context()).unwrap();
+        let numbers: Vec<u64> = found.iter().map(|row| row.replicate).collect();
+        assert_eq!(numbers, [1, 1, 2]);
+    }
+
+    #[test]
+    fn a_point_sets_parameters_in_si_units() {
+        let base = BTreeMap::from([("mortar.Ec".to_owned(), 1.0), ("mortar.mu".to_owned(), 0.5)]);
+        let point = Point::from([("Ec".to_owned(), 16.0), ("null".to_owned(), 2.0)]);
+        let set = apply(&base, &point, &context()).unwrap();
+        assert_eq!(set.into_values().collect::<Vec<_>>(), [1.6e10, 0.5]);
+        let error = apply(&BTreeMap::new(), &point, &context()).unwrap_err();
+        assert!(error.message.contains("mortar.Ec"));
+    }
+
+    #[test]
+    fn gathering_converts_units_and_keeps_failures() {
+        let run = |ucs: f64, failure: &str| {
+            let group = Group::new()
+                .with("failure", Node::Text(failure.to_owned()))
+                .with("responses", Node::Table(response_table(&[("UCS", ucs, "Pa")])));
+            Arc::new(Artifact::new("run", 1, group))
+        };
+        let inputs = vec![
+            ("design".to_owned(), Arc::new(design(&[10.0, 20.0]))),
+            ("run".to_owned(), run(3e7, "")),
+            ("run".to_owned(), run(1e6, "no peak")),
+        ];
+        let params = json!({ "factors": ["Ec"], "units": { "UCS": "MPa" } });
+        let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: crate::stage::Progress| ());
+        let job = Job {
+            params: &params,
+            seed: None,
+            inputs: &inputs,
+            files: &[],
+            threads: 1,
+            time_limit: None,
+            say: &say,
+            stop: &stop,
+        };
+        let results = gathered(&job).unwrap();
+        let strengths = results.table("runs").unwrap().reals("UCS").unwrap();
+        assert!((strengths[0] - 30.0).abs() < 1e-12 && strengths[1].is_nan());
+    }
+}

@@ -1,0 +1,181 @@
+//! The unit of work, and what runs it.
+
+use super::StageError;
+use crate::artifact::{Artifact, ContentHash};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// One unit of work: everything that decides its result, and nothing else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Task {
+    /// Name of its [`Work`].
+    pub work: &'static str,
+    /// Parameters it really uses, SI numbers; read back by [`Job::params`].
+    pub params: Value,
+    /// Its seed, when it draws random numbers.
+    pub seed: Option<u64>,
+    /// Named inputs in a fixed order.
+    pub inputs: Vec<(String, Source)>,
+    /// Files it reads, known by content.
+    pub files: Vec<FileInput>,
+    /// Which design row (from 0) it computes; for people only, not part of its key.
+    pub row: Option<usize>,
+    /// Seconds after which an external program is ended; not part of its key.
+    pub time_limit: Option<f64>,
+}
+
+impl Task {
+    /// A task without inputs.
+    pub fn new(work: &'static str, params: Value) -> Self {
+        Self { work, params, seed: None, inputs: Vec::new(), files: Vec::new(), row: None, time_limit: None }
+    }
+
+    /// Gives it a seed.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.seed = Some(seed);
+        self
+    }
+
+    /// Adds an artifact that is known already.
+    #[must_use]
+    pub fn input(mut self, name: &str, content: ContentHash) -> Self {
+        self.inputs.push((name.to_owned(), Source::Content(content)));
+        self
+    }
+
+    /// Adds the result of another task.
+    #[must_use]
+    pub fn after(mut self, name: &str, task: Arc<Task>) -> Self {
+        self.inputs.push((name.to_owned(), Source::Task(task)));
+        self
+    }
+
+    /// Says which design row it computes.
+    #[must_use]
+    pub fn row(mut self, row: usize) -> Self {
+        self.row = Some(row);
+        self
+    }
+}
+
+/// Where an input comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// An artifact that is known already.
+    Content(ContentHash),
+    /// The result of another task.
+    Task(Arc<Task>),
+}
+
+/// A file that a task reads: the content is in its key, the path is not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileInput {
+    /// Its name in the task.
+    pub name: String,
+    /// Where it lies now.
+    pub path: PathBuf,
+    /// blake3 of its bytes; whoever reads it checks this.
+    pub digest: [u8; 32],
+}
+
+/// What a stage wants next.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// The result of this task is the stage's result.
+    Finish(Task),
+    /// Outcomes it must see first.
+    Ask(Vec<Task>),
+}
+
+/// A function that tasks name.
+#[derive(Clone, Copy)]
+pub struct Work {
+    /// Its name, unique among all works.
+    pub name: &'static str,
+    /// Version of its results.
+    pub version: u32,
+    /// Computes the artifact of one task.
+    pub run: fn(&Job) -> Result<Artifact, Failure>,
+}
+
+/// A task at the moment it runs: its inputs are there.
+pub struct Job<'a> {
+    /// Parameters of the task.
+    pub params: &'a Value,
+    /// Its seed.
+    pub seed: Option<u64>,
+    /// Its inputs by name, in order.
+    pub inputs: &'a [(String, Arc<Artifact>)],
+    /// Files it reads.
+    pub files: &'a [FileInput],
+    /// Threads it may use; results do not depend on it.
+    pub threads: usize,
+    /// Seconds after which an external program is ended.
+    pub time_limit: Option<f64>,
+    /// Takes reports of progress.
+    pub say: &'a (dyn Fn(Progress) + Sync),
+    /// Set when the run is interrupted.
+    pub stop: &'a AtomicBool,
+}
+
+impl Job<'_> {
+    /// The parameters as the type they were made from.
+    ///
+    /// # Errors
+    /// They do not fit, which happens when a task text was written by hand.
+    pub fn params<P: DeserializeOwned>(&self) -> Result<P, Failure> {
+        P::deserialize(self.params).map_err(|e| StageError::new(format!("parameters of the task: {e}")).into())
+    }
+
+    /// The input called `name`.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn input(&self, name: &str) -> Result<&Arc<Artifact>, Failure> {
+        let found = self.inputs.iter().find(|(n, _)| n == name);
+        found.map(|(_, artifact)| artifact).ok_or_else(|| StageError::new(format!("no input `{name}`")).into())
+    }
+
+    /// The bytes of the file called `name`, checked against its digest.
+    ///
+    /// # Errors
+    /// It cannot be read or has changed since the plan was made.
+    pub fn file(&self, name: &str) -> Result<Vec<u8>, Failure> {
+        let fail = |message: String| Failure::from(StageError::new(message));
+        let file = self.files.iter().find(|f| f.name == name).ok_or_else(|| fail(format!("no file `{name}`")))?;
+        let bytes = std::fs::read(&file.path).map_err(|e| fail(format!("{}: {e}", file.path.display())))?;
+        if *blake3::hash(&bytes).as_bytes() != file.digest {
+            return Err(fail(format!("{} changed while the campaign ran", file.path.display())));
+        }
+        Ok(bytes)
+    }
+
+    /// Whether the run is being interrupted; long work asks now and then and returns [`Failure::Stopped`].
+    pub fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// Where a task stands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Progress {
+    /// Part done, 0 to 1, when it can be told.
+    pub fraction: Option<f64>,
+    /// A few words, such as `ε 0.12 %, σ 23.1 MPa`.
+    pub note: String,
+}
+
+/// Why a task has no artifact.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// The run was interrupted; the task can be run again.
+    #[error("interrupted")]
+    Stopped,
+    /// It cannot be done.
+    #[error(transparent)]
+    Failed(#[from] StageError),
+}

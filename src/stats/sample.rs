@@ -1,0 +1,183 @@
+//! The table that is analysed: factors, responses, weights, and which rows are missing.
+
+use super::error::{Fault, Faults};
+
+/// A column that was set by the experimenter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    /// Its name, as in the table.
+    pub name: String,
+    /// One value per row, in the unit of the table.
+    pub values: Vec<f64>,
+    /// The declared levels, ascending; empty when whatever occurs is a level.
+    pub levels: Vec<f64>,
+    /// The values that stand for −1 and +1 in coded units; `None` takes the least and greatest that occur.
+    pub coding: Option<(f64, f64)>,
+}
+
+impl Factor {
+    /// A factor whose levels are the values that occur.
+    pub fn new(name: &str, values: Vec<f64>) -> Self {
+        Self { name: name.into(), values, levels: Vec::new(), coding: None }
+    }
+
+    /// The levels that occur in `rows`, ascending.
+    pub(crate) fn occurring(&self, rows: &[usize]) -> Vec<f64> {
+        let mut found: Vec<f64> = Vec::new();
+        for &row in rows {
+            let value = self.values[row] + 0.0;
+            if let Err(place) = found.binary_search_by(|level| level.total_cmp(&value)) {
+                found.insert(place, value);
+            }
+        }
+        found
+    }
+
+    /// The declared levels, or those that occur.
+    pub(crate) fn known_levels(&self, rows: &[usize]) -> Vec<f64> {
+        if self.levels.is_empty() { self.occurring(rows) } else { self.levels.clone() }
+    }
+}
+
+/// A column that was measured. `None` is a run that failed or was not done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// Its name, as in the table.
+    pub name: String,
+    /// One value per row.
+    pub values: Vec<Option<f64>>,
+}
+
+impl Response {
+    /// A response without missing rows.
+    pub fn new(name: &str, values: Vec<f64>) -> Self {
+        Self { name: name.into(), values: values.into_iter().map(Some).collect() }
+    }
+}
+
+/// A table of runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// What was set.
+    pub factors: Vec<Factor>,
+    /// What was measured.
+    pub responses: Vec<Response>,
+    /// Weight of each row: the number of replicates that a row is the mean of. `None` is 1 everywhere.
+    pub weights: Option<Vec<f64>>,
+}
+
+/// The rows in which a response has a value, and how many have none.
+pub(crate) struct Usable {
+    /// Row numbers from 0, ascending.
+    pub rows: Vec<usize>,
+    /// The values in those rows.
+    pub values: Vec<f64>,
+    /// How many rows have no value.
+    pub missing: usize,
+}
+
+impl Sample {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.factors.first().map_or_else(|| self.responses.first().map_or(0, |r| r.values.len()), |f| f.values.len())
+    }
+
+    /// The factor of that name.
+    ///
+    /// # Errors
+    /// [`Fault::Unknown`] with the names there are.
+    pub fn factor(&self, name: &str) -> Result<usize, Fault> {
+        self.factors.iter().position(|f| f.name == name).ok_or_else(|| Fault::Unknown {
+            what: "factor",
+            name: name.into(),
+            known: self.factors.iter().map(|f| f.name.clone()).collect(),
+        })
+    }
+
+    /// The response of that name.
+    ///
+    /// # Errors
+    /// [`Fault::Unknown`] with the names there are.
+    pub fn response(&self, name: &str) -> Result<usize, Fault> {
+        self.responses.iter().position(|r| r.name == name).ok_or_else(|| Fault::Unknown {
+            what: "response",
+            name: name.into(),
+            known: self.responses.iter().map(|r| r.name.clone()).collect(),
+        })
+    }
+
+    /// Checks names, lengths, finiteness, declared levels and weights.
+    ///
+    /// # Errors
+    /// Every fault of the table.
+    pub fn check(&self) -> Result<(), Faults> {
+        let mut faults = self.doubled_names();
+        let rows = self.rows();
+        let lengths = self.factors.iter().map(|f| (f.name.as_str(), f.values.len()));
+        let lengths = lengths.chain(self.responses.iter().map(|r| (r.name.as_str(), r.values.len())));
+        let lengths = lengths.chain(self.weights.iter().map(|w| ("weights", w.len())));
+        for (column, found) in lengths {
+            if found != rows {
+                faults.push(Fault::Length { column: column.into(), found, expected: rows });
+            }
+        }
+        for factor in &self.factors {
+            faults.extend(factor.values.iter().enumerate().filter_map(|(i, &value)| bad_setting(factor, i, value)));
+        }
+        for response in &self.responses {
+            faults.extend(response.values.iter().enumerate().filter_map(|(i, value)| {
+                let value = value.filter(|v| !v.is_finite())?;
+                Some(Fault::NotFinite { column: response.name.clone(), row: i + 1, value })
+            }));
+        }
+        for (i, &value) in self.weights.iter().flatten().enumerate() {
+            if !(value.is_finite() && value > 0.0) {
+                faults.push(Fault::Weight { row: i + 1, value });
+            }
+        }
+        Faults::none_in(faults)
+    }
+
+    fn doubled_names(&self) -> Vec<Fault> {
+        let names: Vec<&String> =
+            self.factors.iter().map(|f| &f.name).chain(self.responses.iter().map(|r| &r.name)).collect();
+        let doubled = |i: usize| names[..i].contains(&names[i]);
+        let found = (0..names.len()).filter(|&i| doubled(i));
+        found.map(|i| Fault::DuplicateName { name: names[i].clone() }).collect()
+    }
+
+    /// The rows in which the response has a value.
+    pub(crate) fn usable(&self, response: usize) -> Usable {
+        let all = &self.responses[response].values;
+        let rows: Vec<usize> = (0..all.len()).filter(|&i| all[i].is_some()).collect();
+        let values = all.iter().flatten().copied().collect();
+        Usable { missing: all.len() - rows.len(), rows, values }
+    }
+
+    /// A constant response or a table without rows.
+    pub(crate) fn check_response(&self, response: usize, usable: &Usable, terms: usize) -> Option<Fault> {
+        let name = self.responses[response].name.clone();
+        let (rows, missing) = (usable.rows.len(), usable.missing);
+        if rows < terms.max(1) {
+            return Some(Fault::TooFewRows { response: name, rows, missing, terms });
+        }
+        let value = usable.values[0];
+        let constant = usable.values.iter().all(|&v| v == value);
+        constant.then_some(Fault::ConstantResponse { response: name, value, rows })
+    }
+
+    /// The weight of a row.
+    pub(crate) fn weight(&self, row: usize) -> f64 {
+        self.weights.as_ref().map_or(1.0, |w| w[row])
+    }
+}
+
+/// A factor's value that is not finite or not one of its declared levels.
+fn bad_setting(factor: &Factor, index: usize, value: f64) -> Option<Fault> {
+    let row = index + 1;
+    if !value.is_finite() {
+        return Some(Fault::NotFinite { column: factor.name.clone(), row, value });
+    }
+    let known = factor.levels.is_empty() || factor.levels.contains(&value);
+    (!known).then(|| Fault::UndeclaredLevel { factor: factor.name.clone(), row, value, levels: factor.levels.clone() })
+}

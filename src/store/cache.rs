@@ -1,0 +1,42 @@
+//! Artifacts lately read or written, so that a result with many readers is read once.
+
+use crate::artifact::{Artifact, ContentHash};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Memory for artifacts, bytes.
+const ROOM: usize = 64 << 20;
+
+/// Two generations: what is used moves to the young one; when that is full it becomes the old one, and the old goes.
+#[derive(Default)]
+pub(super) struct Cache {
+    young: HashMap<ContentHash, Arc<Artifact>>,
+    old: HashMap<ContentHash, Arc<Artifact>>,
+    young_bytes: usize,
+}
+
+impl Cache {
+    pub(super) fn get(&mut self, content: &ContentHash) -> Option<Arc<Artifact>> {
+        if let Some(found) = self.young.get(content) {
+            return Some(found.clone());
+        }
+        let found = self.old.remove(content)?;
+        self.put(*content, found.clone());
+        Some(found)
+    }
+
+    pub(super) fn put(&mut self, content: ContentHash, artifact: Arc<Artifact>) {
+        // What takes more than a generation would push out everything else.
+        let bytes = artifact.bytes();
+        if bytes > ROOM / 2 {
+            return;
+        }
+        if self.young_bytes + bytes > ROOM / 2 {
+            self.old = std::mem::take(&mut self.young);
+            self.young_bytes = 0;
+        }
+        if self.young.insert(content, artifact).is_none() {
+            self.young_bytes += bytes;
+        }
+    }
+}

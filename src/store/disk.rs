@@ -1,0 +1,115 @@
+//! The few file operations of the store, with its rules: unique temporary name, check, rename; errors with their path.
+
+use super::StoreError;
+use std::fs::{self, File, Permissions};
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// Folder of a store on disk.
+#[derive(Clone, Debug)]
+pub(super) struct Disk {
+    pub(super) root: PathBuf,
+}
+
+impl Disk {
+    /// An error of the operating system, sorted by its remedy.
+    pub(super) fn fail(&self, doing: &'static str, path: &Path, source: std::io::Error) -> StoreError {
+        StoreError::io(doing, path, &self.root, source)
+    }
+
+    /// Makes a folder and those above it inside the store; a store that has vanished is not made anew.
+    pub(super) fn make_dir(&self, path: &Path) -> Result<(), StoreError> {
+        match (fs::create_dir(path), path.parent()) {
+            (Ok(()), _) => Ok(()),
+            (Err(error), _) if error.kind() == ErrorKind::AlreadyExists => Ok(()),
+            (Err(error), Some(parent)) if error.kind() == ErrorKind::NotFound && parent != self.root => {
+                self.make_dir(parent)?;
+                fs::create_dir(path).or_else(|error| match error.kind() {
+                    ErrorKind::AlreadyExists => Ok(()),
+                    _ => Err(self.fail("make the folder", path, error)),
+                })
+            }
+            (Err(error), _) => Err(self.fail("make the folder", path, error)),
+        }
+    }
+
+    /// The bytes of a file, or nothing when there is no such file.
+    pub(super) fn read(&self, path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
+        match fs::read(path) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(error) if error.kind() == ErrorKind::NotFound && self.root.is_dir() => Ok(None),
+            Err(error) => Err(self.fail("read", path, error)),
+        }
+    }
+
+    /// Writes a new file under a temporary name beside `path`, reads it back, and renames it. Returns false, and
+    /// leaves everything as it is, when `path` exists already.
+    pub(super) fn write_new(&self, path: &Path, bytes: &[u8], durable: bool) -> Result<bool, StoreError> {
+        let temporary = self.write_temporary(path, bytes, durable)?;
+        match temporary.persist_noclobber(path) {
+            Ok(()) => {}
+            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => return Ok(false),
+            Err(error) => return Err(self.fail("rename to", path, error.error)),
+        }
+        if durable && let Some(parent) = path.parent() {
+            self.sync_dir(parent)?;
+        }
+        Ok(true)
+    }
+
+    /// As [`Disk::write_new`], but puts the file in place of an older one: for notes that can be made anew, not objects.
+    pub(super) fn replace(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+        let temporary = self.write_temporary(path, bytes, false)?;
+        temporary.persist(path).map_err(|error| self.fail("rename to", path, error.error))
+    }
+
+    fn write_temporary(&self, path: &Path, bytes: &[u8], durable: bool) -> Result<tempfile::TempPath, StoreError> {
+        let parent = path.parent().unwrap_or(&self.root);
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(TEMPORARY);
+        if let Some(mode) = mode() {
+            builder.permissions(mode);
+        }
+        let file = match builder.tempfile_in(parent) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                self.make_dir(parent)?;
+                builder.tempfile_in(parent)
+            }
+            other => other,
+        };
+        let mut file = file.map_err(|error| self.fail("create a file in", parent, error))?;
+        file.write_all(bytes).map_err(|error| self.fail("write", path, error))?;
+        if durable {
+            file.as_file().sync_all().map_err(|error| self.fail("write", path, error))?;
+        }
+        let temporary = file.into_temp_path();
+        // The file is closed: what a network file system refuses only then is noticed here, before it has a name.
+        let mut back = Vec::with_capacity(bytes.len() + 1);
+        let read = File::open(&temporary).and_then(|mut file| file.read_to_end(&mut back));
+        read.map_err(|error| self.fail("read back", path, error))?;
+        if back != bytes {
+            return Err(self.fail("write", path, ErrorKind::StorageFull.into()));
+        }
+        Ok(temporary)
+    }
+
+    /// Makes the names in a folder survive a power cut.
+    pub(super) fn sync_dir(&self, path: &Path) -> Result<(), StoreError> {
+        File::open(path).and_then(|dir| dir.sync_all()).map_err(|error| self.fail("sync", path, error))
+    }
+}
+
+/// How temporary names begin; what a killed process leaves behind is removed by gc.
+pub(super) const TEMPORARY: &str = ".writing-";
+
+/// Files of a store can be read by whom the user's umask admits; tempfile alone would keep them private.
+#[cfg(unix)]
+fn mode() -> Option<Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(Permissions::from_mode(0o444))
+}
+
+#[cfg(not(unix))]
+fn mode() -> Option<Permissions> {
+    None
+}

@@ -1,0 +1,132 @@
+//! What can go wrong with a store, each fault with its path and its remedy.
+
+use super::hdf5::Hdf5Error;
+use crate::artifact::ContentHash;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// A fault of the store or of the disk it lies on.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// No space left, or the quota is used up.
+    #[error(
+        "the disk is full: could not {doing} {}; make room (`flow store gc` removes what no workflow needs) and run \
+         again, what is finished is kept", path.display()
+    )]
+    Full {
+        /// What was being done.
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file system is mounted read-only.
+    #[error(
+        "the store is read-only: could not {doing} {}; results in it can be read, for new ones name another store \
+         with `--store`", path.display()
+    )]
+    ReadOnly {
+        /// What was being done.
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The user may not do that here.
+    #[error(
+        "no permission to {doing} {}; have its owner give it, or name another store with `--store`", path.display()
+    )]
+    Denied {
+        /// What was being done.
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The folder is not there any more.
+    #[error("the store {} has vanished; bring it back (is its disk still mounted?) and run again", root.display())]
+    Vanished {
+        /// The store.
+        root: PathBuf,
+    },
+    /// The path given as a store is something else.
+    #[error("{} is not a store: {why}; name a folder with `--store`", path.display())]
+    NotAStore {
+        /// The path.
+        path: PathBuf,
+        /// What stands in the way.
+        why: String,
+    },
+    /// Another process uses the store, so nothing may be removed from it.
+    #[error("the store {} is in use by another flow process; wait until it has ended and run again", root.display())]
+    InUse {
+        /// The store.
+        root: PathBuf,
+    },
+    /// Any other fault of the operating system.
+    #[error("could not {doing} {}: {source}", path.display())]
+    Io {
+        /// What was being done.
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// An object is not what was written; it counts as missing from now on.
+    #[error("{fault}")]
+    Damaged {
+        /// What was found.
+        fault: Damage,
+    },
+    /// The store has no object of this content.
+    #[error("the store has no object {content}; run again to compute it")]
+    Missing {
+        /// The content asked for.
+        content: ContentHash,
+    },
+    /// A result that no file can hold.
+    #[error("the result cannot be stored: {0}")]
+    Unstorable(Hdf5Error),
+    /// An object of a later version of flow.
+    #[error("{} was written by a newer flow: {why}", path.display())]
+    Newer {
+        /// The object.
+        path: PathBuf,
+        /// What the reader says.
+        why: Hdf5Error,
+    },
+}
+
+/// A file of the store that is not what was written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{} is damaged: {why}; {}; the next run computes it again", path.display(),
+    aside.as_ref().map_or("it could not be set aside".to_owned(), |p| format!("it was set aside as {}", p.display()))
+)]
+pub struct Damage {
+    /// The object.
+    pub path: PathBuf,
+    /// How it differs from what was written.
+    pub why: String,
+    /// Where it was moved; nothing when the store cannot be written.
+    pub aside: Option<PathBuf>,
+}
+
+impl StoreError {
+    /// Sorts an error of the operating system by its remedy; `root` is the store's folder.
+    pub(super) fn io(doing: &'static str, path: &Path, root: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => Self::Full { doing, path },
+            ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { doing, path },
+            ErrorKind::PermissionDenied => Self::Denied { doing, path },
+            ErrorKind::NotFound | ErrorKind::NotADirectory if !root.is_dir() => {
+                Self::Vanished { root: root.to_owned() }
+            }
+            _ => Self::Io { doing, path, source },
+        }
+    }
+
+    /// Whether the result asked for has to be computed again, rather than the store mended.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::Missing { .. } | Self::Damaged { .. })
+    }
+}

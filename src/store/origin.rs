@@ -1,0 +1,38 @@
+//! Where results come from: machine, version, commit.
+
+use serde::{Deserialize, Serialize};
+
+/// Where and by what results were computed; kept with them, and never part of a key or a result.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Origin {
+    /// Name of the machine.
+    pub machine: String,
+    /// Version of flow.
+    pub version: String,
+    /// Git commit of the folder of the workflow, `""` when it is not known.
+    pub commit: String,
+}
+
+/// Longest of the texts, bytes: together they fit the head of a journal segment.
+const LONGEST: usize = 100;
+
+impl Origin {
+    /// This machine and this version, with no commit.
+    pub fn here() -> Self {
+        let machine = ["/proc/sys/kernel/hostname", "/etc/hostname"].iter().find_map(|file| {
+            let name = std::fs::read_to_string(file).ok()?.trim().to_owned();
+            (!name.is_empty()).then_some(name)
+        });
+        let machine = machine.or_else(|| std::env::var("HOSTNAME").ok()).unwrap_or_else(|| "unknown".to_owned());
+        Self { machine, version: env!("CARGO_PKG_VERSION").to_owned(), commit: String::new() }
+    }
+
+    /// With every text short enough for the journal.
+    pub(super) fn shortened(&self) -> Self {
+        let short = |text: &str| {
+            let plain = text.chars().filter(|c| c.is_ascii_graphic() && !matches!(c, '"' | '\\')).take(LONGEST);
+            plain.collect::<String>()
+        };
+        Self { machine: short(&self.machine), version: short(&self.version), commit: short(&self.commit) }
+    }
+}

@@ -1,0 +1,59 @@
+use super::*;
+use crate::artifact::{Artifact, Group, Node, Table};
+
+fn result(value: f64) -> Artifact {
+    let table = Table::default().reals_column("strength", "Pa", "peak stress", vec![value, -0.0, f64::NAN]);
+    Artifact::new("table", 1, Group::new().with("table", Node::Table(table)))
+}
+
+fn timing(seconds: f64) -> Timing {
+    Timing { started: SystemTime::now(), seconds }
+}
+
+#[test]
+fn what_was_put_is_found_by_the_next_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("store");
+    let store = Store::open(&root).unwrap();
+    let (record, stored) = store.put("kind = a", result(1.0), &timing(0.0)).unwrap();
+    assert_eq!(store.find(&Key::of("kind = a")).unwrap(), Some(record.clone()));
+
+    let next = Store::open(&root).unwrap();
+    assert_eq!(next.find(&Key::of("kind = a")).unwrap(), Some(record.clone()));
+    assert_eq!(next.find(&Key::of("kind = b")).unwrap(), None);
+    assert_eq!(next.get(&record.content).unwrap(), stored);
+    assert_eq!(next.task_text(&record).unwrap(), "kind = a");
+    assert_eq!(record.content, result(1.0).content_hash());
+    assert_eq!(std::fs::read_to_string(root.join(".gitignore")).unwrap(), "*\n");
+}
+
+#[test]
+fn an_artifact_comes_back_with_the_bits_it_was_handed_out_with() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open(folder.path()).unwrap();
+    let (record, handed) = store.put("t", result(-0.0), &timing(0.2)).unwrap();
+    let read = Store::open(folder.path()).unwrap().get(&record.content).unwrap();
+    let bits = |artifact: &Artifact| -> Vec<u64> {
+        artifact.table("table").unwrap().reals("strength").unwrap().iter().map(|v| v.to_bits()).collect()
+    };
+    assert_eq!(bits(&handed), bits(&read));
+    assert_eq!(bits(&read)[0], 0, "a zero with a sign would let equal inputs give different results");
+}
+
+#[test]
+fn one_of_two_claims_waits() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) = (Store::open(folder.path()).unwrap(), Store::open(folder.path()).unwrap());
+    let key = Key::of("t");
+    let Claim::Mine(guard) = first.claim(&key).unwrap() else { panic!("nobody else has it") };
+    let Claim::Theirs(waiting) = second.claim(&key).unwrap() else { panic!("the first has it") };
+    assert_eq!(waiting.holder.process, std::process::id());
+    assert!(!waiting.is_over());
+    assert!(!waiting.wait(|| true));
+    let (record, _) = first.put("t", result(2.0), &timing(0.0)).unwrap();
+    drop(guard);
+    assert!(waiting.wait(|| false));
+    let Claim::Done(found) = second.claim(&key).unwrap() else { panic!("it is finished") };
+    assert_eq!(found, record);
+    assert_eq!(std::fs::read_dir(folder.path().join("locks")).unwrap().count(), 0);
+}

@@ -1,0 +1,335 @@
+//! Physical quantities as people write them: `"16 GPa"`, `"0.5 mm"`, `"2650 kg/m^3"`. SI inside.
+//!
+//! A unit is a product of powers of the symbols below, with SI prefixes where they are usual. A [`Quantity`] carries
+//! its dimension in its type, so a length cannot be read where a pressure is wanted; it is read from text only, and
+//! a bare number is refused with the right form.
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+/// Exponents of metre, kilogram and second. An angle is a pure number (radians).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension {
+    /// Exponent of the metre.
+    pub length: i8,
+    /// Exponent of the kilogram.
+    pub mass: i8,
+    /// Exponent of the second.
+    pub time: i8,
+}
+
+impl Dimension {
+    /// A pure number.
+    pub const NONE: Self = Self::new(0, 0, 0);
+
+    /// Exponents of metre, kilogram, second.
+    pub const fn new(length: i8, mass: i8, time: i8) -> Self {
+        Self { length, mass, time }
+    }
+
+    fn times(self, other: Self, power: i8) -> Self {
+        Self::new(self.length + power * other.length, self.mass + power * other.mass, self.time + power * other.time)
+    }
+}
+
+/// A unit: how many SI units it is, and of what dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// SI units in one of this unit.
+    pub factor: f64,
+    /// Its dimension.
+    pub dimension: Dimension,
+}
+
+/// What is wrong with a quantity's text.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UnitError {
+    /// The text does not begin with a number.
+    #[error("`{0}` does not begin with a number; write for example \"{1}\"")]
+    NoNumber(String, &'static str),
+    /// The number is infinite or not a number.
+    #[error("`{0}` is not a finite number")]
+    NotFinite(String),
+    /// A number without a unit.
+    #[error("`{0}` needs a unit; write for example \"{1}\"")]
+    NoUnit(String, &'static str),
+    /// A symbol that is not known.
+    #[error("`{0}` is not a unit that flow knows; known are {1}, with the prefixes G M k c m µ n where usual")]
+    Unknown(String, String),
+    /// A unit of another kind of quantity.
+    #[error("`{found}` is not a unit of {wanted}; write for example \"{example}\"")]
+    OtherKind {
+        /// The unit as written.
+        found: String,
+        /// The quantity that is wanted, such as `length`.
+        wanted: &'static str,
+        /// The right form.
+        example: &'static str,
+    },
+}
+
+/// Symbol, SI factor, dimension, and whether SI prefixes are usual on it.
+const SYMBOLS: &[(&str, f64, Dimension, bool)] = &[
+    ("m", 1.0, Dimension::new(1, 0, 0), true),
+    ("g", 1e-3, Dimension::new(0, 1, 0), true),
+    ("t", 1e3, Dimension::new(0, 1, 0), false),
+    ("s", 1.0, Dimension::new(0, 0, 1), true),
+    ("min", 60.0, Dimension::new(0, 0, 1), false),
+    ("h", 3600.0, Dimension::new(0, 0, 1), false),
+    ("Hz", 1.0, Dimension::new(0, 0, -1), true),
+    ("N", 1.0, Dimension::new(1, 1, -2), true),
+    ("Pa", 1.0, Dimension::new(-1, 1, -2), true),
+    ("J", 1.0, Dimension::new(2, 1, -2), true),
+    ("W", 1.0, Dimension::new(2, 1, -3), true),
+    ("rad", 1.0, Dimension::NONE, false),
+    ("deg", std::f64::consts::PI / 180.0, Dimension::NONE, false),
+    ("°", std::f64::consts::PI / 180.0, Dimension::NONE, false),
+    ("%", 1e-2, Dimension::NONE, false),
+    ("1", 1.0, Dimension::NONE, false),
+];
+
+const PREFIXES: &[(&str, f64)] =
+    &[("G", 1e9), ("M", 1e6), ("k", 1e3), ("c", 1e-2), ("m", 1e-3), ("µ", 1e-6), ("u", 1e-6), ("n", 1e-9)];
+
+impl Unit {
+    /// Reads a unit such as `GPa`, `m/s` or `kg/m^3`; the empty text is the pure number.
+    ///
+    /// # Errors
+    /// The symbol that is not known.
+    pub fn parse(text: &str) -> Result<Self, UnitError> {
+        let mut unit = Self { factor: 1.0, dimension: Dimension::NONE };
+        for (i, part) in text.split('/').enumerate() {
+            for piece in part.split(['*', '·', ' ']).filter(|piece| !piece.trim().is_empty()) {
+                let (symbol, power) = split_power(piece.trim());
+                let one = symbol_unit(symbol).ok_or_else(|| UnitError::Unknown(symbol.to_owned(), known_symbols()))?;
+                let power = if i == 0 { power } else { -power };
+                unit.factor *= one.factor.powi(i32::from(power));
+                unit.dimension = unit.dimension.times(one.dimension, power);
+            }
+        }
+        Ok(unit)
+    }
+}
+
+fn split_power(piece: &str) -> (&str, i8) {
+    if let Some((symbol, power)) = piece.split_once('^') {
+        return (symbol, power.parse().unwrap_or(0));
+    }
+    match piece.strip_suffix('²') {
+        Some(symbol) => (symbol, 2),
+        None => piece.strip_suffix('³').map_or((piece, 1), |symbol| (symbol, 3)),
+    }
+}
+
+fn symbol_unit(symbol: &str) -> Option<Unit> {
+    let plain = |symbol: &str, prefixed: bool| {
+        let (_, factor, dimension, _) = SYMBOLS.iter().find(|s| s.0 == symbol && (!prefixed || s.3))?;
+        Some(Unit { factor: *factor, dimension: *dimension })
+    };
+    plain(symbol, false).or_else(|| {
+        PREFIXES.iter().find_map(|(prefix, scale)| {
+            let unit = plain(symbol.strip_prefix(prefix)?, true)?;
+            Some(Unit { factor: unit.factor * scale, ..unit })
+        })
+    })
+}
+
+fn known_symbols() -> String {
+    SYMBOLS.iter().map(|s| s.0).collect::<Vec<_>>().join(", ")
+}
+
+/// A kind of physical quantity.
+pub trait Kind {
+    /// Its dimension.
+    const DIMENSION: Dimension;
+    /// Its name in messages.
+    const NAME: &'static str;
+    /// The form in which a person writes it.
+    const EXAMPLE: &'static str;
+}
+
+/// A number of SI units of a kind of quantity.
+pub struct Quantity<K>(f64, PhantomData<K>);
+
+impl<K: Kind> Quantity<K> {
+    /// From a number of SI units.
+    pub const fn si(value: f64) -> Self {
+        Self(value, PhantomData)
+    }
+
+    /// The number of SI units.
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+
+    /// Reads `"16 GPa"`.
+    ///
+    /// # Errors
+    /// What is wrong with number or unit, with the right form.
+    pub fn parse(text: &str) -> Result<Self, UnitError> {
+        let text = text.trim();
+        let (value, rest) = finite(text, K::EXAMPLE)?;
+        if rest.is_empty() && K::DIMENSION != Dimension::NONE {
+            return Err(UnitError::NoUnit(text.to_owned(), K::EXAMPLE));
+        }
+        let unit = Unit::parse(rest)?;
+        if unit.dimension != K::DIMENSION {
+            return Err(UnitError::OtherKind { found: rest.to_owned(), wanted: K::NAME, example: K::EXAMPLE });
+        }
+        Ok(Self::si(value * unit.factor))
+    }
+}
+
+/// Reads a number with or without a unit of any kind: its SI value and dimension.
+///
+/// # Errors
+/// What is wrong with number or unit.
+pub fn parse_any(text: &str) -> Result<(f64, Dimension), UnitError> {
+    let (value, rest) = finite(text.trim(), "16 GPa")?;
+    let unit = Unit::parse(rest)?;
+    Ok((value * unit.factor, unit.dimension))
+}
+
+fn finite<'t>(text: &'t str, example: &'static str) -> Result<(f64, &'t str), UnitError> {
+    let (value, rest) = split_number(text).ok_or_else(|| UnitError::NoNumber(text.to_owned(), example))?;
+    if value.is_finite() { Ok((value, rest)) } else { Err(UnitError::NotFinite(text.to_owned())) }
+}
+
+/// The longest leading text that is a number, and what follows it.
+fn split_number(text: &str) -> Option<(f64, &str)> {
+    let numeric = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E' | '_');
+    let mut end = text.find(|c| !numeric(c)).unwrap_or(text.len());
+    while end > 0 {
+        if let Ok(value) = text[..end].replace('_', "").parse() {
+            return Some((value, text[end..].trim_start()));
+        }
+        end -= 1;
+    }
+    None
+}
+
+impl<K> Clone for Quantity<K> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<K> Copy for Quantity<K> {}
+impl<K> PartialEq for Quantity<K> {
+    fn eq(&self, other: &Self) -> bool {
+        self.0 == other.0
+    }
+}
+impl<K> PartialOrd for Quantity<K> {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        self.0.partial_cmp(&other.0)
+    }
+}
+impl<K> fmt::Debug for Quantity<K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// As the number of SI units.
+impl<K> Serialize for Quantity<K> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.0)
+    }
+}
+
+/// From text with its unit only: this is how a person writes it. Programs hand over plain SI numbers.
+impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor<K>(PhantomData<K>);
+        impl<K: Kind> de::Visitor<'_> for Visitor<K> {
+            type Value = Quantity<K>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "a {} with its unit, such as \"{}\"", K::NAME, K::EXAMPLE)
+            }
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Self::Value, E> {
+                Quantity::parse(text).map_err(E::custom)
+            }
+            /// A hole: the value was faulty and that is told already.
+            fn visit_unit<E: de::Error>(self) -> Result<Self::Value, E> {
+                Ok(Quantity::si(1.0))
+            }
+        }
+        deserializer.deserialize_any(Visitor(PhantomData))
+    }
+}
+
+impl<K: Kind> JsonSchema for Quantity<K> {
+    fn schema_name() -> Cow<'static, str> {
+        K::NAME.replace(' ', "_").into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "string",
+            "description": format!("A {} with its unit, such as \"{}\".", K::NAME, K::EXAMPLE),
+            "examples": [K::EXAMPLE],
+        })
+    }
+}
+
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $alias:ident, $marker:ident = ($l:literal, $m:literal, $t:literal), $name:literal, $example:literal;)*) => {$(
+        #[doc = concat!("Marker of [`", stringify!($alias), "`].")]
+        pub enum $marker {}
+        impl Kind for $marker {
+            const DIMENSION: Dimension = Dimension::new($l, $m, $t);
+            const NAME: &'static str = $name;
+            const EXAMPLE: &'static str = $example;
+        }
+        $(#[$doc])*
+        pub type $alias = Quantity<$marker>;
+    )*};
+}
+kinds! {
+    /// Metres.
+    Length, LengthKind = (1, 0, 0), "length", "0.5 mm";
+    /// Pascals: stress, strength, modulus.
+    Pressure, PressureKind = (-1, 1, -2), "stress or modulus", "16 GPa";
+    /// Metres per second.
+    Velocity, VelocityKind = (1, 0, -1), "velocity", "0.02 m/s";
+    /// Kilograms per cubic metre.
+    Density, DensityKind = (-3, 1, 0), "density", "2650 kg/m^3";
+    /// Metres per second squared.
+    Acceleration, AccelerationKind = (1, 0, -2), "acceleration", "9.81 m/s^2";
+    /// Seconds.
+    Time, TimeKind = (0, 0, 1), "time", "30 s";
+    /// Newtons.
+    Force, ForceKind = (1, 1, -2), "force", "10 kN";
+    /// Radians.
+    Angle, AngleKind = (0, 0, 0), "angle", "30 deg";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_products_of_powers() {
+        let factor = |text: &str| Unit::parse(text).unwrap().factor;
+        assert_eq!(factor("GPa"), 1e9);
+        assert_eq!(factor("kg/m^3"), 1.0);
+        assert_eq!(factor("g/cm^3"), 1e-3 / 0.01_f64.powi(3));
+        assert_eq!(factor("mm"), 1e-3);
+        assert_eq!(factor("N/mm²"), 1.0 / (1e-3_f64 * 1e-3));
+        assert_eq!(Unit::parse("N*m").unwrap().dimension, Unit::parse("J").unwrap().dimension);
+    }
+
+    #[test]
+    fn quantities_are_read_and_faults_name_the_right_form() {
+        assert_eq!(Pressure::parse("16 GPa").unwrap().get(), 1.6e10);
+        assert_eq!(Length::parse("1e-3m").unwrap().get(), 1e-3);
+        assert_eq!(Angle::parse("180 deg").unwrap().get(), std::f64::consts::PI);
+        let message = |r: Result<Length, UnitError>| r.unwrap_err().to_string();
+        assert_eq!(message(Length::parse("5")), "`5` needs a unit; write for example \"0.5 mm\"");
+        assert_eq!(message(Length::parse("5 GPa")), "`GPa` is not a unit of length; write for example \"0.5 mm\"");
+        assert!(message(Length::parse("5 ell")).starts_with("`ell` is not a unit that flow knows"));
+        assert!(message(Length::parse("wide")).contains("does not begin with a number"));
+    }
+}

@@ -1,0 +1,157 @@
+//! Sample data of every figure, made by formulas that look like the real thing.
+
+use flow::figure::bars::{Bar, RankedBars};
+use flow::figure::contour::Contour;
+use flow::figure::curve::{Curve, StressStrain};
+use flow::figure::effects::{FactorMeans, MainEffects};
+use flow::figure::{DOUBLE, Figure, Quantity, SINGLE, Style};
+use flow::math::random::Stream;
+
+/// Name, style and figure of each sample.
+pub(crate) fn all() -> Vec<(&'static str, Style, Box<dyn Figure>)> {
+    let (one, two) = (Style::wide(SINGLE), Style::wide(DOUBLE));
+    vec![
+        ("stress-strain", one.clone(), Box::new(stress_strain(1))),
+        ("stress-strain-3", one.clone(), Box::new(stress_strain(3))),
+        ("main-effects", two.clone(), Box::new(main_effects(true))),
+        ("range", one.clone(), Box::new(range())),
+        ("pareto", one.clone(), Box::new(pareto())),
+        ("contour", one.clone(), Box::new(contour())),
+    ]
+}
+
+fn factors() -> Vec<(Quantity, &'static str, [f64; 3])> {
+    let q = Quantity::new;
+    vec![
+        (q("Ec", "E_c", "GPa"), "mortar", [10.0, 20.0, 30.0]),
+        (q("kn_ks", "k_n/k_s", ""), "mortar", [1.0, 2.5, 4.0]),
+        (q("sigma_c", r"\bar\sigma_c", "MPa"), "mortar", [10.0, 20.0, 30.0]),
+        (q("tau_c", r"\bar\tau_c", "MPa"), "mortar", [10.0, 20.0, 30.0]),
+        (q("mu", r"\mu", ""), "mortar", [0.5, 1.0, 1.5]),
+        (q("Ecg", "(E_c)_g", "GPa"), "aggregate", [20.0, 30.0, 40.0]),
+        (q("kn_ks_g", "(k_n/k_s)_g", ""), "aggregate", [1.0, 2.5, 4.0]),
+        (q("mu_g", r"\mu_g", ""), "aggregate", [0.5, 1.0, 1.5]),
+        (q("Ecj", "(E_c)_j", "GPa"), "interface", [5.0, 10.0, 15.0]),
+        (q("kn_ks_j", "(k_n/k_s)_j", ""), "interface", [1.0, 2.5, 4.0]),
+        (q("sigma_cj", r"(\bar\sigma_c)_j", "MPa"), "interface", [5.0, 15.0, 25.0]),
+        (q("tau_cj", r"(\bar\tau_c)_j", "MPa"), "interface", [5.0, 15.0, 25.0]),
+        (q("mu_j", r"\mu_j", ""), "interface", [0.5, 1.0, 1.5]),
+    ]
+}
+
+fn stress_strain(n: usize) -> StressStrain {
+    let curve = |k: usize| {
+        let mut random = Stream::new(7, "curve", k as u64);
+        let modulus = 34.0 - 6.0 * k as f64;
+        let peak_strain = 1.45e-3 + 1e-4 * k as f64;
+        let points = 400;
+        let mut c = Curve { name: format!("Set {}", k + 1), modulus: Some(modulus), ..Curve::default() };
+        let (mut tensile, mut shear) = (Vec::new(), Vec::new());
+        for i in 0..=points {
+            let e = 2.4e-3 * i as f64 / points as f64;
+            let r = e / peak_strain;
+            let mut stress = if r < 1.0 { modulus * 1e3 * e * (1.0 - 0.18 * r.powi(5)) } else { 0.0 };
+            if r >= 1.0 {
+                let peak = modulus * 1e3 * peak_strain * 0.82;
+                stress = peak * (0.12 + 0.88 * (-9.0 * (r - 1.0).powf(1.15)).exp()) + 0.25 * random.normal();
+            }
+            c.axial.push(e);
+            c.lateral.push(-0.22 * e - 4e-4 * (r.powi(6)).min(2.0));
+            c.stress.push(stress.max(0.0));
+            let grow = 1.0 / (1.0 + (-(r - 1.02) * 22.0).exp());
+            tensile.push((1450.0 * grow + 60.0 * r.powi(4).min(3.0)).round());
+            shear.push((420.0 * grow + 15.0 * r.powi(4).min(3.0)).round());
+        }
+        if n > 1 {
+            c.lateral.clear();
+            c.modulus = None;
+        }
+        c.cracks = vec![("Tensile".into(), tensile), ("Shear".into(), shear)];
+        c
+    };
+    StressStrain { curves: (0..n).map(curve).collect() }
+}
+
+fn main_effects(published: bool) -> MainEffects {
+    let slopes = [0.3, -0.8, 9.3, 7.8, 2.0, 0.4, -0.5, 0.6, 0.9, -0.7, 1.4, 2.1, 0.5];
+    let grand = 38.6;
+    let mut random = Stream::new(3, "means", 0);
+    let factors = factors().into_iter().zip(slopes).map(|((factor, group, levels), s)| FactorMeans {
+        factor,
+        group: group.into(),
+        levels: levels.to_vec(),
+        means: vec![grand - s, grand + 0.12 * s + 0.3 * random.normal(), grand + 0.9 * s],
+        half_width: vec![1.6; 3],
+        published: if published {
+            (0..3).map(|i| grand + (i as f64 - 1.0) * s + 0.5 * random.normal()).collect()
+        } else {
+            vec![]
+        },
+    });
+    MainEffects {
+        response: Quantity::new("Peak strength", r"\sigma_u", "MPa"),
+        grand_mean: grand,
+        factors: factors.collect(),
+    }
+}
+
+fn range() -> RankedBars {
+    let values = [0.9, 1.6, 18.64, 15.59, 4.1, 1.2, 1.4, 1.1, 2.0, 1.5, 3.1, 4.4, 1.3];
+    let mut random = Stream::new(3, "range", 0);
+    let bars = factors().into_iter().zip(values).map(|((factor, group, _), value)| Bar {
+        factor,
+        group: group.into(),
+        value,
+        published: Some((value + 0.5 * random.normal()).max(0.1)),
+    });
+    RankedBars {
+        title: "Range analysis of peak strength".into(),
+        quantity: Quantity::new("Range of", r"\sigma_u", "MPa"),
+        bars: bars.collect(),
+        references: vec![("empty column".into(), 2.3)],
+    }
+}
+
+fn pareto() -> RankedBars {
+    let values = [("A", 11.4), ("B", 9.1), ("AB", 5.2), ("C", 3.3), ("AC", 1.6), ("BC", 1.2), ("ABC", 0.4)];
+    let bars = values.map(|(name, value)| Bar {
+        factor: Quantity::new(name, "", ""),
+        group: String::new(),
+        value,
+        published: None,
+    });
+    RankedBars {
+        title: "Pareto chart of effects".into(),
+        quantity: Quantity::new("Standardized effect", "|t|", ""),
+        bars: bars.to_vec(),
+        references: vec![("$t_{0.05, 9}$ = 2.26".into(), 2.26), ("Bonferroni".into(), 3.6)],
+    }
+}
+
+/// The published surface of strength (Table 12 of Su et al. 2021).
+fn contour() -> Contour {
+    let n = 61;
+    let axis: Vec<f64> = (0..n).map(|i| 5.858 + 28.284 * i as f64 / (n - 1) as f64).collect();
+    let f = |s: f64, t: f64| -0.48 + 1.083 * s + 0.919 * t - 0.03138 * s * s - 0.0259 * t * t + 0.0656 * s * t;
+    Contour {
+        x: Quantity::new("", r"\bar\sigma_c", "MPa"),
+        y: Quantity::new("", r"\bar\tau_c", "MPa"),
+        z: Quantity::new("Peak strength", r"\sigma_u", "MPa"),
+        values: axis.iter().flat_map(|&t| axis.iter().map(move |&s| f(s, t))).collect(),
+        xs: axis.clone(),
+        ys: axis,
+        points: [
+            [10., 10.],
+            [30., 10.],
+            [10., 30.],
+            [30., 30.],
+            [20., 20.],
+            [5.858, 20.],
+            [34.142, 20.],
+            [20., 5.858],
+            [20., 34.142],
+        ]
+        .to_vec(),
+        note: r"$E_c$ = 20 GPa, $k_n/k_s$ = 2.5, $\mu$ = 1".into(),
+    }
+}
