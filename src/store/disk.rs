@@ -1,7 +1,7 @@
 //! The few file operations of the store, with its rules: unique temporary name, check, rename; errors with their path.
 
 use super::StoreError;
-use std::fs::{self, File, Permissions};
+use std::fs::{self, File};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -63,21 +63,24 @@ impl Disk {
         temporary.persist(path).map_err(|error| self.fail("rename to", path, error.error))
     }
 
-    fn write_temporary(&self, path: &Path, bytes: &[u8], durable: bool) -> Result<tempfile::TempPath, StoreError> {
-        let parent = path.parent().unwrap_or(&self.root);
+    /// A new file under a temporary name; its readers are those whom the user's umask admits.
+    pub(super) fn temporary_in(&self, folder: &Path, mode: u32) -> Result<tempfile::NamedTempFile, StoreError> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(TEMPORARY);
-        if let Some(mode) = mode() {
-            builder.permissions(mode);
-        }
-        let file = match builder.tempfile_in(parent) {
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
+        let file = match builder.tempfile_in(folder) {
             Err(error) if error.kind() == ErrorKind::NotFound => {
-                self.make_dir(parent)?;
-                builder.tempfile_in(parent)
+                self.make_dir(folder)?;
+                builder.tempfile_in(folder)
             }
             other => other,
         };
-        let mut file = file.map_err(|error| self.fail("create a file in", parent, error))?;
+        file.map_err(|error| self.fail("create a file in", folder, error))
+    }
+
+    fn write_temporary(&self, path: &Path, bytes: &[u8], durable: bool) -> Result<tempfile::TempPath, StoreError> {
+        let mut file = self.temporary_in(path.parent().unwrap_or(&self.root), 0o444)?;
         file.write_all(bytes).map_err(|error| self.fail("write", path, error))?;
         if durable {
             file.as_file().sync_all().map_err(|error| self.fail("write", path, error))?;
@@ -101,15 +104,3 @@ impl Disk {
 
 /// How temporary names begin; what a killed process leaves behind is removed by gc.
 pub(super) const TEMPORARY: &str = ".writing-";
-
-/// Files of a store can be read by whom the user's umask admits; tempfile alone would keep them private.
-#[cfg(unix)]
-fn mode() -> Option<Permissions> {
-    use std::os::unix::fs::PermissionsExt;
-    Some(Permissions::from_mode(0o444))
-}
-
-#[cfg(not(unix))]
-fn mode() -> Option<Permissions> {
-    None
-}

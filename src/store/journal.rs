@@ -18,23 +18,26 @@
 //! its own segment, at places it counts itself, so a write that failed halfway is overwritten by the next. Of two
 //! records with the same key the later one counts.
 
-use super::disk::Disk;
+use super::disk::{Disk, TEMPORARY};
 use super::object::Seal;
 use super::{Origin, Record, StoreError};
 use crate::artifact::{ContentHash, Key};
-use std::collections::HashMap;
-use std::ffi::OsString;
+use std::collections::{HashMap, HashSet};
+use std::ffi::{OsStr, OsString};
 use std::fs::File;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::{Duration, SystemTime};
 
 /// Length of a record, bytes.
 pub(super) const RECORD: usize = 128;
 /// Length of a segment's head, bytes.
 pub(super) const HEAD: usize = 512;
 const MAGIC: &str = "flow journal 1 ";
+/// Longer than the step of any file system's times but the coarsest (FAT, 2 s).
+const TIME_STEP: Duration = Duration::from_millis(100);
 
 /// Folder of the segments.
 pub(super) fn folder(disk: &Disk) -> PathBuf {
@@ -47,12 +50,24 @@ pub(super) struct Index {
     tasks: HashMap<Key, Entry, BuildHasherDefault<FirstBytes>>,
     contents: HashMap<ContentHash, Key, BuildHasherDefault<FirstBytes>>,
     origins: Vec<Arc<Origin>>,
-    /// How far each segment has been read, and the origin of its records.
-    read: HashMap<OsString, (u64, u32)>,
+    /// Segments read, so that none is read twice.
+    seen: HashSet<OsString>,
+    /// Segments whose writers were alive when they were first read: only these can grow.
+    growing: Vec<Growing>,
+    /// When the folder had last changed, as seen by the last look, and when that look was.
+    looked: Option<(SystemTime, SystemTime)>,
     /// Records that were skipped because their checksum is wrong.
     pub(super) damaged: usize,
     /// Tasks for which two records give different contents.
     pub(super) contradictions: Vec<(Key, ContentHash, ContentHash)>,
+}
+
+/// A segment of another live process.
+struct Growing {
+    file: File,
+    /// How far it has been read.
+    end: u64,
+    origin: u32,
 }
 
 #[derive(Clone, Copy)]
@@ -65,45 +80,69 @@ struct Entry {
 }
 
 impl Index {
-    /// Reads what is new in all segments.
-    pub(super) fn refresh(&mut self, disk: &Disk) -> Result<(), StoreError> {
+    /// Reads what is new in all segments; `own` is the segment of this process, whose records are added as they are made.
+    pub(super) fn refresh(&mut self, disk: &Disk, own: Option<&OsStr>) -> Result<(), StoreError> {
         let folder = folder(disk);
-        let segments = match std::fs::read_dir(&folder) {
-            Ok(segments) => segments,
-            Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => return Ok(()),
-            Err(error) => return Err(disk.fail("list", &folder, error)),
-        };
-        let mut names: Vec<OsString> = segments.flatten().map(|entry| entry.file_name()).collect();
-        names.retain(|name| name.to_str().is_some_and(|name| name.ends_with(".journal")));
-        names.sort();
-        for name in names {
-            let path = folder.join(&name);
-            match self.read_segment(name, &path) {
+        let fail = |error| disk.fail("read", &folder, error);
+        for place in 0..self.growing.len() {
+            let Growing { file, end, origin } = &mut self.growing[place];
+            file.seek(SeekFrom::Start(*end)).map_err(fail)?;
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes).map_err(fail)?;
+            let origin = *origin;
+            self.growing[place].end += self.take(&bytes, origin);
+        }
+        for name in self.new_segments(disk)? {
+            match self.read_segment(&folder.join(&name), own == Some(&name)) {
                 // A segment that gc has merged into another one in the meantime.
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
-                other => other.map_err(|error| disk.fail("read", &path, error))?,
+                other => other.map_err(|error| disk.fail("read", &folder.join(&name), error))?,
             }
+            self.seen.insert(name);
         }
         Ok(())
     }
 
-    fn read_segment(&mut self, name: OsString, path: &std::path::Path) -> std::io::Result<()> {
-        let mut file = File::open(path)?;
-        let known = self.read.get(&name).copied();
-        let mut bytes = Vec::new();
-        if let Some((end, _)) = known {
-            file.seek(SeekFrom::Start(end))?;
-        }
-        file.read_to_end(&mut bytes)?;
-        let (start, origin) = match known {
-            Some((end, origin)) => (end, origin),
-            None if bytes.len() < HEAD => return Ok(()),
-            None => {
-                self.origins.push(Arc::new(read_head(&bytes[..HEAD])));
-                bytes.drain(..HEAD);
-                (HEAD as u64, (self.origins.len() - 1) as u32)
-            }
+    /// Names of segments that have not been read; the folder is listed only when it has changed.
+    fn new_segments(&mut self, disk: &Disk) -> Result<Vec<OsString>, StoreError> {
+        let folder = folder(disk);
+        let now = SystemTime::now();
+        let changed = match std::fs::metadata(&folder).and_then(|folder| folder.modified()) {
+            Ok(changed) => changed,
+            Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => return Ok(Vec::new()),
+            Err(error) => return Err(disk.fail("read", &folder, error)),
         };
+        // Times of files move in steps, so a folder that had just changed may change again without showing it.
+        if self.looked.is_some_and(|(before, when)| before == changed && when > changed + TIME_STEP) {
+            return Ok(Vec::new());
+        }
+        self.looked = Some((changed, now));
+        let entries = std::fs::read_dir(&folder).map_err(|error| disk.fail("list", &folder, error))?;
+        let is_new =
+            |name: &OsString| name.to_str().is_some_and(|name| name.ends_with(".journal")) && !self.seen.contains(name);
+        let mut names: Vec<OsString> = entries.flatten().map(|entry| entry.file_name()).filter(is_new).collect();
+        names.sort();
+        Ok(names)
+    }
+
+    fn read_segment(&mut self, path: &Path, own: bool) -> std::io::Result<()> {
+        let mut file = File::open(path)?;
+        // Asked before reading: what a dead process has written is all there is.
+        let alive = file.try_lock_shared().is_err();
+        let mut bytes = Vec::with_capacity(file.metadata().map_or(0, |data| data.len() as usize + 1));
+        file.read_to_end(&mut bytes)?;
+        let Some((head, records)) = bytes.split_at_checked(HEAD) else { return Ok(()) };
+        self.origins.push(Arc::new(read_head(head)));
+        let origin = (self.origins.len() - 1) as u32;
+        let end = HEAD as u64 + self.take(records, origin);
+        if alive && !own {
+            self.growing.push(Growing { file, end, origin });
+        }
+        Ok(())
+    }
+
+    /// Takes in the whole records at the start of `bytes`; returns their length.
+    fn take(&mut self, bytes: &[u8], origin: u32) -> u64 {
         let records = bytes.as_chunks::<RECORD>().0;
         self.tasks.reserve(records.len());
         self.contents.reserve(records.len());
@@ -113,8 +152,7 @@ impl Index {
                 None => self.damaged += 1,
             }
         }
-        self.read.insert(name, (start + (records.len() * RECORD) as u64, origin));
-        Ok(())
+        (records.len() * RECORD) as u64
     }
 
     fn insert(&mut self, key: Key, entry: Entry) {
@@ -167,53 +205,56 @@ impl Index {
         let Entry { content, seal, started, seconds, origin } = *entry;
         Record { key, content, seal, started, seconds, origin: self.origins[origin as usize].clone() }
     }
-
-    /// Names of the segments read so far.
-    pub(super) fn segments(&self) -> Vec<OsString> {
-        self.read.keys().cloned().collect()
-    }
 }
 
-/// The segment of this process; the file is made with the first record.
+/// The segment of this process; the file is made with the first record, and locked for as long as the process lives.
 #[derive(Default)]
 pub(super) struct Segment {
-    file: Option<(File, u64)>,
+    open: Option<Open>,
+}
+
+struct Open {
+    file: File,
+    path: PathBuf,
+    end: u64,
 }
 
 impl Segment {
     /// Appends one record.
     pub(super) fn append(&mut self, disk: &Disk, record: &Record, durable: bool) -> Result<(), StoreError> {
-        let folder = folder(disk);
-        if self.file.is_none() {
-            self.file = Some((create(disk, &record.origin)?, HEAD as u64));
-        }
-        let Some((file, end)) = &mut self.file else { return Ok(()) };
-        file.seek(SeekFrom::Start(*end))
-            .and_then(|_| file.write_all(&pack(record)))
-            .map_err(|error| disk.fail("write to", &folder, error))?;
-        *end += RECORD as u64;
-        if durable {
-            file.sync_data().map_err(|error| disk.fail("sync", &folder, error))?;
-        }
+        let open = match &mut self.open {
+            Some(open) => open,
+            none => none.insert(create(disk, &record.origin)?),
+        };
+        open.file
+            .seek(SeekFrom::Start(open.end))
+            .and_then(|_| open.file.write_all(&pack(record)))
+            .and_then(|()| if durable { open.file.sync_data() } else { Ok(()) })
+            .map_err(|error| disk.fail("write", &open.path, error))?;
+        open.end += RECORD as u64;
         Ok(())
+    }
+
+    /// The name of its file, when there is one.
+    pub(super) fn name(&self) -> Option<&OsStr> {
+        self.open.as_ref().and_then(|open| open.path.file_name())
     }
 }
 
-/// A new segment whose head is written.
-pub(super) fn create(disk: &Disk, origin: &Origin) -> Result<File, StoreError> {
+/// A new segment: locked and with its head before it has its name, so that no reader takes it for a finished one.
+fn create(disk: &Disk, origin: &Origin) -> Result<Open, StoreError> {
     let folder = folder(disk);
     disk.make_dir(&folder)?;
-    let started = super::now_ms();
-    let mut builder = tempfile::Builder::new();
-    let prefix = format!("{started:013}-{}-", std::process::id());
-    builder.prefix(&prefix).suffix(".journal");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
-    let fail = |error| disk.fail("create a segment in", &folder, error);
-    let mut file = builder.tempfile_in(&folder).map_err(fail)?;
-    file.write_all(&head(origin)).map_err(fail)?;
-    let (file, _) = file.keep().map_err(|error| fail(error.error))?;
-    Ok(file)
+    let fail = |error| disk.fail("create a file in", &folder, error);
+    let mut file = disk.temporary_in(&folder, 0o644)?;
+    // Without locks on this file system the segment counts as finished: its new records are seen by the next run.
+    let _ = file.as_file().try_lock();
+    file.write_all(&head(origin)).and_then(|()| file.as_file().sync_all()).map_err(fail)?;
+    let name = file.path().file_name().unwrap_or_default().to_string_lossy().replacen(TEMPORARY, "", 1);
+    let path = folder.join(format!("{:013}-{}-{name}.journal", super::now_ms(), std::process::id()));
+    let file = file.persist_noclobber(&path).map_err(|error| fail(error.error))?;
+    disk.sync_dir(&folder)?;
+    Ok(Open { file, path, end: HEAD as u64 })
 }
 
 /// The head of a segment: one line of text, padded.
@@ -278,4 +319,7 @@ impl Hasher for FirstBytes {
         }
     }
     fn write_usize(&mut self, _: usize) {}
+    fn write_u64(&mut self, word: u64) {
+        self.0 ^= word;
+    }
 }

@@ -4,6 +4,8 @@
 //! store/
 //!   objects/ab/abcd…-0123….h5   one immutable file per task, named by content       object.rs, hdf5.rs
 //!   journal/*.journal           task → object, digest, size, provenance             journal.rs
+//!   memo/ab/abcd…               what a stage came to                                memo.rs
+//!   runs/N.json                 what a campaign did                                 campaign.rs
 //!   locks/*.lock                tasks being computed now                            lock.rs
 //!   aside/                      damaged files that were found and replaced
 //! ```
@@ -14,17 +16,21 @@
 //! overwritten, and nothing is deleted but by gc.
 
 mod cache;
+mod campaign;
 mod disk;
 mod error;
 mod hdf5;
 mod journal;
 mod lock;
+mod memo;
 mod object;
 mod origin;
 
+pub use campaign::{Campaign, StageRun};
 pub use error::{Damage, StoreError};
 pub use hdf5::Hdf5Error;
 pub use lock::{Guard, Holder, Waiting};
+pub use memo::Memo;
 pub use object::ObjectId;
 pub use origin::Origin;
 
@@ -32,7 +38,8 @@ use crate::artifact::{Artifact, ContentHash, Key};
 use cache::Cache;
 use disk::Disk;
 use journal::{Index, Segment};
-use object::Seal;
+use object::{Presence, Seal};
+use std::ffi::OsStr;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -93,6 +100,7 @@ pub struct Store {
     index: OnceLock<Mutex<Index>>,
     segment: Mutex<Segment>,
     cache: Mutex<Cache>,
+    presence: Mutex<Presence>,
     damages: Mutex<Vec<Damage>>,
     in_use: Option<File>,
 }
@@ -114,6 +122,7 @@ impl Store {
             index: OnceLock::new(),
             segment: Mutex::default(),
             cache: Mutex::default(),
+            presence: Mutex::default(),
             damages: Mutex::default(),
             in_use,
         })
@@ -136,8 +145,18 @@ impl Store {
     /// # Errors
     /// The journals cannot be read.
     pub fn find(&self, key: &Key) -> Result<Option<Record>, StoreError> {
-        let record = locked(self.index()?).find(key);
-        Ok(record.filter(|record| object::is_there(&self.disk, &record.object(), &record.seal)))
+        let Some(record) = locked(self.index()?).find(key) else { return Ok(None) };
+        Ok(self.has_all(&[record.object()])?.then_some(record))
+    }
+
+    /// Whether all these objects are in the store; that they are sound is seen when they are read.
+    ///
+    /// # Errors
+    /// The folders cannot be listed.
+    pub fn has_all(&self, objects: &[ObjectId]) -> Result<bool, StoreError> {
+        let mut presence = locked(&self.presence);
+        presence.expect(&self.disk, objects.len())?;
+        Ok(objects.iter().all(|object| presence.contains(&self.disk, object)))
     }
 
     /// The artifact with this content.
@@ -200,6 +219,7 @@ impl Store {
         if let Some(index) = self.index.get() {
             locked(index).add(&record);
         }
+        locked(&self.presence).add(&id);
         locked(&self.cache).put(id.content, artifact.clone());
         Ok((record, artifact))
     }
@@ -214,10 +234,58 @@ impl Store {
             lock::Taken::Theirs(waiting) => Ok(Claim::Theirs(waiting)),
             lock::Taken::Mine(guard) => {
                 // Its last holder recorded the result before it let go.
-                locked(self.index()?).refresh(&self.disk)?;
+                self.refresh()?;
                 Ok(self.find(key)?.map_or(Claim::Mine(guard), Claim::Done))
             }
         }
+    }
+
+    /// The memo of a stage. Its objects may be gone: ask [`Store::has_all`].
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn memo(&self, stage: &Key) -> Result<Option<Memo>, StoreError> {
+        memo::read(&self.disk, stage)
+    }
+
+    /// Keeps the memo of a stage, in place of an earlier one.
+    ///
+    /// # Errors
+    /// The store cannot be written.
+    pub fn keep_memo(&self, stage: &Key, memo: &Memo) -> Result<(), StoreError> {
+        memo::write(&self.disk, stage, memo)
+    }
+
+    /// Records a campaign and returns its number.
+    ///
+    /// # Errors
+    /// The store cannot be written.
+    pub fn record_campaign(&self, campaign: &Campaign) -> Result<u64, StoreError> {
+        campaign::record(&self.disk, campaign)
+    }
+
+    /// Numbers of the recorded campaigns, the last one last.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn campaigns(&self) -> Result<Vec<u64>, StoreError> {
+        campaign::numbers(&self.disk)
+    }
+
+    /// A recorded campaign.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn campaign(&self, number: u64) -> Result<Option<Campaign>, StoreError> {
+        campaign::read(&self.disk, number)
+    }
+
+    /// All records, in the order of their keys.
+    ///
+    /// # Errors
+    /// The journals cannot be read.
+    pub fn records(&self) -> Result<Vec<Record>, StoreError> {
+        Ok(locked(self.index()?).records())
     }
 
     /// The file of an object, whether it is there or not.
@@ -240,6 +308,9 @@ impl Store {
         if let Err(StoreError::Damaged { fault }) = &image {
             locked(&self.damages).push(fault.clone());
         }
+        if image.is_err() {
+            locked(&self.presence).remove(&record.object());
+        }
         image
     }
 
@@ -252,6 +323,7 @@ impl Store {
         match object::set_aside(&self.disk, &path, &why.to_string()) {
             Ok(fault) => {
                 locked(&self.damages).push(fault.clone());
+                locked(&self.presence).remove(&record.object());
                 StoreError::Damaged { fault }
             }
             Err(error) => error,
@@ -265,9 +337,15 @@ impl Store {
         }
         // Records that this process appends meanwhile are read from its own segment, or added twice, which is the same.
         let mut index = Index::default();
-        let _writing = locked(&self.segment);
-        index.refresh(&self.disk)?;
+        let segment = locked(&self.segment);
+        index.refresh(&self.disk, segment.name())?;
         Ok(self.index.get_or_init(|| Mutex::new(index)))
+    }
+
+    /// Reads what other processes have recorded since.
+    fn refresh(&self) -> Result<(), StoreError> {
+        let own = locked(&self.segment).name().map(OsStr::to_owned);
+        locked(self.index()?).refresh(&self.disk, own.as_deref())
     }
 }
 

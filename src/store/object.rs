@@ -16,17 +16,20 @@
 //! power cut therefore loses at most the last half minute of tasks that each took less than that; what it leaves
 //! half-written is noticed by its digest.
 
-use super::disk::{Disk, TEMPORARY};
+use super::disk::Disk;
+use super::journal::FirstBytes;
 use super::{Damage, StoreError, hdf5};
 use crate::artifact::{ContentHash, Key};
+use std::collections::HashSet;
 use std::fs;
+use std::hash::BuildHasherDefault;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Results of tasks that took this many seconds or more are synced to the disk.
 pub(super) const SYNC_FROM: f64 = 0.1;
 
-/// Names one object: the result of one task.
+/// Names one object: the result of one task. Written as it is in file names, content first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectId {
     /// The content.
@@ -140,7 +143,7 @@ pub(super) fn set_aside(disk: &Disk, path: &Path, why: &str) -> Result<Damage, S
     Ok(damage(fs::rename(path, &target).is_ok().then_some(target)))
 }
 
-/// Calls `visit` with the name of every object file, two digits of the content at a time.
+/// Calls `visit` with the folder and the name of every file among the objects, temporary ones included.
 pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Path, &str)) -> Result<(), StoreError> {
     let objects = disk.root.join("objects");
     let shards = match fs::read_dir(&objects) {
@@ -152,9 +155,7 @@ pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Path, &str)) -> Result<()
         let folder = shard.path();
         let Ok(files) = fs::read_dir(&folder) else { continue };
         for file in files.flatten() {
-            if let Some(name) = file.file_name().to_str()
-                && !name.starts_with(TEMPORARY)
-            {
+            if let Some(name) = file.file_name().to_str() {
                 visit(&folder, name);
             }
         }
@@ -162,7 +163,66 @@ pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Path, &str)) -> Result<()
     Ok(())
 }
 
-/// Whether a file of the right size has the object's name.
-pub(super) fn is_there(disk: &Disk, id: &ObjectId, seal: &Seal) -> bool {
-    fs::metadata(path(disk, id)).is_ok_and(|metadata| metadata.is_file() && metadata.len() == seal.size)
+/// Which objects are on the disk: asked one by one at first, and by one listing of the folders when many are asked.
+#[derive(Default)]
+pub(super) struct Presence {
+    asked: usize,
+    listed: Option<HashSet<[u64; 2], BuildHasherDefault<FirstBytes>>>,
+}
+
+/// From this many questions on the folders are listed: 256 listings take about as long as 1,000 questions.
+const LIST_FROM: usize = 500;
+
+impl Presence {
+    /// Announces that `count` objects will be asked for.
+    pub(super) fn expect(&mut self, disk: &Disk, count: usize) -> Result<(), StoreError> {
+        self.asked += count;
+        if self.asked < LIST_FROM || self.listed.is_some() {
+            return Ok(());
+        }
+        let mut listed = HashSet::default();
+        list(disk, |_, name| listed.extend(short_of_name(name)))?;
+        self.listed = Some(listed);
+        Ok(())
+    }
+
+    /// Whether the object is there; call [`Presence::expect`] first. Objects of other processes that came after the
+    /// listing are found by asking for the very file.
+    pub(super) fn contains(&mut self, disk: &Disk, id: &ObjectId) -> bool {
+        if self.listed.as_ref().is_some_and(|listed| listed.contains(&short(id))) {
+            return true;
+        }
+        let found = fs::metadata(path(disk, id)).is_ok_and(|metadata| metadata.is_file());
+        if found {
+            self.add(id);
+        }
+        found
+    }
+
+    pub(super) fn add(&mut self, id: &ObjectId) {
+        if let Some(listed) = &mut self.listed {
+            listed.insert(short(id));
+        }
+    }
+
+    pub(super) fn remove(&mut self, id: &ObjectId) {
+        if let Some(listed) = &mut self.listed {
+            listed.remove(&short(id));
+        }
+    }
+}
+
+/// The first bytes of content and key, which tell all objects apart.
+fn short(id: &ObjectId) -> [u64; 2] {
+    let first = |bytes: &[u8; 32]| bytes.iter().take(8).fold(0, |word, &byte| word << 8 | u64::from(byte));
+    [first(&id.content.0), first(&id.key.0)]
+}
+
+/// As [`short`], from the name of a file.
+fn short_of_name(name: &str) -> Option<[u64; 2]> {
+    let (content, key) = (name.get(..16)?, name.get(65..81)?);
+    if name.len() != 84 {
+        return None;
+    }
+    Some([u64::from_str_radix(content, 16).ok()?, u64::from_str_radix(key, 16).ok()?])
 }

@@ -104,7 +104,7 @@ impl Walk {
     fn dataset(&self, dataset: &Dataset, place: &str) -> Result<Node, Hdf5Error> {
         let shape = dataset.shape()?;
         let kind = dataset.dtype()?;
-        if !shape.is_empty() || dataset.attrs()?.get("class").is_some() {
+        if !shape.is_empty() || dataset.attrs()?.contains_key("class") {
             return self.array(dataset, place);
         }
         self.reserve(dataset, &shape, place)?;

@@ -1,0 +1,73 @@
+//! Memos: what a stage came to, so that an unchanged campaign is recognised without looking at each of its tasks.
+//!
+//! A memo is a file `memo/ab/<key of the stage>`: a note in the caller's words, and the objects it speaks of. It can
+//! always be made anew from the journal, so a damaged one counts as missing and a later one takes its place.
+//!
+//! | bytes | field |
+//! |---|---|
+//! | 0–7 | `flowmem1` |
+//! | 8–15 | length n of the note, little-endian |
+//! | … | the note, UTF-8 |
+//! | … | 64 bytes per object: content hash, key |
+//! | last 32 | blake3 of all before |
+
+use super::StoreError;
+use super::disk::Disk;
+use super::object::ObjectId;
+use crate::artifact::{ContentHash, Key};
+use std::path::PathBuf;
+
+const MAGIC: &[u8; 8] = b"flowmem1";
+
+/// What a stage came to.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Memo {
+    /// Whatever the caller needs to know again.
+    pub note: String,
+    /// The objects it rests on; none of them is removed while the memo is reachable, and it is void without them.
+    pub objects: Vec<ObjectId>,
+}
+
+pub(super) fn folder(disk: &Disk) -> PathBuf {
+    disk.root.join("memo")
+}
+
+fn path(disk: &Disk, key: &Key) -> PathBuf {
+    let name = key.to_string();
+    folder(disk).join(&name[..2]).join(name)
+}
+
+pub(super) fn read(disk: &Disk, key: &Key) -> Result<Option<Memo>, StoreError> {
+    Ok(disk.read(&path(disk, key))?.and_then(|bytes| unpack(&bytes)))
+}
+
+pub(super) fn write(disk: &Disk, key: &Key, memo: &Memo) -> Result<(), StoreError> {
+    disk.replace(&path(disk, key), &pack(memo))
+}
+
+pub(super) fn pack(memo: &Memo) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(48 + memo.note.len() + 64 * memo.objects.len());
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&(memo.note.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(memo.note.as_bytes());
+    for object in &memo.objects {
+        bytes.extend_from_slice(&object.content.0);
+        bytes.extend_from_slice(&object.key.0);
+    }
+    bytes.extend_from_slice(blake3::hash(&bytes).as_bytes());
+    bytes
+}
+
+pub(super) fn unpack(bytes: &[u8]) -> Option<Memo> {
+    let (body, check) = bytes.split_last_chunk::<32>()?;
+    if blake3::hash(body).as_bytes() != check {
+        return None;
+    }
+    let rest = body.strip_prefix(MAGIC)?;
+    let (length, rest) = rest.split_first_chunk::<8>()?;
+    let (note, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+    let (hashes, []) = rest.as_chunks::<32>() else { return None };
+    let (pairs, []) = hashes.as_chunks::<2>() else { return None };
+    let objects = pairs.iter().map(|[content, key]| ObjectId { content: ContentHash(*content), key: Key(*key) });
+    Some(Memo { note: String::from_utf8(note.to_vec()).ok()?, objects: objects.collect() })
+}
