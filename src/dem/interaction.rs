@@ -6,7 +6,7 @@
 //! | convention | plane (unit thickness) | solid | source |
 //! |---|---|---|---|
 //! | [`Convention::Present`] | E* 2 min(R) / L | E* π min(R)² / L | PFC 5 and later, L = R₁ + R₂ |
-//! | [`Convention::Pc2004`] | E* | 4 E* R₁ R₂ / (R₁ + R₂) | Potyondy & Cundall 2004, doi:10.1016/j.ijrmms.2004.09.011 |
+//! | [`Convention::Pc2004`] | E* (wall: 2 E*) | 4 E* R₁ R₂ / (R₁ + R₂) (wall: 4 E* R₁) | Potyondy & Cundall 2004, doi:10.1016/j.ijrmms.2004.09.011 |
 //!
 //! k_s = k_n / κ. Bond stiffness per area: Ē / L and Ē / (L κ̄), bond radius λ min(R₁, R₂). λ is not in the stiffness per area.
 
@@ -224,9 +224,11 @@ impl Stiffness {
             Self::Modulus { modulus, convention: Convention::Present, .. } => {
                 modulus * S::section(small) / length(radii)
             }
-            Self::Modulus { modulus, convention: Convention::Pc2004, .. } if S::DIMENSION == 2 => modulus,
+            Self::Modulus { modulus, convention: Convention::Pc2004, .. } if S::DIMENSION == 2 => {
+                if radii[1].is_finite() { modulus } else { 2.0 * modulus }
+            }
             Self::Modulus { modulus, convention: Convention::Pc2004, .. } => {
-                // Two springs 4 E R in series; a wall is rigid, so only the ball's own remains.
+                // Two springs 4 E R in series; a wall is rigid, so only the ball's own remains (2 E in the plane).
                 let series = if radii[1].is_finite() { radii[0] * radii[1] / (radii[0] + radii[1]) } else { radii[0] };
                 4.0 * modulus * series
             }

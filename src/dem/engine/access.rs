@@ -102,6 +102,21 @@ impl<S: Space> Engine<S> {
         }
     }
 
+    /// Centre of mass of a clump, m.
+    pub fn clump_centre(&self, clump: usize) -> Vector<S> {
+        self.clumps[clump].centre
+    }
+
+    /// Mass of a clump, kg.
+    pub fn clump_mass(&self, clump: usize) -> f64 {
+        self.clumps[clump].mass
+    }
+
+    /// Whether a particle's velocity is prescribed.
+    pub fn is_fixed(&self, particle: usize) -> bool {
+        self.fixed[self.place[particle] as usize][0]
+    }
+
     /// Number of clumps.
     pub fn clump_count(&self) -> usize {
         self.clumps.len()

@@ -1,0 +1,70 @@
+//! Mean stress of a region: σ_ab = −(1/V) Σ f_a (x_c − X)_b over the ends of the contacts inside (Love–Weber), compression
+//! positive, X the centre of the body that the force f acts on, x_c the contact point.
+//!
+//! A contact counts when its point is in the region. V is the whole region, voids included.
+
+use crate::dem::contact::Other;
+use crate::dem::engine::Engine;
+use crate::dem::space::{Space, Tuple, Vector};
+
+/// Where a stress is measured.
+#[derive(Clone, Copy, Debug)]
+pub enum Region<S: Space> {
+    /// A disc or ball.
+    Ball {
+        /// Centre, m.
+        centre: Vector<S>,
+        /// Radius, m.
+        radius: f64,
+    },
+    /// A box along the axes.
+    Block {
+        /// Lowest corner, m.
+        low: Vector<S>,
+        /// Highest corner, m.
+        high: Vector<S>,
+    },
+}
+
+impl<S: Space> Region<S> {
+    /// Whether a point is inside.
+    pub fn holds(&self, x: Vector<S>) -> bool {
+        match *self {
+            Self::Ball { centre, radius } => x.minus(centre).norm() <= radius,
+            Self::Block { low, high } => (0..S::DIMENSION).all(|k| x.at(k) >= low.at(k) && x.at(k) <= high.at(k)),
+        }
+    }
+
+    /// Volume (area in the plane), m³ (m²).
+    pub fn volume(&self) -> f64 {
+        match *self {
+            Self::Ball { radius, .. } => S::volume(radius),
+            Self::Block { low, high } => (0..S::DIMENSION).map(|k| high.at(k) - low.at(k)).product(),
+        }
+    }
+}
+
+/// Mean stress of a region, Pa, compression positive, row by row.
+pub fn stress<S: Space>(engine: &Engine<S>, region: &Region<S>) -> [[f64; 3]; 3] {
+    let mut sum = [[0.0; 3]; 3];
+    let centre = |particle: usize| match engine.clump_of(particle) {
+        Some(clump) => engine.clump_centre(clump),
+        None => engine.position(particle),
+    };
+    let mut add = |force: Vector<S>, arm: Vector<S>| {
+        for a in 0..S::DIMENSION {
+            for b in 0..S::DIMENSION {
+                sum[a][b] -= force.at(a) * arm.at(b);
+            }
+        }
+    };
+    for contact in engine.contacts().filter(|c| c.active && region.holds(c.point)) {
+        let force = contact.force();
+        add(force, contact.point.minus(centre(contact.particle)));
+        if let Other::Particle(second) = contact.other {
+            add(force.times(-1.0), contact.point.minus(centre(second)));
+        }
+    }
+    let volume = region.volume();
+    sum.map(|row| row.map(|x| x / volume))
+}
