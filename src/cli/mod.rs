@@ -4,6 +4,7 @@
 //! is wrong, 3 the store or the system failed, 130 interrupted.
 
 mod common;
+mod plan;
 mod progress;
 mod run;
 mod show;
@@ -24,7 +25,7 @@ enum Command {
     /// Run what is missing of a campaign.
     Run(run::Run),
     /// Show what `run` would do, and why, without doing it.
-    Plan(run::Plan),
+    Plan(plan::Plan),
     /// Show a result as a table.
     Show(show::Show),
 }

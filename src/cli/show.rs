@@ -2,7 +2,7 @@
 
 use super::Exit;
 use super::common::Campaign;
-use super::progress::Lines;
+use super::progress::Silent;
 use crate::artifact::{Table, Values};
 use crate::run::{Settings, StageStatus, run};
 use clap::Args;
@@ -29,11 +29,11 @@ impl Show {
     }
 
     fn print(&self) -> Result<Exit, Exit> {
-        let workflow = self.campaign.load()?;
+        let workflow = self.campaign.load(std::slice::from_ref(&self.stage))?;
         let store = self.campaign.open()?;
         let settings =
             Settings { jobs: 0, keep_going: true, dry: true, targets: vec![self.stage.clone()], memos: true };
-        let report = run(&workflow, &store, &settings, &Lines::new(true), &AtomicBool::new(false));
+        let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
         let Some(StageStatus::Done(content)) =
             report.stages.iter().find(|stage| stage.name == self.stage).map(|stage| &stage.status)
         else {

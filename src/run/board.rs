@@ -90,6 +90,8 @@ pub(super) struct Board {
     by_address: HashMap<*const Task, NodeId>,
     kept: Vec<Arc<Task>>,
     counts: Vec<TaskCount>,
+    /// Seconds that the tasks of each stage took in this run.
+    seconds: Vec<f64>,
 }
 
 impl Board {
@@ -128,6 +130,7 @@ impl Board {
         }
         if self.counts.len() <= node.stage {
             self.counts.resize(node.stage + 1, TaskCount::default());
+            self.seconds.resize(node.stage + 1, 0.0);
         }
         self.counts[node.stage].total += 1;
         self.by_recipe.insert(node.recipe, id);
@@ -226,6 +229,17 @@ impl Board {
             object: self.object(node),
         };
         (0..self.nodes.len()).map(report).collect()
+    }
+
+    /// Seconds that the tasks of a stage took in this run.
+    pub(super) fn seconds(&self, stage: usize) -> f64 {
+        self.seconds.get(stage).copied().unwrap_or(0.0)
+    }
+
+    /// Notes how long a task took.
+    pub(super) fn took(&mut self, node: NodeId, seconds: f64) {
+        let stage = self.nodes[node].stage;
+        self.seconds[stage] += seconds;
     }
 
     /// Notes a result; answers with the nodes that may be decided now.

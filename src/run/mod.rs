@@ -13,11 +13,13 @@
 mod board;
 mod library;
 mod memo;
+mod record;
 mod stages;
 mod task;
 
 pub use board::{TaskCount, TaskState};
 pub use memo::remembered;
+pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
 
 use crate::exec::Threads;
@@ -271,6 +273,7 @@ impl Loop<'_> {
         }
         let failure = match answer.result {
             Ok(finished) => {
+                self.board.took(node, finished.seconds);
                 for next in self.board.done(node, finished.content, finished.shared) {
                     self.settle(next);
                 }

@@ -23,6 +23,8 @@ pub struct StageReport {
     pub tasks: TaskCount,
     /// Key of its memo, when its inputs are known.
     pub memo: Option<Key>,
+    /// Time of the tasks that ran, seconds of one worker.
+    pub seconds: f64,
 }
 
 /// Where a stage stands.
@@ -36,6 +38,18 @@ pub enum StageStatus {
     Failed(String),
     /// A stage that it needs failed; which.
     Skipped(String),
+}
+
+impl StageStatus {
+    /// One word for it.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::Done(_) => "done",
+            Self::Failed(_) => "failed",
+            Self::Skipped(_) => "skipped",
+        }
+    }
 }
 
 enum State {
@@ -219,6 +233,7 @@ impl Stages {
             },
             tasks: place.remembered.as_ref().map_or_else(|| board.count(index), |known| known.count),
             memo: place.key,
+            seconds: board.seconds(index),
         }
     }
 

@@ -135,6 +135,11 @@ impl Store {
         self
     }
 
+    /// Where and by what results are computed now.
+    pub fn origin(&self) -> &Origin {
+        self.origin.get_or_init(|| Arc::new(Origin::here()))
+    }
+
     /// The folder of the store.
     pub fn root(&self) -> &Path {
         &self.disk.root
