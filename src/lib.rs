@@ -2,10 +2,10 @@
 
 pub mod artifact;
 pub mod cli;
-pub mod exec;
-pub mod design;
-pub mod figure;
 pub mod dem;
+pub mod design;
+pub mod exec;
+pub mod figure;
 pub mod math;
 pub mod optim;
 pub mod plan;

@@ -63,7 +63,9 @@ pub struct CrackEvent {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TestFailure {
     /// Nothing broke it.
-    #[error("no peak up to a strain of {strain_limit}: the largest stress is {stress:.4e} Pa; raise the strain limit or check the strengths")]
+    #[error(
+        "no peak up to a strain of {strain_limit}: the largest stress is {stress:.4e} Pa; raise the strain limit or check the strengths"
+    )]
     NoPeak {
         /// Strain limit.
         strain_limit: f64,

@@ -87,7 +87,9 @@ pub struct Judgement {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LoadingWarning {
     /// Too much strain in a step.
-    #[error("strain per step is {found:.1e}, above 3e-8: the strength will be rate-dependent; lower the platen speed below {remedy:.3} m/s")]
+    #[error(
+        "strain per step is {found:.1e}, above 3e-8: the strength will be rate-dependent; lower the platen speed below {remedy:.3} m/s"
+    )]
     StrainPerStep {
         /// Strain in one step.
         found: f64,
@@ -95,7 +97,9 @@ pub enum LoadingWarning {
         remedy: f64,
     },
     /// Platens too fast.
-    #[error("platen speed over wave speed is {found:.1e}, above 1e-5: the strength will be rate-dependent; lower the platen speed below {remedy:.3} m/s")]
+    #[error(
+        "platen speed over wave speed is {found:.1e}, above 1e-5: the strength will be rate-dependent; lower the platen speed below {remedy:.3} m/s"
+    )]
     PlatenSpeed {
         /// Platen speed over wave speed.
         found: f64,
