@@ -5,7 +5,7 @@
 //! step, and the frame is turned by ω dt. Pebbles follow as x = X + R b with v = V + ω × (x − X).
 
 use super::damping::damped;
-use super::simd::Quad;
+use super::simd::{Quad, Rows};
 use super::space::{Space, Spin, Tuple, Vector};
 use std::ops::Range;
 
@@ -37,12 +37,14 @@ pub(crate) struct Rigid<S: Space> {
 
 impl<S: Space> Rigid<S> {
     /// Resultant of the pebbles' loads in the order of the pebbles; the loads are cleared.
-    pub(crate) fn collect(&self, records: &[Quad], loads: &mut [Quad]) -> (Vector<S>, Spin<S>) {
+    #[inline(always)]
+    pub(crate) fn collect(&self, rows: &impl Rows, loads: &mut [Quad]) -> (Vector<S>, Spin<S>) {
         let (mut force, mut moment) = (self.weight, Spin::<S>::zero());
         for p in self.pebbles.clone() {
             let load = &mut loads[p * S::LOADS..(p + 1) * S::LOADS];
             let (f, m) = split::<S>(load);
-            let arm = position::<S>(records, p).minus(self.centre);
+            let place = rows.read(p * S::RECORD);
+            let arm = Vector::<S>::build(|k| place.0[k]).minus(self.centre);
             force = force.plus(f);
             moment = moment.plus(m.plus(S::moment(arm, f)));
             load.fill(Quad::default());
@@ -65,18 +67,26 @@ impl<S: Space> Rigid<S> {
         self.turn = S::turn_on(self.turn, self.spin.times(dt));
     }
 
-    /// Writes the pebbles' records.
-    pub(crate) fn place(&self, records: &mut [Quad]) {
+    /// Writes the pebbles' records; returns the largest speed components.
+    #[inline(always)]
+    pub(crate) fn place(&self, rows: &mut impl Rows) -> Quad {
+        let mut fastest = Quad::default();
         for (p, &offset) in self.pebbles.clone().zip(&self.offsets) {
             let arm = S::outward(self.turn, offset);
-            let record = &mut records[p * S::RECORD..(p + 1) * S::RECORD];
+            let mut record = [Quad::default(); 3];
+            record[0] = rows.read(p * S::RECORD);
             set_kinematics::<S>(
-                record,
+                &mut record,
                 self.centre.plus(arm),
                 self.velocity.plus(S::carried(self.spin, arm)),
                 self.spin,
             );
+            for (k, &quad) in record[..S::RECORD].iter().enumerate() {
+                rows.write(p * S::RECORD + k, quad);
+            }
+            fastest = fastest.larger(record[1]);
         }
+        fastest
     }
 
     /// Sets velocity and spin.

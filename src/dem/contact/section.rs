@@ -6,6 +6,7 @@ use crate::dem::interaction::Bond;
 use crate::dem::law::{KN, REFERENCE, Rows};
 use crate::dem::simd::{Row, WIDEST};
 use crate::dem::space::Space;
+use std::ops::Range;
 
 /// Which law a class follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +46,8 @@ pub(crate) struct Section {
     pub(crate) wall: Option<u32>,
     /// Real contacts; the last block is filled up with idle ones.
     pub(crate) count: usize,
+    /// The contacts before this one belong to another stretch, which computes them too.
+    pub(crate) own_from: usize,
     /// Ends of each block: i, then j.
     pub(crate) ends: Vec<[[u32; WIDEST]; 2]>,
     /// `Rows::COUNT` rows a block.
@@ -64,7 +67,12 @@ impl Section {
             block[Rows::<S>::COHESION] = Row([f64::INFINITY; WIDEST]);
         }
         let reactions = if wall.is_some() { vec![Row::default(); blocks * S::DIMENSION] } else { Vec::new() };
-        Self { class, wall, count: contacts, ends: vec![dummy; blocks], rows, reactions }
+        Self { class, wall, count: contacts, own_from: 0, ends: vec![dummy; blocks], rows, reactions }
+    }
+
+    /// Its place in the order of sections.
+    pub(crate) fn rank(&self) -> (bool, usize, u32) {
+        (self.wall.is_some(), self.class, self.wall.unwrap_or(0))
     }
 
     /// The key of contact `c`.
@@ -136,9 +144,20 @@ impl Packed {
         &self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
     }
 
-    /// Sections in the order (wall or not, class, wall), contacts by (i, j) within each.
-    pub(crate) fn sections<S: Space>(&self, particles: usize) -> Vec<Section> {
-        let mut order: Vec<u32> = (0..self.keys.len() as u32).collect();
+    /// Rows of contact `k`.
+    pub(crate) fn rows_mut<S: Space>(&mut self, k: usize) -> &mut [f64] {
+        &mut self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
+    }
+
+    /// Sections in the order (wall or not, class, wall), contacts by (i, j) within each; of the contacts that touch
+    /// `particles`, a stretch of all `total` ones.
+    pub(crate) fn sections<S: Space>(&self, total: usize, particles: &Range<usize>) -> Vec<Section> {
+        let own = |p: u32| particles.contains(&(p as usize));
+        let touches = |k: &u32| {
+            let key = self.keys[*k as usize].0;
+            own(key.i) || (!key.at_wall && own(key.j))
+        };
+        let mut order: Vec<u32> = (0..self.keys.len() as u32).filter(touches).collect();
         let place = |k: u32| {
             let (key, class) = self.keys[k as usize];
             (key.at_wall, class, if key.at_wall { key.j } else { 0 }, key.i, key.j)
@@ -148,20 +167,21 @@ impl Packed {
             let (a, b) = (place(*a), place(*b));
             (a.0, a.1, a.2) == (b.0, b.1, b.2)
         };
-        order
-            .chunk_by(same)
-            .map(|chunk| {
-                let (key, class) = self.keys[chunk[0] as usize];
-                let wall = key.at_wall.then_some(key.j);
-                let mut section = Section::new::<S>(class as usize, wall, chunk.len(), particles);
-                for (c, &k) in chunk.iter().enumerate() {
-                    section.set_key(c, self.keys[k as usize].0);
-                    for (row, &value) in self.rows::<S>(k as usize).iter().enumerate() {
-                        section.set_value::<S>(c, row, value);
-                    }
-                }
-                section
-            })
-            .collect()
+        order.chunk_by(same).map(|chunk| self.section::<S>(chunk, total, particles)).collect()
+    }
+
+    fn section<S: Space>(&self, chunk: &[u32], total: usize, particles: &Range<usize>) -> Section {
+        let (key, class) = self.keys[chunk[0] as usize];
+        let wall = key.at_wall.then_some(key.j);
+        let mut section = Section::new::<S>(class as usize, wall, chunk.len(), total);
+        // i < j, so a contact whose i lies elsewhere has it before the stretch.
+        section.own_from = chunk.partition_point(|&k| (self.keys[k as usize].0.i as usize) < particles.start);
+        for (c, &k) in chunk.iter().enumerate() {
+            section.set_key(c, self.keys[k as usize].0);
+            for (row, &value) in self.rows::<S>(k as usize).iter().enumerate() {
+                section.set_value::<S>(c, row, value);
+            }
+        }
+        section
     }
 }

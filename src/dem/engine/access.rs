@@ -1,7 +1,7 @@
 //! What a caller may read. Particles are named by their places in the caller's list.
 
 use super::{Engine, Settings};
-use crate::dem::body;
+use crate::dem::body::{self, Rigid};
 use crate::dem::contact::{Contact, Key, Other, Section};
 use crate::dem::law::{KN, REFERENCE, Rows, SHEAR};
 use crate::dem::measure::Crack;
@@ -21,7 +21,7 @@ impl<S: Space> Engine<S> {
 
     /// Time, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.epoch.0 + (self.step - self.epoch.1) as f64 * self.dt
     }
 
     /// Time step, s.
@@ -72,7 +72,7 @@ impl<S: Space> Engine<S> {
     /// The clump of a particle, by its place in the caller's list of clumps.
     pub fn clump_of(&self, particle: usize) -> Option<usize> {
         let body = self.bodies[self.place[particle] as usize] as usize;
-        (body < self.clumps.len()).then_some(body)
+        self.clump_caller.get(body).map(|&clump| clump as usize)
     }
 
     /// A particle as it is now.
@@ -91,7 +91,7 @@ impl<S: Space> Engine<S> {
 
     /// A clump as it is now; its inertia in the present frame of the specimen.
     pub fn clump(&self, clump: usize) -> Clump<S> {
-        let rigid = &self.clumps[clump];
+        let rigid = self.rigid(clump);
         Clump {
             pebbles: rigid.pebbles.clone().map(|p| self.caller[p] as usize).collect(),
             centre: rigid.centre,
@@ -104,17 +104,21 @@ impl<S: Space> Engine<S> {
 
     /// Centre of mass of a clump, m.
     pub fn clump_centre(&self, clump: usize) -> Vector<S> {
-        self.clumps[clump].centre
+        self.rigid(clump).centre
     }
 
     /// Mass of a clump, kg.
     pub fn clump_mass(&self, clump: usize) -> f64 {
-        self.clumps[clump].mass
+        self.rigid(clump).mass
     }
 
     /// Whether a particle's velocity is prescribed.
     pub fn is_fixed(&self, particle: usize) -> bool {
         self.fixed[self.place[particle] as usize][0]
+    }
+
+    fn rigid(&self, clump: usize) -> &Rigid<S> {
+        &self.clumps[self.clump_place[clump] as usize]
     }
 
     /// Number of clumps.
@@ -137,9 +141,18 @@ impl<S: Space> Engine<S> {
         self.walls[w].face.velocity
     }
 
+    /// Force of the balls on wall `w`, N, at the positions of the last step.
+    pub fn wall_force(&self, w: usize) -> Vector<S> {
+        let mut sum = Vector::<S>::zero();
+        for (section, _) in self.stretches().filter(|(s, _)| s.wall == Some(w as u32)) {
+            Self::visit_reactions(section, |force| sum = sum.plus(Vector::<S>::build(|k| force[k])));
+        }
+        sum
+    }
+
     /// All listed contacts, in the engine's order.
     pub fn contacts(&self) -> impl Iterator<Item = Contact<S>> + '_ {
-        self.sections.iter().flat_map(move |section| (0..section.count).map(move |c| self.contact(section, c)))
+        self.stretches().flat_map(move |(section, own)| own.map(move |c| self.contact(section, c)))
     }
 
     pub(super) fn position_of(&self, p: usize) -> Vector<S> {

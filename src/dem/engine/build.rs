@@ -8,7 +8,8 @@ use crate::dem::error::Faults;
 use crate::dem::interaction::ContactTable;
 use crate::dem::law::Constants;
 use crate::dem::neighbour::morton_order;
-use crate::dem::simd::Quad;
+use crate::dem::particle::Clump;
+use crate::dem::simd::{Quad, Same, Table, Width};
 use crate::dem::space::{Space, Tuple, Vector};
 
 /// A body of its own, in `bodies`.
@@ -32,9 +33,7 @@ impl<S: Space> Engine<S> {
         engine.set_inverse_masses();
         engine.relist();
         engine.derive_step();
-        if model.settings.masses == super::Masses::EqualStep {
-            engine.equalise_masses();
-        }
+        engine.choose_masses();
         Ok(engine)
     }
 
@@ -63,16 +62,20 @@ impl<S: Space> Engine<S> {
             radii: Vec::with_capacity(n),
             masses: Vec::with_capacity(n),
             inertias: Vec::with_capacity(n),
+            moving: Vec::with_capacity(n),
             fixed: vec![[false; 2]; n],
-            records: vec![Quad::default(); (n + 2) * S::RECORD],
-            loads: vec![Quad::default(); (n + 2) * S::LOADS],
-            inverse: vec![Quad::default(); n * S::LOADS],
+            records: Table::new((n + 2) * S::RECORD),
+            spare: Table::default(),
+            inverse: Table::new(n * S::LOADS),
             inverse_mass: vec![0.0; n + 2],
             weights: Vec::new(),
             clumps: Vec::with_capacity(model.clumps.len()),
+            clump_place: vec![0; model.clumps.len()],
+            clump_caller: Vec::with_capacity(model.clumps.len()),
             walls: Vec::with_capacity(model.walls.len()),
-            sections: Vec::new(),
-            breaks: Vec::new(),
+            domains: Vec::new(),
+            threads: 1,
+            width: Width::detect(),
             cracks: Vec::new(),
             margin: 0.1 * smallest,
             smallest_radius: smallest,
@@ -82,7 +85,7 @@ impl<S: Space> Engine<S> {
             stale: false,
             dt: 0.0,
             step: 0,
-            time: 0.0,
+            epoch: (0.0, 0),
         }
     }
 
@@ -97,6 +100,7 @@ impl<S: Space> Engine<S> {
             self.radii.push(particle.radius);
             self.masses.push(particle.mass);
             self.inertias.push(particle.inertia);
+            self.moving.push([particle.mass, particle.inertia]);
         }
         // Two dummies, apart from each other and at rest, for the idle lanes of the last blocks.
         for (k, p) in [n, n + 1].into_iter().enumerate() {
@@ -105,27 +109,32 @@ impl<S: Space> Engine<S> {
     }
 
     fn add_clumps(&mut self, model: &Model<S>) {
-        for clump in &model.clumps {
-            // Pebbles stand together in the engine's order.
-            let first = clump.pebbles.iter().map(|&id| self.place[id]).min().unwrap_or(0) as usize;
+        // Pebbles of a clump stand together in the engine's order.
+        let first = |clump: &Clump<S>| clump.pebbles.iter().map(|&id| self.place[id] as usize).min().unwrap_or(0);
+        let mut order: Vec<(usize, usize)> = model.clumps.iter().map(first).zip(0..).collect();
+        order.sort_unstable();
+        for (k, &(first, id)) in order.iter().enumerate() {
+            let clump = &model.clumps[id];
+            self.clump_place[id] = k as u32;
+            self.clump_caller.push(id as u32);
             let pebbles = first..first + clump.pebbles.len();
+            self.bodies[pebbles.clone()].fill(k as u32);
             let offset = |p: usize| model.particles[self.caller[p] as usize].position.minus(clump.centre);
-            let inverse = S::inverse_inertia(&clump.inertia).unwrap_or_default();
             let mut rigid = Rigid {
                 offsets: pebbles.clone().map(offset).collect(),
                 pebbles,
                 centre: clump.centre,
                 velocity: clump.velocity,
-                momentum: S::momentum_of(&clump.inertia, clump.spin),
+                momentum: clump.spin,
                 spin: clump.spin,
                 turn: S::upright(),
                 mass: clump.mass,
                 inertia: clump.inertia,
-                inverse,
+                inverse: S::inverse_inertia(&clump.inertia).unwrap_or_default(),
                 weight: Vector::<S>::zero(),
             };
             rigid.set_motion(clump.velocity, clump.spin);
-            rigid.place(&mut self.records);
+            rigid.place(&mut Same(&mut self.records));
             self.clumps.push(rigid);
         }
     }
@@ -147,11 +156,11 @@ impl<S: Space> Engine<S> {
                 continue;
             }
             if !self.fixed[p][0] {
-                self.inverse_mass[p] = 1.0 / self.masses[p];
-                inverse[0].0[..S::DIMENSION].fill(1.0 / self.masses[p]);
+                self.inverse_mass[p] = 1.0 / self.moving[p][0];
+                inverse[0].0[..S::DIMENSION].fill(1.0 / self.moving[p][0]);
             }
             if !self.fixed[p][1] {
-                inverse[row].0[first..first + spins].fill(1.0 / self.inertias[p]);
+                inverse[row].0[first..first + spins].fill(1.0 / self.moving[p][1]);
             }
             if heavy {
                 for k in 0..S::DIMENSION {
@@ -186,6 +195,8 @@ pub(super) fn moving<S: Space>(wall: &Wall<S>) -> MovingWall<S> {
         motion: wall.motion,
         group: wall.group,
         present: true,
+        origin: wall.point,
+        stiffness: 0.0,
     }
 }
 

@@ -8,6 +8,7 @@ use crate::dem::contact::LawKind;
 use crate::dem::error::Faults;
 use crate::dem::interaction::ContactTable;
 use crate::dem::law::{KN, Rows};
+use crate::dem::simd::{Same, Width};
 use crate::dem::space::{Space, Spin, Tuple, Vector};
 
 impl<S: Space> Engine<S> {
@@ -33,7 +34,7 @@ impl<S: Space> Engine<S> {
         match self.clumps.get_mut(self.bodies[p] as usize) {
             Some(clump) => {
                 clump.set_motion(velocity, spin);
-                clump.place(&mut self.records);
+                clump.place(&mut Same(&mut self.records));
             }
             None => {
                 let x = self.position_of(p);
@@ -59,6 +60,7 @@ impl<S: Space> Engine<S> {
             let growth = S::volume(self.radii[p]) / volume;
             self.masses[p] *= growth;
             self.inertias[p] *= growth * factor * factor;
+            self.moving[p] = [self.masses[p], self.inertias[p]];
             self.records[p * S::RECORD].0[3] = self.radii[p];
         }
         self.smallest_radius = self.radii.iter().copied().fold(f64::INFINITY, f64::min);
@@ -81,15 +83,15 @@ impl<S: Space> Engine<S> {
             let (key, old) = all.keys[k];
             let class = self.class_of(key);
             all.keys[k].1 = class;
+            let rows = all.rows_mut::<S>(k);
             if self.classes[class as usize].law != before[old as usize] {
-                let rows = &mut all.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT];
                 rows[Rows::<S>::TENSION] = f64::INFINITY;
                 rows[Rows::<S>::COHESION] = f64::INFINITY;
                 rows[Rows::<S>::BOND..].fill(0.0);
             }
-            all.values[k * Rows::<S>::COUNT + KN] = self.linear_stiffness(key);
+            rows[KN] = self.linear_stiffness(key);
         }
-        self.sections = all.sections::<S>(self.caller.len());
+        self.adopt(&all);
         self.renew();
         Ok(())
     }
@@ -112,7 +114,6 @@ impl<S: Space> Engine<S> {
     /// Takes a wall away. The places of the others stay.
     pub fn remove_wall(&mut self, w: usize) {
         self.walls[w].present = false;
-        self.sections.retain(|section| section.wall != Some(w as u32));
         self.walls[w].motion = Motion::Velocity(Vector::<S>::zero());
         self.walls[w].face.velocity = Vector::<S>::zero();
         self.renew();
@@ -129,6 +130,18 @@ impl<S: Space> Engine<S> {
     /// Local damping from now on.
     pub fn set_damping(&mut self, alpha: f64) {
         self.settings.damping = alpha;
+    }
+
+    /// Threads of a run from now on, at least one. Results do not depend on it.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.threads = threads.max(1);
+        let listed = self.packed();
+        self.divide(&listed);
+    }
+
+    /// Contacts computed at a time; the machine's best by default. Results do not depend on it.
+    pub fn set_width(&mut self, width: Width) {
+        self.width = width;
     }
 
     /// Forgets the cracks so far.

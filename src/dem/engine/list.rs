@@ -19,11 +19,8 @@ const SHORT: u64 = 200;
 const LONG: u64 = 4000;
 
 impl<S: Space> Engine<S> {
-    /// Searches contacts again if the list may have missed one.
-    pub(super) fn relist_if_due(&mut self) {
-        if !self.stale {
-            return;
-        }
+    /// Searches contacts again, with a margin that follows how long the last list held.
+    pub(super) fn relist_when_old(&mut self) {
         let age = self.step - self.listed_at;
         let factor = if age < SHORT {
             1.5
@@ -36,13 +33,25 @@ impl<S: Space> Engine<S> {
         self.relist();
     }
 
-    /// Searches contacts with the present margin and derives the time step.
+    /// Searches contacts with the present margin.
     pub(super) fn relist(&mut self) {
         let old = self.packed();
         let found = self.candidates();
         let listed = self.merge(&old, &found);
-        self.sections = listed.sections::<S>(self.caller.len());
+        self.adopt(&listed);
+    }
+
+    /// Makes `listed` (sorted by key) the contact list, as of now.
+    pub(super) fn adopt(&mut self, listed: &Packed) {
+        self.divide(listed);
         self.origins = (0..self.caller.len()).map(|p| position::<S>(&self.records, p)).collect();
+        for wall in &mut self.walls {
+            wall.origin = wall.face.point;
+            wall.stiffness = 0.0;
+        }
+        for (k, (key, _)) in listed.keys.iter().enumerate().filter(|(_, (key, _))| key.at_wall) {
+            self.walls[key.j as usize].stiffness += listed.rows::<S>(k)[KN];
+        }
         self.travelled = 0.0;
         self.listed_at = self.step;
         self.stale = false;
@@ -51,8 +60,8 @@ impl<S: Space> Engine<S> {
     /// All contacts, sorted by key.
     pub(super) fn packed(&self) -> Packed {
         let mut all = Packed::default();
-        for section in &self.sections {
-            for c in 0..section.count {
+        for (section, own) in self.stretches() {
+            for c in own {
                 section.pack::<S>(c, &mut all);
             }
         }
@@ -103,7 +112,7 @@ impl<S: Space> Engine<S> {
                 listed.push_new::<S>(key, self.class_of(key), 0.0);
             }
             let last = listed.keys.len() - 1;
-            listed.values[last * Rows::<S>::COUNT + KN] = self.linear_stiffness(key);
+            listed.rows_mut::<S>(last)[KN] = self.linear_stiffness(key);
         }
         for k in next..old.keys.len() {
             self.keep_if_needed(old, k, &mut listed);
@@ -155,9 +164,10 @@ impl<S: Space> Engine<S> {
         interaction.linear.stiffness.normal::<S>(self.contact_radii(key))
     }
 
-    /// Largest distance that any particle came since the list was made, m.
+    /// Largest distance that any particle or wall came since the list was made, m.
     pub(super) fn true_travel(&self) -> f64 {
         let moved = |(p, origin): (usize, &Vector<S>)| position::<S>(&self.records, p).minus(*origin).norm();
-        self.origins.iter().enumerate().map(moved).fold(0.0, f64::max)
+        let balls = self.origins.iter().enumerate().map(moved).fold(0.0, f64::max);
+        self.walls.iter().map(|w| w.face.point.minus(w.origin).norm()).fold(balls, f64::max)
     }
 }

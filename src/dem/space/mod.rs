@@ -181,10 +181,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn turned<L: Lane>(shear: Self::Shear<L>, touch: &Touch<Self, L>) -> Self::Shear<L>;
     /// The shear vector shortened to `limit`.
     fn limited<L: Lane>(shear: Self::Shear<L>, limit: L) -> Self::Shear<L>;
-    /// Adds the load to i.
-    fn push_i<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>);
-    /// Adds the reaction to j.
-    fn push_j<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>);
+    /// Adds the load to i, at a wall.
+    fn push_one<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>);
+    /// Adds the load to i and the reaction to j, contact by contact.
+    fn push_both<L: Lane>(loads: &mut [Quad], ends: [&[u32]; 2], touch: &Touch<Self, L>, load: &Load<Self, L>);
     /// Force on i as a vector.
     fn force<L: Lane>(touch: &Touch<Self, L>, load: &Load<Self, L>) -> Self::Vector<L>;
     /// Moment of the bond on i as a spin-like quantity.
