@@ -70,7 +70,9 @@ impl Figure for Agreement {
         for (i, (pair, (x, y))) in self.pairs.iter().zip(axes).enumerate() {
             let corner = [0.8 + (i % columns) as f64 * pitch, 0.8 + legend_height + (i / columns) as f64 * row_height];
             let outer = Rect::new(corner[0], corner[1], pitch - BETWEEN, row_height - 1.0);
-            self.draw_pair(&mut scene, &Panel::with_margins(outer, margins, x, y), pair, style);
+            let left = Margins::of(&x, &y, style).left;
+            let panel = Panel { left, ..Panel::with_margins(outer, margins, x, y) };
+            self.draw_pair(&mut scene, &panel, pair, style);
         }
         scene
     }
@@ -138,10 +140,8 @@ impl Agreement {
         let values = || pair.clouds.iter().flat_map(|c| c.x.iter().chain(&c.y).copied());
         let (low, high) = extent(values());
         let margin = 0.06 * (high - low).max(1e-12 * high.abs());
-        let axis = |word: &str| {
-            let quantity = Quantity { name: word.to_string(), ..pair.quantity.clone() };
-            Axis::between(quantity.title(), Scale::Linear, low - margin, high + margin, 4)
-        };
+        let axis =
+            |word: &str| Axis::between(pair.quantity.titled(word), Scale::Linear, low - margin, high + margin, 4);
         (axis(&self.x_word), axis(&self.y_word))
     }
 

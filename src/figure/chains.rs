@@ -36,7 +36,7 @@ pub struct Chains {
 
 /// Widths of lines on the page in mm.
 const WIDTHS: usize = 14;
-const WIDEST: f64 = 0.9;
+const WIDEST: f64 = 0.7;
 
 impl Figure for Chains {
     fn scene(&self, style: &Style) -> Scene {
@@ -104,14 +104,10 @@ impl Chains {
                 entries.push(Entry::new(name, Swatch::Line(Stroke::new(color, 0.6), None)));
             }
         }
-        for share in [1.0, 0.5, 0.2] {
-            let stroke = Stroke::new(BLUE, class_width(class_of(share)));
-            entries.push(Entry::new(format!("{} {unit}", significant(share * most, 2)), Swatch::Line(stroke, None)));
+        for (word, force) in [("", most), ("", 0.5 * most), ("mean ", mean)] {
+            let stroke = Stroke::new(super::palette::INK, class_width(class_of(force / most)));
+            entries.push(Entry::new(format!("{word}{} {unit}", significant(force, 2)), Swatch::Line(stroke, None)));
         }
-        entries.push(Entry::new(
-            format!("(mean {} {unit})", significant(mean, 2)),
-            Swatch::Band(super::palette::PAPER, 0.0),
-        ));
         entries
     }
 }

@@ -47,8 +47,10 @@ impl Figure for Dag {
         let entries: Vec<Entry> =
             self.classes.iter().enumerate().map(|(i, c)| Entry::new(c.clone(), Swatch::Box(tint(i)))).collect();
         let top = legend::height(&entries, width - 1.6, style) + 1.2;
-        let tallest = layout.height.iter().copied().fold(0.0, f64::max);
-        let mut scene = Scene::new(width, top + tallest + box_height + 1.6);
+        // Blank places need half a box only.
+        let reach = |(p, h): (usize, &f64)| h + if p < layout.nodes { box_height } else { 0.6 * box_height };
+        let tallest = layout.height.iter().enumerate().map(reach).fold(0.0, f64::max);
+        let mut scene = Scene::new(width, top + tallest + 1.6);
         scene.title = "Stages of the campaign".into();
         scene.description = self.describe();
         legend::draw(&mut scene, &entries, Rect::new(0.8, 0.8, width - 1.6, 0.0), style);

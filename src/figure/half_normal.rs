@@ -42,7 +42,7 @@ impl Figure for HalfNormal {
         let active: Vec<&str> = self.effects.iter().filter(|e| e.active).map(|e| e.name.as_str()).collect();
         scene.description = format!("{} effects; active: {}.", self.effects.len(), active.join(", "));
         let entries = self.entries();
-        let title = Quantity { name: "Absolute effect on".into(), ..self.response.clone() }.title();
+        let title = self.response.titled("Absolute effect on");
         let margin = self.margin.iter().map(|m| m.1);
         let x = Axis::from_zero(title, self.effects.iter().map(|e| 1.04 * e.size).chain(margin), 5);
         let y = Axis::from_zero("Half-normal quantile $z$ / –", self.effects.iter().map(|e| e.quantile), 5);

@@ -103,6 +103,13 @@ impl Quantity {
         text::quantity(&self.name, &self.symbol, &self.unit)
     }
 
+    /// A word before the symbol, or before the name when there is none: "Published σ_u / MPa".
+    pub fn titled(&self, word: &str) -> String {
+        let name =
+            if self.symbol.is_empty() { format!("{word} {}", self.name.to_lowercase()) } else { word.to_string() };
+        text::quantity(&name, &self.symbol, &self.unit)
+    }
+
     /// Symbol and unit, or name and unit when there is no symbol.
     pub fn short(&self) -> String {
         if self.symbol.is_empty() { self.title() } else { text::quantity("", &self.symbol, &self.unit) }

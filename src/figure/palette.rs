@@ -63,9 +63,9 @@ pub fn category(i: usize) -> Color {
     CATEGORIES[i % CATEGORIES.len()]
 }
 
-/// Colour of crack mode `i`: vermilion (tension), blue (shear), then others.
+/// Colour of crack mode `i`: vermilion (tension), dark blue (shear; darker in grey too), then others.
 pub fn mode(i: usize) -> Color {
-    [VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY][i % 6]
+    [VERMILION, Color(0x0b, 0x3c, 0x6f), GREEN, PURPLE, ORANGE, SKY][i % 6]
 }
 
 /// Colour of category number `i` for areas: lighter neighbours than lines need, so that grey tells them apart.

@@ -5,7 +5,7 @@
 use super::axis::{Axis, Scale, extent, fixed};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
-use super::palette::{self, INK, SOFT, WASH};
+use super::palette::{self, GRID, INK, PAPER, SOFT, WASH};
 use super::panel::{Panel, draw_marker};
 use super::scene::{Anchor, Path, Point, Rect, Scene, Stroke};
 use super::text::Line;
@@ -126,14 +126,14 @@ impl DesignPoints {
             scene.stroke(Path::polyline(&[middle, natural(s)]), Stroke::new(SOFT, 0.25).dashed(&[1.0, 0.8]));
         }
         for s in spots {
-            draw_spot(scene, s, natural(s), style);
+            draw_spot(scene, s, natural(s), 0.0, style);
         }
         panel.draw_axes(scene, style);
     }
 
     fn draw_cube(&self, scene: &mut Scene, outer: Rect, spots: &[Spot], style: &Style) {
         let size = style.size();
-        let view = View::new(-62.0, 22.0);
+        let view = View::new(-61.0, 14.0);
         let area = outer.inset(9.0, 1.5 * size, 6.0, 4.0 * size);
         let flat = |p: [f64; 3]| view.project(p);
         let all = corners().into_iter().chain(spots.iter().map(|s| s.at));
@@ -155,7 +155,7 @@ impl DesignPoints {
             }
         }
         for s in order {
-            draw_spot(scene, s, place(s.at), style);
+            draw_spot(scene, s, place(s.at), 0.5 - 0.5 * view.depth(s.at) / 3.0_f64.sqrt(), style);
         }
         self.draw_edge_titles(scene, &place, back, style);
     }
@@ -215,12 +215,26 @@ fn draw_edges(scene: &mut Scene, place: &dyn Fn([f64; 3]) -> Point, back: [f64; 
             path.add_polyline(&[place(a), place(b)]);
         }
     }
+    let mut faces = Path::default();
+    for axis in 0..3 {
+        for along in (0..3).filter(|&k| k != axis) {
+            let across = 3 - axis - along;
+            let mut ends = [[0.0; 3]; 2];
+            for (end, v) in ends.iter_mut().zip([-1.0, 1.0]) {
+                (end[axis], end[along], end[across]) = (back[axis], v, 0.0);
+            }
+            faces.add_polyline(&ends.map(place));
+        }
+    }
+    scene.stroke(faces, Stroke::new(GRID, 0.2));
     scene.stroke(far, Stroke::new(SOFT, 0.2).dashed(&[1.2, 1.0]));
     scene.stroke(near, Stroke::new(SOFT, 0.3));
 }
 
-fn draw_spot(scene: &mut Scene, spot: &Spot, at: Point, style: &Style) {
-    draw_marker(scene, palette::marker(spot.kind), at, 2.8, palette::category(spot.kind));
+/// `away` is 0 at the eye and 1 at the far corner: distant points are smaller and paler.
+fn draw_spot(scene: &mut Scene, spot: &Spot, at: Point, away: f64, style: &Style) {
+    let color = palette::category(spot.kind).mix(PAPER, 0.45 * away);
+    draw_marker(scene, palette::marker(spot.kind), at, 2.9 - 0.8 * away, color);
     if spot.count > 1 {
         let line = Line::new(&format!("×{}", spot.count), 0.9 * style.size());
         scene.text_centred(line, [at[0] + 2.0, at[1] - 1.6], Anchor::Start, INK);

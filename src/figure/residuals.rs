@@ -92,7 +92,7 @@ impl Residuals {
         let pairs = |xs: &[f64]| xs.iter().zip(&self.studentized).map(|(&x, &y)| [x, y]).collect::<Vec<_>>();
         let order: Vec<f64> = (1..=self.studentized.len()).map(|i| i as f64).collect();
         let around = |label: &str, v: &[f64]| Axis::around(label, Scale::Linear, v.iter().copied(), 4);
-        let fitted = Quantity { name: "Fitted".into(), ..self.response.clone() }.title();
+        let fitted = self.response.titled("Fitted");
         let critical = 2.0 * self.coefficients as f64 / self.studentized.len().max(1) as f64;
         let leverage = Axis::from_zero("Leverage $h$ / –", self.leverage.iter().copied().chain([critical]), 4);
         [

@@ -52,14 +52,14 @@ impl Figure for Solutions {
         let area = Rect {
             left: 9.0,
             right: style.width - 9.0 - bar_width,
-            top: top + 3.6 * size + 1.0,
+            top: top + 3.6 * size + if several { 2.0 } else { 1.0 },
             bottom: scene.height - 2.2 * size,
         };
         self.draw_lines(&mut scene, area, style, (low, high));
         self.draw_axes(&mut scene, area, style);
         if !several {
             let bar = Rect::new(style.width - 0.8 - bands.width(style), area.top, 3.0, area.height());
-            bands.draw_bar(&mut scene, bar, style);
+            bands.draw_smooth_bar(&mut scene, bar, style);
         }
         scene
     }

@@ -60,8 +60,9 @@ impl Figure for Surface {
         scene.description = format!("A surface from {} to {} {}.", significant(low, 3), significant(high, 3), f.z.unit);
         let bands = Bands::of(low, high, &f.z);
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
+        let note = if f.note.is_empty() { 0.3 * size } else { 1.8 * size };
         let right = page.right - bands.width(style) - 3.0;
-        let area = Rect { right, ..page }.inset(5.5 * size, 1.0 * size, 3.0 * size, 3.4 * size);
+        let area = Rect { right, ..page }.inset(5.0 * size, note, 1.6 * size, 4.2 * size);
         let space = self.space(area, (low, high));
         draw_walls(&mut scene, &space);
         self.draw_floor(&mut scene, &space, &bands, style);
@@ -73,7 +74,7 @@ impl Figure for Surface {
         }
         let height = 0.72 * page.height();
         let bar = Rect::new(page.right - bands.width(style), page.top + 0.14 * page.height(), 3.0, height);
-        bands.draw_bar(&mut scene, bar, style);
+        bands.draw_smooth_bar(&mut scene, bar, style);
         scene
     }
 
@@ -197,20 +198,21 @@ fn draw_titles(scene: &mut Scene, space: &Box3, titles: [&str; 3], style: &Style
         left_edge(space),
     ];
     let middle = space.corner([0.0, 0.0, -1.0]);
+    let mut taken: Vec<[Point; 4]> = Vec::new();
     for (axis, (from, to)) in edges.into_iter().enumerate() {
         let (a, b) = (space.corner(from), space.corner(to));
         let mid = [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0];
         let away = if axis == 2 { [-1.0, 0.0] } else { outward(a, b, mid, middle) };
-        draw_edge(scene, space, axis, (from, to), away, style);
+        let reach = draw_edge(scene, space, axis, (from, to), away, &mut taken, style);
         let size = style.size();
         let line = Line::new(titles[axis], size);
         if axis == 2 {
-            scene.text(line, [mid[0] - 3.6 * size, mid[1]], Anchor::Middle, 90.0, INK);
+            scene.text(line, [mid[0] - reach - 0.9 * size, mid[1]], Anchor::Middle, 90.0, INK);
             continue;
         }
         let slope = crate::math::elementary::atan2(a[1] - b[1], b[0] - a[0]).to_degrees();
         let angle = if slope.abs() > 90.0 { slope - 180.0 * slope.signum() } else { slope };
-        let gap = 3.1 * size;
+        let gap = reach + 0.9 * size;
         scene.text(line, [mid[0] + gap * away[0], mid[1] + gap * away[1] + 0.25 * size], Anchor::Middle, angle, INK);
     }
 }
@@ -232,16 +234,19 @@ fn outward(a: Point, b: Point, mid: Point, middle: Point) -> Point {
     if side < 0.0 { [-normal[0], -normal[1]] } else { normal }
 }
 
+/// Draws an axis with the labels that find room; returns how far the labels reach from the edge.
 fn draw_edge(
     scene: &mut Scene,
     space: &Box3,
     axis: usize,
     (from, to): ([f64; 3], [f64; 3]),
     away: Point,
+    taken: &mut Vec<[Point; 4]>,
     style: &Style,
-) {
+) -> f64 {
     let size = style.size();
     let mut path = Path::polyline(&[space.corner(from), space.corner(to)]);
+    let mut farthest = 0.0_f64;
     for tick in &space.axes[axis].ticks {
         let mut p = from;
         p[axis] = space.unit(axis, tick.at);
@@ -251,7 +256,15 @@ fn draw_edge(
         // The label's box must clear the edge: half its extent along the outward direction.
         let reach = 1.5 + (line.width / 2.0 * away[0]).abs() + (0.33 * size * away[1]).abs();
         let at = [x + reach * away[0], y + reach * away[1]];
+        let corner = [at[0] - line.width / 2.0, at[1] + 0.33 * size];
+        let place = line.corners(corner, 0.0);
+        if taken.iter().any(|t| super::scene::meet(t, &place)) {
+            continue;
+        }
+        taken.push(place);
+        farthest = farthest.max(2.0 * reach - 1.5);
         scene.text_centred(line, at, Anchor::Middle, INK);
     }
     scene.stroke(path, Stroke::new(SOFT, 0.22));
+    farthest
 }

@@ -51,7 +51,9 @@ impl Figure for Verification {
         for (i, (check, (x, y))) in self.checks.iter().zip(axes).enumerate() {
             let corner = [0.8 + (i % columns) as f64 * pitch, 0.8 + top + (i / columns) as f64 * height];
             let outer = Rect::new(corner[0], corner[1], pitch - BETWEEN, height - 0.6);
-            draw_check(&mut scene, &Panel::with_margins(outer, margins, x, y), check, style);
+            let left = Margins::of(&x, &y, style).left;
+            let panel = Panel { left, ..Panel::with_margins(outer, margins, x, y) };
+            draw_check(&mut scene, &panel, check, style);
         }
         scene
     }
