@@ -8,6 +8,7 @@ mod plan;
 mod progress;
 mod run;
 mod show;
+mod store;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -28,6 +29,8 @@ enum Command {
     Plan(plan::Plan),
     /// Show a result as a table.
     Show(show::Show),
+    /// Look after the store: list, verify, sizes, remove what nothing reaches.
+    Store(store::StoreCommand),
 }
 
 /// How a command ended.
@@ -51,6 +54,7 @@ pub fn main() -> ExitCode {
         Command::Run(run) => run.go(),
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
+        Command::Store(store) => store.go(),
     };
     ExitCode::from(exit as u8)
 }

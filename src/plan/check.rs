@@ -23,6 +23,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
     let mut sources = Sources(vec![Arc::new(Source { name: name.to_owned(), text: text.to_owned() })]);
     let (tree, mut faults) = syntax::tree(&sources, 0);
     let Some(Node { value: Value::Table(mut root), .. }) = tree else { return Err(faults) };
+    let profiles = overlay::names(&root);
     overlay::profile(&mut root, overrides.profile.as_deref(), &mut sources, &mut faults);
     overlay::sets(&mut root, &overrides.sets, &mut sources, &mut faults);
     let mut check = Check { sources: &sources, faults };
@@ -47,6 +48,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         about: head.about,
         context,
         profile: overrides.profile.clone(),
+        profiles,
         stages,
     })
 }

@@ -45,6 +45,8 @@ pub struct Workflow {
     pub context: Context,
     /// The profile that was laid over it.
     pub profile: Option<String>,
+    /// Names of all profiles of the file.
+    pub profiles: Vec<String>,
     /// Stages so that each comes after its inputs, else in the order of the file.
     pub stages: Vec<StageNode>,
 }
