@@ -13,6 +13,8 @@ pub mod key;
 mod node;
 mod overlay;
 mod read;
+mod reader;
+pub mod schema;
 mod stages;
 mod syntax;
 pub mod why;
