@@ -34,6 +34,7 @@
 pub mod command;
 mod context;
 pub mod data;
+pub mod formula;
 pub mod rows;
 mod task;
 
@@ -191,6 +192,7 @@ macro_rules! kinds {
 kinds! {
     command::Command,
     data::Data,
+    formula::Formula,
 }
 
 /// The work called `name`.
