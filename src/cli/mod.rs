@@ -4,6 +4,7 @@
 //! is wrong, 3 the store or the system failed, 130 interrupted.
 
 mod common;
+mod diff;
 mod plan;
 mod progress;
 mod run;
@@ -29,6 +30,8 @@ enum Command {
     Plan(plan::Plan),
     /// Show a result as a table.
     Show(show::Show),
+    /// Compare two campaigns: what was set otherwise, what came out otherwise.
+    Diff(diff::Diff),
     /// Look after the store: list, verify, sizes, remove what nothing reaches.
     Store(store::StoreCommand),
 }
@@ -54,6 +57,7 @@ pub fn main() -> ExitCode {
         Command::Run(run) => run.go(),
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
+        Command::Diff(diff) => diff.go(),
         Command::Store(store) => store.go(),
     };
     ExitCode::from(exit as u8)
