@@ -4,7 +4,7 @@ use crate::run::{Event, StageReport, StageStatus, Watch};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::HashMap;
 use std::io::IsTerminal;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Says nothing.
@@ -18,11 +18,12 @@ impl Watch for Silent {
 const PAUSE: Duration = Duration::from_secs(5);
 
 /// Tells failures at once, stages when they end, and now and then how far each is.
-pub(super) struct Progress {
+pub(super) struct Progress<'a> {
     screen: Option<MultiProgress>,
     stages: Mutex<HashMap<String, Live>>,
-    /// Mean seconds of a task by stage, from earlier runs.
-    expected: HashMap<String, f64>,
+    /// Mean seconds of a task by stage, from earlier runs; looked up when the first task starts.
+    expected: OnceLock<HashMap<String, f64>>,
+    look_up: Box<dyn Fn() -> HashMap<String, f64> + Sync + 'a>,
     workers: usize,
 }
 
@@ -35,14 +36,14 @@ struct Live {
     bar: Option<ProgressBar>,
 }
 
-impl Progress {
-    /// `expected` holds the mean seconds of a task by stage.
-    pub(super) fn new(expected: HashMap<String, f64>, workers: usize) -> Self {
+impl<'a> Progress<'a> {
+    /// `look_up` gives the mean seconds of a task by stage.
+    pub(super) fn new(look_up: impl Fn() -> HashMap<String, f64> + Sync + 'a, workers: usize) -> Self {
         let screen = std::io::stderr().is_terminal().then(|| {
             let target = ProgressDrawTarget::stderr_with_hz(8);
             MultiProgress::with_draw_target(target)
         });
-        Self { screen, stages: Mutex::default(), expected, workers }
+        Self { screen, stages: Mutex::default(), expected: OnceLock::new(), look_up: Box::new(look_up), workers }
     }
 
     fn stages(&self) -> MutexGuard<'_, HashMap<String, Live>> {
@@ -78,7 +79,12 @@ impl Progress {
         live.ended += 1;
         let elapsed = live.started.elapsed().as_secs_f64();
         let left = count.total - count.ended();
-        let message = pace(live.ended, left, elapsed, self.expected.get(stage).map(|s| s / self.workers as f64));
+        let message = pace(
+            live.ended,
+            left,
+            elapsed,
+            self.expected.get_or_init(&self.look_up).get(stage).map(|s| s / self.workers as f64),
+        );
         if let Some(bar) = &live.bar {
             bar.set_length(count.total as u64);
             bar.set_position(count.ended() as u64);
@@ -108,7 +114,7 @@ impl Progress {
     }
 }
 
-impl Watch for Progress {
+impl Watch for Progress<'_> {
     fn event(&self, event: Event<'_>) {
         match event {
             Event::Started { stage, .. } => self.started(stage),

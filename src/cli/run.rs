@@ -50,7 +50,7 @@ impl Run {
             Settings { jobs, keep_going: self.keep_going, dry: false, targets: self.stages.clone(), memos: true };
         let watch: Box<dyn Watch> = match self.quiet {
             true => Box::new(Silent),
-            false => Box::new(Progress::new(expected(&workflow, &store), jobs)),
+            false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
         };
         let report = run(&workflow, &store, &settings, &*watch, &stop);
         for damage in store.take_damages() {
