@@ -83,7 +83,8 @@ fn tell<T>(
 }
 
 /// The path to the value that the error is about. Below the path that the error itself knows, only values that were
-/// copied first can be meant; it is followed as long as there is just one without which the error is another.
+/// copied first can be meant; it is followed as long as there is just one without which the error is another. The word
+/// that says how to read the others (a tag) is meant only when the error is about a word.
 fn narrow<T>(
     node: &Node,
     mut path: Vec<Step>,
@@ -101,10 +102,13 @@ fn narrow<T>(
             read(Reader(&changed)).err()
         };
         let copied = |step: &Step| {
-            let error = after(&|found| found.find_mut(slice::from_ref(step)).into_iter().for_each(Node::make_probe));
-            error.is_some_and(|error| error.path().get(path.len()) != Some(step))
+            let probed = after(&|found| found.find_mut(slice::from_ref(step)).into_iter().for_each(Node::make_probe));
+            probed.filter(|probed| probed.path().get(path.len()) != Some(step))
         };
-        let decides = |step: &&Step| copied(step) && after(&|found| found.remove(step)).as_ref() != Some(error);
+        let decides = |step: &&Step| {
+            let about_it = |probed: Unread| !probed.is_about_a_word() || error.is_about_a_word();
+            copied(step).is_some_and(about_it) && after(&|found| found.remove(step)).as_ref() != Some(error)
+        };
         let mut deciding = steps.iter().filter(decides);
         match (deciding.next(), deciding.next()) {
             (Some(step), None) => path.push(step.clone()),

@@ -39,6 +39,11 @@ impl Unread {
         self.path.iter().rev().cloned().collect()
     }
 
+    /// Whether a word was wanted that says how to read the rest.
+    pub(super) fn is_about_a_word(&self) -> bool {
+        matches!(&self.cause, Cause::Word(..)) || self.cause == Cause::Wanted(WORD.to_owned())
+    }
+
     fn inside(mut self, step: Step) -> Self {
         self.path.push(step);
         self
@@ -79,6 +84,9 @@ impl de::Error for Unread {
     }
 }
 
+/// What a tag must be.
+const WORD: &str = "one of the known words";
+
 /// serde's names of types in the words of the workflow file.
 fn in_words(wanted: &str) -> String {
     let words = match wanted {
@@ -92,6 +100,7 @@ fn in_words(wanted: &str) -> String {
         "a boolean" => "true or false",
         "a sequence" => "a list",
         "a map" | "map" => "a table",
+        "variant identifier" => WORD,
         other if other.starts_with("struct ") => "a table",
         other if other.starts_with("a nonzero ") => "a whole number of 1 or more",
         other => match other.strip_prefix("an array of length ") {
