@@ -127,6 +127,12 @@ impl<S: Space> Engine<S> {
         }
     }
 
+    /// Which masses move the balls from now on, for the present contacts.
+    pub fn set_masses(&mut self, masses: super::Masses) {
+        self.settings.masses = masses;
+        self.choose_masses();
+    }
+
     /// Local damping from now on.
     pub fn set_damping(&mut self, alpha: f64) {
         self.settings.damping = alpha;
@@ -137,6 +143,11 @@ impl<S: Space> Engine<S> {
         self.threads = threads.max(1);
         let listed = self.packed();
         self.divide(&listed);
+    }
+
+    /// Threads of a run.
+    pub fn threads(&self) -> usize {
+        self.threads
     }
 
     /// Contacts computed at a time; the machine's best by default. Results do not depend on it.

@@ -9,8 +9,8 @@ use crate::dem::measure::{Crack, Mode};
 use crate::dem::simd::{Board, dispatch, exchange};
 use crate::dem::space::{Space, Tuple, Vector};
 
-/// Share of the smallest radius that a body may move in one step before the run is called unstable.
-const STRIDE: f64 = 0.1;
+/// Smallest radii that a body may move in one step; further, and it could pass through another.
+const STRIDE: f64 = 2.0;
 
 impl<S: Space> Engine<S> {
     /// Makes `steps` steps; every `every` steps (and at the end) `watch` looks at the engine and may stop it.

@@ -132,7 +132,8 @@ impl Lane for Four {
     #[inline(always)]
     fn gather(table: &[Quad], stride: usize, row: usize, ends: &[u32]) -> [Self; 4] {
         let at = |k: usize| read(&table[ends[k] as usize * stride + row]);
-        transpose([at(0), at(1), at(2), at(3)]).map(Self)
+        let [a, b, c, d] = transpose([at(0), at(1), at(2), at(3)]);
+        [Self(a), Self(b), Self(c), Self(d)]
     }
     #[inline(always)]
     fn scatter_add(table: &mut [Quad], stride: usize, row: usize, ends: &[u32], value: [Self; 4]) {
@@ -143,7 +144,8 @@ impl Lane for Four {
     }
     #[inline(always)]
     fn scatter_add_both(table: &mut [Quad], stride: usize, row: usize, ends: [&[u32]; 2], value: [[Self; 4]; 2]) {
-        let [first, second] = value.map(|v| transpose([v[0].0, v[1].0, v[2].0, v[3].0]));
+        let rows = |v: [Self; 4]| transpose([v[0].0, v[1].0, v[2].0, v[3].0]);
+        let [first, second] = [rows(value[0]), rows(value[1])];
         for k in 0..4 {
             add_to(&mut table[ends[0][k] as usize * stride + row], first[k]);
             add_to(&mut table[ends[1][k] as usize * stride + row], second[k]);

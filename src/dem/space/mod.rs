@@ -35,22 +35,32 @@ pub trait Tuple<L: Lane>: Copy {
     fn build(f: impl FnMut(usize) -> L) -> Self;
 }
 
+// Plain loops: closures handed to the array functions are not always inlined, and then run without the wide registers.
 impl<L: Lane, const N: usize> Tuple<L> for [L; N] {
     #[inline(always)]
     fn zero() -> Self {
         [L::splat(0.0); N]
     }
     #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        std::array::from_fn(|k| self[k] + other[k])
+    fn plus(mut self, other: Self) -> Self {
+        for k in 0..N {
+            self[k] = self[k] + other[k];
+        }
+        self
     }
     #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        std::array::from_fn(|k| self[k] - other[k])
+    fn minus(mut self, other: Self) -> Self {
+        for k in 0..N {
+            self[k] = self[k] - other[k];
+        }
+        self
     }
     #[inline(always)]
-    fn times(self, factor: L) -> Self {
-        self.map(|x| x * factor)
+    fn times(mut self, factor: L) -> Self {
+        for x in &mut self {
+            *x = *x * factor;
+        }
+        self
     }
     #[inline(always)]
     fn dot(self, other: Self) -> L {
@@ -69,8 +79,12 @@ impl<L: Lane, const N: usize> Tuple<L> for [L; N] {
         self[k]
     }
     #[inline(always)]
-    fn build(f: impl FnMut(usize) -> L) -> Self {
-        std::array::from_fn(f)
+    fn build(mut f: impl FnMut(usize) -> L) -> Self {
+        let mut tuple = Self::zero();
+        for (k, x) in tuple.iter_mut().enumerate() {
+            *x = f(k);
+        }
+        tuple
     }
 }
 
