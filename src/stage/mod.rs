@@ -35,6 +35,8 @@ pub mod command;
 mod context;
 pub mod data;
 pub mod rows;
+pub mod simulate;
+pub mod specimen;
 mod task;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
@@ -191,6 +193,8 @@ macro_rules! kinds {
 kinds! {
     command::Command,
     data::Data,
+    simulate::Simulate,
+    specimen::Specimen,
 }
 
 /// The work called `name`.
