@@ -9,6 +9,7 @@
 mod field;
 mod key;
 mod node;
+pub mod specimen;
 
 pub use field::{Field, Wanted, expect_kind, take};
 pub use key::Key;

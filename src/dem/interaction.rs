@@ -14,7 +14,7 @@ use super::particle::Group;
 use super::space::Space;
 
 /// How a modulus becomes the stiffness of a linear contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Convention {
     /// PFC 5 and later.

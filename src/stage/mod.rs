@@ -36,6 +36,8 @@ mod context;
 pub mod data;
 pub mod formula;
 pub mod rows;
+pub mod simulate;
+pub mod specimen;
 mod task;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
@@ -193,6 +195,8 @@ kinds! {
     command::Command,
     data::Data,
     formula::Formula,
+    simulate::Simulate,
+    specimen::Specimen,
 }
 
 /// The work called `name`.

@@ -59,7 +59,7 @@ impl<S: Space> Default for Settings<S> {
 }
 
 /// Which masses move the bodies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Masses {
     /// Their own.

@@ -40,7 +40,7 @@ pub fn scale_to_porosity(radii: &mut [f64], area: f64, porosity: f64) -> f64 {
 
 /// Σ π R² (m²).
 pub fn ball_area(radii: &[f64]) -> f64 {
-    PI * radii.iter().map(|r| r * r).sum::<f64>()
+    PI * radii.iter().fold(0.0, |sum, r| sum + r * r)
 }
 
 /// Random centres for balls of half the given radii, inside `region` and without overlap. A ball that finds no place in

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// What the mass and inertia of a clump are computed from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClumpMass {
     /// The union of the pebbles.

@@ -14,7 +14,7 @@ use crate::math::random::Stream;
 use serde::{Deserialize, Serialize};
 
 /// Which diameter the particles of a size class get.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClassSize {
     /// All the middle of the class, the size that the count is computed with.

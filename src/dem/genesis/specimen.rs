@@ -10,10 +10,11 @@
 //!
 //! Seeds: aggregate and packing have streams of their own, so another polygon recipe keeps the packing.
 
+use super::cloud::ball_area;
 use super::clump::{Clump, ClumpMass, cut};
 use super::fabric::Fabric;
 use super::gradation::{Gradation, GradationError};
-use super::packing::{Packing, PackingError};
+use super::packing::{Packed, Packing, PackingError};
 use super::placement::{DoesNotFit, Placement, place};
 use super::polygon::{Polygon, PolygonError, PolygonRecipe};
 use super::region::{Point, Region};
@@ -66,8 +67,6 @@ pub struct Specimen {
     pub polygons: Vec<Polygon>,
     /// Rigid clumps.
     pub clumps: Vec<Clump>,
-    /// Report.
-    pub quality: Quality,
 }
 
 /// The numbers by which a specimen is judged.
@@ -101,6 +100,8 @@ pub struct Quality {
     pub polygon_fraction: f64,
     /// Area of the pebbles (overlaps counted twice) over Σ π R².
     pub pebble_fraction: f64,
+    /// Polygons placed.
+    pub polygons: usize,
     /// Polygons too small to hold a ball centre.
     pub empty_polygons: usize,
 }
@@ -187,11 +188,11 @@ impl Recipe {
         faults
     }
 
-    /// Makes the specimen; another seed gives another packing and another aggregate.
+    /// Makes the specimen, with the report on it; another seed gives another packing and another aggregate.
     ///
     /// # Errors
     /// All faults of the recipe, or the one reason why aggregate or packing came to nothing.
-    pub fn make(&self, seed: u64) -> Result<Specimen, Vec<SpecimenError>> {
+    pub fn make(&self, seed: u64) -> Result<(Specimen, Quality), Vec<SpecimenError>> {
         let faults = self.faults();
         if !faults.is_empty() {
             return Err(faults);
@@ -201,37 +202,12 @@ impl Recipe {
             .packing
             .pack(&self.region, &mut Stream::new(seed, "packing", 0))
             .map_err(|error| vec![error.into()])?;
-        let heap = &packed.heap;
         let clumps = self.aggregate.as_ref().map_or_else(Vec::new, |aggregate| {
-            cut(&polygons, &heap.centres, &heap.radii, aggregate.density, aggregate.mass)
+            cut(&polygons, &packed.heap.centres, &packed.heap.radii, aggregate.density, aggregate.mass)
         });
-        let area = self.region.area();
-        let balls = heap.radii.len();
-        let square = |radii: &mut dyn Iterator<Item = f64>| std::f64::consts::PI * radii.map(|r| r * r).sum::<f64>();
-        let all = square(&mut heap.radii.iter().copied());
-        let pebbles = square(&mut clumps.iter().flat_map(|c| &c.pebbles).map(|&i| heap.radii[i]));
-        let mean_radius = heap.radii.iter().sum::<f64>() / balls as f64;
-        let bounds = |(low, high): (f64, f64), &r: &f64| (low.min(r), high.max(r));
-        let (smallest, largest) = heap.radii.iter().fold((f64::INFINITY, 0.0), bounds);
-        let quality = Quality {
-            balls,
-            mean_radius,
-            radius_range: [smallest, largest],
-            radius_factor: packed.radius_factor,
-            porosity: 1.0 - all / area,
-            fabric: Fabric::of(heap),
-            floater_rounds: packed.floater_rounds,
-            floater_growth: packed.floater_growth,
-            unbalanced: packed.unbalanced,
-            particles_across: self.region.narrowest() / (2.0 * mean_radius),
-            contacts: contacts_by_kind(heap, &clumps),
-            circle_fraction: circles / area,
-            polygon_fraction: polygons.iter().map(|p| p.moments().area).sum::<f64>() / area,
-            pebble_fraction: pebbles / all,
-            empty_polygons: polygons.len() - clumps.len(),
-        };
+        let quality = Quality::of(&packed, &polygons, &clumps, circles);
         let Heap { region, centres, radii } = packed.heap;
-        Ok(Specimen { region, centres, radii, density: self.density, polygons, clumps, quality })
+        Ok((Specimen { region, centres, radii, density: self.density, polygons, clumps }, quality))
     }
 
     /// The polygons and the total area of their size circles (m²).
@@ -254,22 +230,54 @@ impl Specimen {
         clump_of_balls(self.radii.len(), &self.clumps)
     }
 
-    /// What should be known before its results are believed.
+    /// Mean radius (m).
+    pub fn mean_radius(&self) -> f64 {
+        self.radii.iter().sum::<f64>() / self.radii.len() as f64
+    }
+}
+
+impl Quality {
+    fn of(packed: &Packed, polygons: &[Polygon], clumps: &[Clump], circles: f64) -> Self {
+        let Heap { region, radii, .. } = &packed.heap;
+        let (area, all) = (region.area(), ball_area(radii));
+        let mean_radius = radii.iter().sum::<f64>() / radii.len() as f64;
+        let bounds = |(low, high): (f64, f64), &r: &f64| (low.min(r), high.max(r));
+        let (smallest, largest) = radii.iter().fold((f64::INFINITY, 0.0), bounds);
+        let pebbles: Vec<f64> = clumps.iter().flat_map(|clump| &clump.pebbles).map(|&i| radii[i]).collect();
+        Self {
+            balls: radii.len(),
+            mean_radius,
+            radius_range: [smallest, largest],
+            radius_factor: packed.radius_factor,
+            porosity: 1.0 - all / area,
+            fabric: Fabric::of(&packed.heap),
+            floater_rounds: packed.floater_rounds,
+            floater_growth: packed.floater_growth,
+            unbalanced: packed.unbalanced,
+            particles_across: region.narrowest() / (2.0 * mean_radius),
+            contacts: contacts_by_kind(&packed.heap, clumps),
+            circle_fraction: circles / area,
+            polygon_fraction: polygons.iter().fold(0.0, |sum, p| sum + p.moments().area) / area,
+            pebble_fraction: ball_area(&pebbles) / all,
+            polygons: polygons.len(),
+            empty_polygons: polygons.len() - clumps.len(),
+        }
+    }
+
+    /// What should be known before results on the specimen are believed.
     pub fn warnings(&self) -> Vec<SpecimenWarning> {
-        let quality = &self.quality;
         let mut warnings = Vec::new();
-        if quality.particles_across < 10.0 {
-            warnings.push(SpecimenWarning::FewAcross(quality.particles_across));
+        if self.particles_across < 10.0 {
+            warnings.push(SpecimenWarning::FewAcross(self.particles_across));
         }
-        if quality.balls < 2000 {
-            warnings.push(SpecimenWarning::FewBalls(quality.balls));
+        if self.balls < 2000 {
+            warnings.push(SpecimenWarning::FewBalls(self.balls));
         }
-        if quality.empty_polygons > 0 {
-            let (empty, polygons) = (quality.empty_polygons, self.polygons.len());
-            warnings.push(SpecimenWarning::EmptyPolygons { empty, polygons });
+        if self.empty_polygons > 0 {
+            warnings.push(SpecimenWarning::EmptyPolygons { empty: self.empty_polygons, polygons: self.polygons });
         }
-        if quality.fabric.floaters > 0 {
-            let (floaters, rounds) = (quality.fabric.floaters, quality.floater_rounds);
+        if self.fabric.floaters > 0 {
+            let (floaters, rounds) = (self.fabric.floaters, self.floater_rounds);
             warnings.push(SpecimenWarning::Floaters { floaters, rounds });
         }
         warnings
@@ -331,8 +339,7 @@ mod tests {
 
     #[test]
     fn a_specimen_reports_its_own_numbers() {
-        let specimen = recipe().make(1).unwrap();
-        let quality = &specimen.quality;
+        let (specimen, quality) = recipe().make(1).unwrap();
         assert_eq!(quality.balls, 2188);
         assert!((quality.porosity - 0.12).abs() < 1e-12);
         assert!((quality.circle_fraction - 0.2887).abs() < 1e-4, "{}", quality.circle_fraction);
@@ -342,16 +349,16 @@ mod tests {
         assert!(quality.contacts.iter().all(|&n| n > 0) && 2 * pairs < (quality.fabric.coordination * 2188.0) as usize);
         let mass: f64 = specimen.clumps.iter().map(|clump| clump.mass).sum();
         assert!(mass > 0.8 * 0.2887 * 0.02 * 2650.0 && mass < 0.2887 * 0.02 * 2650.0 * 1.05, "{mass}");
-        assert!(specimen.warnings().iter().all(|w| matches!(w, SpecimenWarning::EmptyPolygons { .. })));
+        assert!(quality.warnings().iter().all(|w| matches!(w, SpecimenWarning::EmptyPolygons { .. })));
     }
 
     #[test]
     fn the_aggregate_does_not_change_the_packing() {
         let plain = Recipe { aggregate: None, ..recipe() };
-        let (with, without) = (recipe().make(3).unwrap(), plain.make(3).unwrap());
+        let ((with, _), (without, quality)) = (recipe().make(3).unwrap(), plain.make(3).unwrap());
         assert_eq!(with.centres, without.centres);
-        assert!(without.clumps.is_empty() && without.quality.polygon_fraction == 0.0);
-        assert_eq!(without.quality.contacts[1..], [0, 0]);
+        assert!(without.clumps.is_empty() && quality.polygon_fraction == 0.0 && quality.pebble_fraction == 0.0);
+        assert_eq!(quality.contacts[1..], [0, 0]);
     }
 
     #[test]

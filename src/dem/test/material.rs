@@ -54,7 +54,7 @@ pub struct Unbonded {
 }
 
 /// Kind of bond.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BondKind {
     /// Cement with a moment.

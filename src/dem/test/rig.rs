@@ -56,7 +56,7 @@ pub fn mount(
         },
     };
     let mut engine = Engine::new(&model)?;
-    engine.install_bonds(material.bonding.gap * specimen.quality.mean_radius, seed);
+    engine.install_bonds(material.bonding.gap * specimen.mean_radius(), seed);
     engine.absorb_overlaps();
     Ok(engine)
 }

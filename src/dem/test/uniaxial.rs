@@ -140,7 +140,7 @@ impl Compression {
         let values = evaluate(&run.samples);
         let [bottom, top] = [0, 1].map(|w| engine.wall_force(w)[1].abs());
         let density = specimen.density;
-        let diameter = 2.0 * specimen.quality.mean_radius;
+        let diameter = 2.0 * specimen.mean_radius();
         let judgement = Judgement {
             time_step: run.time_step,
             steps: run.steps,
@@ -148,7 +148,7 @@ impl Compression {
             strain_per_step: rate * run.time_step,
             speed_ratio: self.platen_speed * (density / values.modulus_tangent).sqrt(),
             inertial_number: rate * diameter * (density / values.strength).sqrt(),
-            coordination: 2.0 * bonds as f64 / specimen.quality.balls as f64,
+            coordination: 2.0 * bonds as f64 / specimen.radii.len() as f64,
             gauges: gauges.count(),
             platen_imbalance: 2.0 * (bottom - top).abs() / (bottom + top),
         };

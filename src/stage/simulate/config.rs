@@ -1,0 +1,284 @@
+//! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
+
+use super::super::{Complaint, Context, StageError};
+use crate::dem::test::loading::Rule;
+use crate::dem::test::material::{BondKind, Bonded, Bonding, Material, Unbonded};
+use crate::dem::test::rig::Machine;
+use crate::dem::test::uniaxial::Compression;
+use crate::dem::{Convention, Masses};
+use crate::unit::{Angle, Dimension, Pressure, Velocity};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Settings of a `simulate` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Simulate {
+    /// The specimen that is tested.
+    pub specimen: String,
+    /// The design whose rows are run; the material alone when not given.
+    pub design: Option<String>,
+    /// The `[material.NAME]` with the microparameters that rows vary.
+    pub material: String,
+    /// The test.
+    pub test: TestName,
+    /// Speed of each platen.
+    pub platen_speed: Velocity,
+    /// Friction of the platens.
+    #[serde(default)]
+    pub platen_friction: f64,
+    /// Share of the peak at which the test ends.
+    #[serde(default = "stop_fraction")]
+    pub stop_fraction: f64,
+    /// Stress that must be passed before the test may end.
+    #[serde(default = "seating_stress")]
+    pub seating_stress: Pressure,
+    /// Strain at which a test without a peak is given up.
+    #[serde(default = "strain_limit")]
+    pub strain_limit: f64,
+    /// Shares of the peak at which the state is kept.
+    #[serde(default = "snapshots")]
+    pub snapshots: Vec<f64>,
+    /// Local damping.
+    #[serde(default = "damping")]
+    pub damping: f64,
+    /// Masses that move the bodies: their own, or of one critical time step.
+    #[serde(default)]
+    pub masses: Masses,
+    /// Whether different rows share packings.
+    #[serde(default)]
+    pub packing: PackingChoice,
+    /// How bonds form and act.
+    #[serde(default)]
+    pub bond: BondConfig,
+}
+
+/// The tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestName {
+    /// Compression between two platens.
+    Uniaxial,
+}
+
+/// Whether different rows share packings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum PackingChoice {
+    /// Replicate k of every row stands on replicate k of the specimen.
+    #[default]
+    Shared,
+    /// Every row and replicate has its own packing.
+    Own,
+}
+
+/// How bonds form and act.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BondConfig {
+    /// Parallel bond or contact bond.
+    pub kind: BondKind,
+    /// Bonds form at gaps up to this share of the mean radius; 0: where discs overlap.
+    pub gap: f64,
+    /// Bond radius over the smaller radius.
+    pub radius_multiplier: f64,
+    /// Share of the moment in the bond stresses.
+    pub moment_factor: f64,
+    /// Friction angle of the bond.
+    pub friction_angle: Angle,
+    /// Standard deviation of the strengths over their mean.
+    pub deviation: f64,
+    /// How a modulus becomes a stiffness.
+    pub convention: Convention,
+}
+
+impl Default for BondConfig {
+    fn default() -> Self {
+        let Bonding { kind, gap, radius_multiplier, moment_factor, friction_angle, deviation, convention } =
+            Bonding::default();
+        let friction_angle = Angle::si(friction_angle);
+        Self { kind, gap, radius_multiplier, moment_factor, friction_angle, deviation, convention }
+    }
+}
+
+impl BondConfig {
+    pub(super) fn bonding(&self) -> Bonding {
+        Bonding {
+            kind: self.kind,
+            gap: self.gap,
+            radius_multiplier: self.radius_multiplier,
+            moment_factor: self.moment_factor,
+            friction_angle: self.friction_angle.get(),
+            deviation: self.deviation,
+            convention: self.convention,
+        }
+    }
+}
+
+fn stop_fraction() -> f64 {
+    Rule::default().stop_fraction
+}
+
+fn seating_stress() -> Pressure {
+    Pressure::si(Rule::default().seating_stress)
+}
+
+fn strain_limit() -> f64 {
+    Rule::default().strain_limit
+}
+
+fn snapshots() -> Vec<f64> {
+    Rule::default().snapshots
+}
+
+fn damping() -> f64 {
+    Machine::default().damping
+}
+
+/// What decides a simulation besides its specimen and seed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Params {
+    pub(super) material: Material,
+    pub(super) test: Compression,
+}
+
+const STRESS: Dimension = Dimension::new(-1, 1, -2);
+
+/// Every microparameter by its path, with its dimension.
+const MICROPARAMETERS: [(&str, Dimension); 13] = [
+    ("mortar.Ec", STRESS),
+    ("mortar.kn_ks", Dimension::NONE),
+    ("mortar.sigma_c", STRESS),
+    ("mortar.tau_c", STRESS),
+    ("mortar.mu", Dimension::NONE),
+    ("aggregate.Ec", STRESS),
+    ("aggregate.kn_ks", Dimension::NONE),
+    ("aggregate.mu", Dimension::NONE),
+    ("interface.Ec", STRESS),
+    ("interface.kn_ks", Dimension::NONE),
+    ("interface.sigma_c", STRESS),
+    ("interface.tau_c", STRESS),
+    ("interface.mu", Dimension::NONE),
+];
+
+/// Platens faster than this cannot be a quasi-static test of anything (m/s).
+const FASTEST: f64 = 1.0;
+
+impl Simulate {
+    /// The test with all its settings.
+    pub(super) fn spec(&self) -> Compression {
+        match self.test {
+            TestName::Uniaxial => Compression {
+                platen_speed: self.platen_speed.get(),
+                platen_friction: self.platen_friction,
+                machine: Machine { damping: self.damping, masses: self.masses, ..Machine::default() },
+                rule: Rule {
+                    stop_fraction: self.stop_fraction,
+                    seating_stress: self.seating_stress.get(),
+                    strain_limit: self.strain_limit,
+                    snapshots: self.snapshots.clone(),
+                    ..Rule::default()
+                },
+            },
+        }
+    }
+
+    /// The material's values by path, SI.
+    pub(super) fn base(&self, context: &Context) -> Result<BTreeMap<String, f64>, StageError> {
+        let found = context.materials.get(&self.material);
+        let found = found.ok_or_else(|| StageError::new(format!("there is no [material.{}]", self.material)))?;
+        Ok(found.iter().map(|(path, parameter)| (path.clone(), parameter.value)).collect())
+    }
+
+    /// All that is wrong with settings and material.
+    pub(super) fn faults(&self, context: &Context) -> Vec<Complaint> {
+        let mut faults = self.setting_faults();
+        let Some(values) = context.materials.get(&self.material) else {
+            let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
+            let message = format!("there is no [material.{}]", self.material);
+            faults.push(Complaint::new("material", message).hint(format!("known: {}", known.join(", "))));
+            return faults;
+        };
+        for (path, dimension) in MICROPARAMETERS {
+            match values.get(path) {
+                None => {
+                    let message = format!("[material.{}] lacks `{path}`", self.material);
+                    faults.push(Complaint::new("material", message).hint("every contact group needs its values"));
+                }
+                Some(value) if value.dimension != dimension => {
+                    let message = format!("[material.{}]: `{path}` has another unit than it needs", self.material);
+                    let hint = if dimension == STRESS { "write for example \"16 GPa\"" } else { "it is a pure number" };
+                    faults.push(Complaint::new("material", message).hint(hint));
+                }
+                Some(_) => {}
+            }
+        }
+        for path in values.keys().filter(|path| MICROPARAMETERS.iter().all(|known| known.0 != path.as_str())) {
+            let known: Vec<&str> = MICROPARAMETERS.iter().map(|known| known.0).collect();
+            let message = format!("[material.{}]: `{path}` is not a microparameter", self.material);
+            faults.push(Complaint::new("material", message).hint(format!("known: {}", known.join(", "))));
+        }
+        let complete = MICROPARAMETERS.iter().all(|known| values.contains_key(known.0));
+        if complete {
+            let base = values.iter().map(|(path, parameter)| (path.clone(), parameter.value)).collect();
+            faults.extend(material(&base, self.bond.bonding()).err().map(|e| Complaint::new("material", e.message)));
+        }
+        faults
+    }
+
+    fn setting_faults(&self) -> Vec<Complaint> {
+        let speed = self.platen_speed.get();
+        let share = |x: f64| x > 0.0 && x < 1.0;
+        let rules = [
+            (
+                speed > 0.0 && speed <= FASTEST,
+                "platen_speed",
+                speed,
+                "above 0 and at most 1 m/s; 0.02 m/s is quasi-static",
+            ),
+            (self.platen_friction >= 0.0, "platen_friction", self.platen_friction, "at least 0"),
+            (share(self.stop_fraction), "stop_fraction", self.stop_fraction, "between 0 and 1"),
+            (share(self.strain_limit), "strain_limit", self.strain_limit, "a strain between 0 and 1"),
+            (self.seating_stress.get() > 0.0, "seating_stress", self.seating_stress.get(), "positive"),
+            ((0.0..1.0).contains(&self.damping), "damping", self.damping, "at least 0 and below 1"),
+        ];
+        let bad = rules.into_iter().filter(|rule| !rule.0);
+        let mut faults: Vec<Complaint> = bad
+            .map(|(_, key, found, wanted)| Complaint::new(key, format!("`{key}` is {found}; it must be {wanted}")))
+            .collect();
+        for found in self.snapshots.iter().filter(|&&found| !(found > 0.0 && found <= 1.0)) {
+            faults.push(Complaint::new("snapshots", format!("{found} is no share of the peak; give 0 to 1")));
+        }
+        faults
+    }
+}
+
+/// The material of parameters by path.
+///
+/// # Errors
+/// A value is missing or outside the domain of its law.
+pub(super) fn material(values: &BTreeMap<String, f64>, bonding: Bonding) -> Result<Material, StageError> {
+    let get =
+        |path: &str| values.get(path).copied().ok_or_else(|| StageError::new(format!("the material lacks `{path}`")));
+    let bonded = |group: &str| -> Result<Bonded, StageError> {
+        Ok(Bonded {
+            modulus: get(&format!("{group}.Ec"))?,
+            stiffness_ratio: get(&format!("{group}.kn_ks"))?,
+            tensile_strength: get(&format!("{group}.sigma_c"))?,
+            shear_strength: get(&format!("{group}.tau_c"))?,
+            friction: get(&format!("{group}.mu"))?,
+        })
+    };
+    let aggregate = Unbonded {
+        modulus: get("aggregate.Ec")?,
+        stiffness_ratio: get("aggregate.kn_ks")?,
+        friction: get("aggregate.mu")?,
+    };
+    let material = Material { mortar: bonded("mortar")?, aggregate, interface: bonded("interface")?, bonding };
+    let faults = material.faults();
+    if faults.is_empty() {
+        return Ok(material);
+    }
+    Err(StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
+}

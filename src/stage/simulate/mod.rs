@@ -1,0 +1,123 @@
+//! `kind = "simulate"`: a loading test on a specimen, once or per design row and replicate.
+//!
+//! Rows are microparameter sets: the material with the row's factors put in. Equal rows of a design are replicates, each
+//! on its own packing. Whether *different* rows share packings is a setting:
+//! * `packing = "shared"`: replicate k of every row stands on replicate k of the specimen. Differences between rows
+//!   are then free of packing noise, one packing serves a whole design, and calibration compares like with like.
+//! * `packing = "own"`: every row and replicate has a packing of its own, drawn from its content. All runs then scatter
+//!   alike, which is what pure error, lack of fit and the F-tests of an analysis of variance assume.
+//!
+//! The responses are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus at half of it; strain
+//! ratio there), in SI units; further ones are named in the record. What is computed and why: [`crate::dem::test`].
+
+mod config;
+mod record;
+
+pub use config::{BondConfig, PackingChoice, Simulate, TestName};
+
+use super::rows::{self, GATHER};
+use super::{
+    Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Stage, StageError, Step, Task, Work,
+};
+use crate::artifact::Artifact;
+use crate::artifact::specimen::Specimen as Stored;
+use crate::dem::Watch;
+use crate::dem::test::curve::Sample;
+use crate::math::random::Stream;
+use config::Params;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+impl Stage for Simulate {
+    fn inputs(&self) -> Vec<Port> {
+        let specimen = Port { key: "specimen", stages: vec![self.specimen.clone()], accepts: &[Stored::KIND] };
+        let design =
+            self.design.iter().map(|name| Port { key: "design", stages: vec![name.clone()], accepts: &["design"] });
+        std::iter::once(specimen).chain(design).collect()
+    }
+
+    fn gives(&self) -> &'static str {
+        if self.design.is_some() { "results" } else { "run" }
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = rows::check_units(context);
+        found.extend(self.faults(context));
+        found
+    }
+
+    fn settings(&self) -> Value {
+        json!({
+            "specimen": self.specimen, "design": self.design, "material": self.material,
+            "test": self.spec(), "bonding": self.bond.bonding(), "packing": self.packing,
+        })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        if self.design.is_none() {
+            return Ok(Step::Finish(self.sample(known, &Point::new(), 1)?));
+        }
+        let design = known.one("design")?;
+        let runs = rows::rows(&*known.load(design)?, known.context)?
+            .into_iter()
+            .map(|row| Ok(Arc::new(self.sample(known, &row.point, row.replicate)?.row(row.index))))
+            .collect::<Result<Vec<_>, StageError>>()?;
+        Ok(Step::Finish(rows::gather(known, design, runs)?))
+    }
+
+    fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
+        let base = self.base(known.context)?;
+        let material = config::material(&rows::apply(&base, point, known.context)?, self.bond.bonding())?;
+        let specimen = known.one("specimen")?;
+        let packing = match self.packing {
+            PackingChoice::Shared => number,
+            PackingChoice::Own => own_packing(point, number),
+        };
+        let task = Task::new("simulate", json!(Params { material, test: self.spec() }));
+        if packing == 1 {
+            return Ok(task.input("specimen", specimen.content).seed(1));
+        }
+        let make = (specimen.replicate)(packing)
+            .ok_or_else(|| StageError::new(format!("stage `{}` cannot make replicates", specimen.stage)))?;
+        Ok(task.after("specimen", Arc::new(make)).seed(number))
+    }
+}
+
+/// The replicate of the specimen that belongs to one row and replicate of a design alone.
+fn own_packing(point: &Point, number: u64) -> u64 {
+    let text: Vec<String> =
+        point.iter().map(|(name, value)| format!("{name}={:016x}", (value + 0.0).to_bits())).collect();
+    Stream::new(number, &text.join(" "), 0).bits()
+}
+
+impl Kind for Simulate {
+    const NAME: &'static str = "simulate";
+    const ABOUT: &'static str = "a loading test on a specimen, once or per design row";
+    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 1, run: simulate }, GATHER];
+}
+
+/// Samples between two reports of progress.
+const REPORT_EVERY: usize = 50;
+
+fn simulate(job: &Job) -> Result<Artifact, Failure> {
+    let params: Params = job.params()?;
+    let specimen = super::specimen::load(job.input("specimen")?)?;
+    let mut seen = 0;
+    let mut watch = |sample: &Sample| {
+        seen += 1;
+        if seen % REPORT_EVERY == 0 {
+            let note = format!("ε {:.3} %, σ {:.1} MPa", sample.axial * 100.0, sample.stress / 1e6);
+            (job.say)(Progress { fraction: None, note });
+        }
+        if job.stopped() { Watch::Stop } else { Watch::Continue }
+    };
+    let seed = job.seed.unwrap_or_default();
+    let record = params
+        .test
+        .run(&specimen, &params.material, seed, &mut watch)
+        .map_err(|faults| StageError::new(faults.to_string()))?;
+    if record.run.interrupted {
+        return Err(Failure::Stopped);
+    }
+    Ok(record::artifact(&record, &specimen))
+}
