@@ -169,7 +169,7 @@ impl Spread {
     /// Simulated annealing on φ = (Σ d⁻⁴⁰)^(1/40), whose relative change is ln(Σ'/Σ)/40: [`CYCLES`] times from hot to cold.
     fn anneal(mut self, stream: &mut Stream) -> Vec<Vec<usize>> {
         let (n, k) = (self.n, self.columns.len());
-        let tries = (100 * n * k).max(10_000).min((50_000_000 / n).max(1));
+        let tries = (100 * n * k).max(20_000).min((50_000_000 / n).max(1));
         let cooling = exp(ln(COLD / HOT) / tries as f64);
         let mut best = (f64::INFINITY, self.columns.clone());
         for _ in 0..CYCLES {
@@ -200,7 +200,7 @@ impl Spread {
 }
 
 /// Times the annealing is run from hot to cold.
-const CYCLES: usize = 5;
+const CYCLES: usize = 10;
 /// Relative rise of φ that is accepted one time in e at first …
 const HOT: f64 = 0.05;
 /// … and at last.
