@@ -181,19 +181,19 @@ pub(super) fn check_probability(key: &str, value: f64) -> Option<Complaint> {
 /// A table column by column from rows.
 pub(super) struct Rows<'a, R>(pub &'a [R]);
 
-impl<R> Rows<'_, R> {
+impl<'a, R> Rows<'a, R> {
     /// A number of every row, NaN where there is none.
-    pub(super) fn reals(&self, pick: impl Fn(&R) -> Option<f64>) -> Vec<f64> {
+    pub(super) fn reals(&self, pick: impl Fn(&'a R) -> Option<f64>) -> Vec<f64> {
         self.0.iter().map(|row| pick(row).unwrap_or(f64::NAN)).collect()
     }
 
     /// A whole number of every row.
-    pub(super) fn ints(&self, pick: impl Fn(&R) -> usize) -> Vec<i64> {
+    pub(super) fn ints(&self, pick: impl Fn(&'a R) -> usize) -> Vec<i64> {
         self.0.iter().map(|row| pick(row) as i64).collect()
     }
 
     /// A text of every row.
-    pub(super) fn texts<T: Into<String>>(&self, pick: impl Fn(&R) -> T) -> Vec<String> {
+    pub(super) fn texts<T: Into<String>>(&self, pick: impl Fn(&'a R) -> T) -> Vec<String> {
         self.0.iter().map(|row| pick(row).into()).collect()
     }
 }

@@ -8,7 +8,6 @@ use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
 use crate::stats::canonical::canonical;
 use crate::stats::diagnostics::Residual;
 use crate::stats::fit::Fit;
-use crate::stats::model::Model;
 use crate::stats::regression::{Coefficient, Regression, Settings, regress};
 use crate::stats::selection::{Direction, Selection};
 use crate::stats::terms::Term;
