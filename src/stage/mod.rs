@@ -31,13 +31,21 @@
 //! when at their default (`skip_serializing_if`), so that they rerun nothing. Parameters of tasks are plain SI numbers
 //! (the domain's own spec types), built from the config in `next`.
 
+pub mod anova;
+mod columns;
 pub mod command;
 mod context;
 pub mod data;
+pub mod fitted;
 pub mod formula;
+mod published;
+pub mod range;
+pub mod regression;
 pub mod rows;
 pub mod simulate;
 pub mod specimen;
+pub mod rsm;
+pub mod screening;
 mod task;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
@@ -192,11 +200,16 @@ macro_rules! kinds {
 }
 
 kinds! {
+    anova::Anova,
     command::Command,
     data::Data,
     formula::Formula,
     simulate::Simulate,
     specimen::Specimen,
+    range::Range,
+    regression::Regression,
+    rsm::Rsm,
+    screening::Screening,
 }
 
 /// The work called `name`.

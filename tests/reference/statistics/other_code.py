@@ -7,7 +7,7 @@ Cook's distance, PRESS, variance inflation, prediction intervals. numpy: canonic
 limits by their formulas. The data are the printed Tables 9 to 11 of Su et al. 2021, the filtration-rate experiment of
 Montgomery (Design and Analysis of Experiments, example 6.2), and small tables drawn here from a fixed seed.
 """
-import csv
+import itertools
 import pathlib
 import sys
 import warnings
@@ -62,6 +62,12 @@ def unbalanced():
     print()
 
 
+def read(file):
+    """A table without the units in its heads."""
+    d = pd.read_csv(DATA / file, comment='#')
+    return d.rename(columns=lambda head: head.split(' ')[0])
+
+
 def second_order(f):
     pairs = [f'{a}*{b}' for i, a in enumerate(f) for b in f[i + 1:]]
     return ['const'] + f + [f'{a}^2' for a in f] + pairs
@@ -78,7 +84,7 @@ def column(d, term):
 
 
 def surface(name, file, factors, response, coding, weights=None):
-    d = pd.read_csv(DATA / file)
+    d = read(file)
     terms = second_order(factors)
     x = np.array([column(d, t) for t in terms]).T
     coded = d.copy()
@@ -155,7 +161,7 @@ def surface(name, file, factors, response, coding, weights=None):
 
 
 def backward():
-    d = pd.read_csv(DATA / 'table11.csv')
+    d = read('table11.csv')
     terms = second_order(['Ec', 'kn_ks', 'mu', 'kn_ks_j'])
     powers = lambda t: {p.partition('^')[0]: int(p.partition('^')[2] or 1) for p in t.split('*')} if t != 'const' else {}
     contains = lambda a, b: all(powers(a).get(n, 0) >= k for n, k in powers(b).items())
@@ -186,7 +192,6 @@ def screening():
     level = {f: np.array([1.0 if run >> k & 1 else -1.0 for run in range(16)]) for k, f in enumerate(factors)}
     terms = []
     for size in range(1, 5):
-        import itertools
         terms += ['*'.join(c) for c in itertools.combinations(factors, size)]
     effect = np.array([2 * np.mean(np.prod([level[f] for f in t.split('*')], axis=0) * y) for t in terms])
     m = len(effect)
