@@ -34,7 +34,9 @@
 pub mod command;
 mod context;
 pub mod data;
+pub mod figure;
 pub mod rows;
+pub mod table;
 mod task;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
@@ -191,6 +193,8 @@ macro_rules! kinds {
 kinds! {
     command::Command,
     data::Data,
+    figure::Figure,
+    table::Table,
 }
 
 /// The work called `name`.
