@@ -46,6 +46,8 @@ pub mod simulate;
 pub mod specimen;
 pub mod rsm;
 pub mod screening;
+pub mod figure;
+pub mod table;
 mod task;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
@@ -210,6 +212,8 @@ kinds! {
     regression::Regression,
     rsm::Rsm,
     screening::Screening,
+    figure::Figure,
+    table::Table,
 }
 
 /// The work called `name`.
