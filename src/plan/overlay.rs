@@ -8,7 +8,8 @@ use super::node::{Entry, Node, Sources, Span, Table, Value};
 use super::syntax;
 
 /// Tables of named things: their names must exist.
-const NAMED: [(&str, &str); 3] = [("stage", "stages"), ("factor", "factors"), ("response", "responses")];
+const NAMED: [(&str, &str); 4] =
+    [("stage", "stages"), ("factor", "factors"), ("response", "responses"), ("material", "materials")];
 
 /// Names of the file's profiles.
 pub(super) fn names(root: &Table) -> Vec<String> {

@@ -246,7 +246,11 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let about = Rows(&analyses);
     let fit = fit_table(&fits)
         .texts_column("pooled", "terms pooled into the error", about.texts(|a| a.pooled.join(" ")))
-        .texts_column("not_estimable", "interactions that the runs cannot tell apart", about.texts(|a| a.not_estimable.join(" ")));
+        .texts_column(
+            "not_estimable",
+            "interactions that the runs cannot tell apart",
+            about.texts(|a| a.not_estimable.join(" ")),
+        );
     let root = Group::new()
         .with("anova", Node::Table(table))
         .with("fit", Node::Table(fit))

@@ -70,9 +70,11 @@ impl Columns {
         let takes = |list: &[String], name: &String| list.is_empty() || list.contains(name);
         let factor = |name: &&String| {
             let factor = context.factors.get(*name).filter(|_| takes(wanted.factors, name))?;
-            let ends = factor.levels.iter().copied().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| {
-                (low.min(level), high.max(level))
-            });
+            let ends = factor
+                .levels
+                .iter()
+                .copied()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| (low.min(level), high.max(level)));
             let coding = factor.range.map(|[low, high]| (low, high)).or((!factor.levels.is_empty()).then_some(ends));
             Some(FactorColumn {
                 name: (*name).clone(),
@@ -149,7 +151,8 @@ fn reals(table: &Table, name: &str, unit: Option<&str>) -> Result<Vec<f64>, Stag
         let message = format!("column `{name}` is in `{}` where `{unit}` is declared", column.unit);
         return Err(StageError::new(message).hint("give the column's unit in its head, as in `Ec [GPa]`"));
     }
-    let (times, over) = if from.factor >= to.factor { (from.factor / to.factor, 1.0) } else { (1.0, to.factor / from.factor) };
+    let (times, over) =
+        if from.factor >= to.factor { (from.factor / to.factor, 1.0) } else { (1.0, to.factor / from.factor) };
     values.iter_mut().for_each(|v| *v = *v * times / over);
     Ok(values)
 }
@@ -175,7 +178,8 @@ pub(super) fn check_names(context: &Context, factors: &[String], responses: &[St
 /// A complaint about a probability outside (0, 1).
 pub(super) fn check_probability(key: &str, value: f64) -> Option<Complaint> {
     let fine = value > 0.0 && value < 1.0;
-    (!fine).then(|| Complaint::new(key, format!("`{key}` is {value}; it must lie between 0 and 1")).hint("such as 0.05"))
+    (!fine)
+        .then(|| Complaint::new(key, format!("`{key}` is {value}; it must lie between 0 and 1")).hint("such as 0.05"))
 }
 
 /// A table column by column from rows.

@@ -100,7 +100,12 @@ fn coefficient_table(found: &[(&Fitting, Regression)], list: impl Fn(&Regression
     named("coefficients of the fitted models")
         .texts_column("response", "", rows.texts(|(response, _)| *response))
         .texts_column("term", "", rows.texts(|(_, c)| c.term.as_str()))
-        .reals_column("estimate", "", "unit of the response per unit of the term", rows.reals(|(_, c)| Some(c.estimate)))
+        .reals_column(
+            "estimate",
+            "",
+            "unit of the response per unit of the term",
+            rows.reals(|(_, c)| Some(c.estimate)),
+        )
         .reals_column("std_error", "", "standard error", rows.reals(|(_, c)| c.std_error))
         .reals_column("t", "", "estimate over standard error", rows.reals(|(_, c)| c.t))
         .reals_column("p", "", "probability of such a t by chance", rows.reals(|(_, c)| c.p))
@@ -150,17 +155,18 @@ pub(super) fn residual_table<'a>(found: impl Iterator<Item = (&'a str, &'a [Resi
 
 /// Stationary points factor by factor, and the principal axes of the surfaces.
 fn stationary_tables(found: &[(&Fitting, Regression)]) -> (Table, Table) {
-    let places: Vec<_> =
-        found.iter().filter_map(|(f, r)| Some((f.response.as_str(), canonical(&r.model)?))).collect();
+    let places: Vec<_> = found.iter().filter_map(|(f, r)| Some((f.response.as_str(), canonical(&r.model)?))).collect();
     let points: Vec<_> = places.iter().flat_map(|place| (0..place.1.factors.len()).map(move |i| (place, i))).collect();
     let rows = Rows(&points);
     let stationary = named("stationary points of the second-order surfaces")
         .texts_column("response", "", rows.texts(|(place, _)| place.0))
         .texts_column("nature", "", rows.texts(|(place, _)| place.1.nature.word()))
         .reals_column("value", "", "the surface there", rows.reals(|(place, _)| Some(place.1.value)))
-        .texts_column("domain", "whether it lies among the runs", rows.texts(|(place, _)| {
-            if place.1.inside { "inside" } else { "outside" }
-        }))
+        .texts_column(
+            "domain",
+            "whether it lies among the runs",
+            rows.texts(|(place, _)| if place.1.inside { "inside" } else { "outside" }),
+        )
         .texts_column("factor", "", rows.texts(|(place, i)| place.1.factors[*i].as_str()))
         .reals_column("natural", "", "in the factor's unit", rows.reals(|(place, i)| Some(place.1.natural[*i])))
         .reals_column("coded", "", "in coded units", rows.reals(|(place, i)| Some(place.1.coded[*i])));
@@ -175,7 +181,12 @@ fn stationary_tables(found: &[(&Fitting, Regression)]) -> (Table, Table) {
         .ints_column("axis", "by falling eigenvalue", rows.ints(|(_, k, ..)| k + 1))
         .reals_column("eigenvalue", "", "curvature along the axis", rows.reals(|(_, _, axis, _)| Some(axis.eigenvalue)))
         .texts_column("factor", "", rows.texts(|(place, _, _, i)| place.1.factors[*i].as_str()))
-        .reals_column("direction", "", "component along the factor", rows.reals(|(_, _, axis, i)| Some(axis.direction[*i])));
+        .reals_column(
+            "direction",
+            "",
+            "component along the factor",
+            rows.reals(|(_, _, axis, i)| Some(axis.direction[*i])),
+        );
     (stationary, axes)
 }
 

@@ -36,17 +36,17 @@ mod columns;
 pub mod command;
 mod context;
 pub mod data;
+pub mod figure;
 pub mod fitted;
 pub mod formula;
 mod published;
 pub mod range;
 pub mod regression;
 pub mod rows;
-pub mod simulate;
-pub mod specimen;
 pub mod rsm;
 pub mod screening;
-pub mod figure;
+pub mod simulate;
+pub mod specimen;
 pub mod table;
 mod task;
 
@@ -205,14 +205,14 @@ kinds! {
     anova::Anova,
     command::Command,
     data::Data,
+    figure::Figure,
     formula::Formula,
-    simulate::Simulate,
-    specimen::Specimen,
     range::Range,
     regression::Regression,
     rsm::Rsm,
     screening::Screening,
-    figure::Figure,
+    simulate::Simulate,
+    specimen::Specimen,
     table::Table,
 }
 

@@ -42,9 +42,9 @@ fn parse(bytes: &[u8], line: &str, value: &str) -> Result<Vec<Print>, StageError
         let record = record.map_err(fail)?;
         let cell = |at: usize| record.get(at).unwrap_or("").to_owned();
         let text = cell(print);
-        let value = text.parse().map_err(|_| {
-            StageError::new(format!("published values, row {}: `{text}` is no number", i + 1))
-        })?;
+        let value = text
+            .parse()
+            .map_err(|_| StageError::new(format!("published values, row {}: `{text}` is no number", i + 1)))?;
         let note = note.map(cell).unwrap_or_default();
         found.push(Print { response: cell(response), line: cell(name), value, text, note });
     }
@@ -101,7 +101,8 @@ mod tests {
     fn a_print_is_judged_by_its_own_decimals() {
         let prints = parse(b"response,term,estimate,note\nE,a,0.30,\nE,b,-1.5,sign\n", "term", "estimate").unwrap();
         let computed = |line, value, rounding| Computed { response: "E", line, value: Some(value), rounding };
-        let all = [computed("a", 0.3049, 0.0), computed("a", 0.31, 0.0), computed("a", 0.31, 0.003), computed("b", 1.5, 0.0)];
+        let all =
+            [computed("a", 0.3049, 0.0), computed("a", 0.31, 0.0), computed("a", 0.31, 0.003), computed("b", 1.5, 0.0)];
         let table = beside(Table::default(), &prints, &all);
         let crate::artifact::Values::Texts(remarks) = &table.column("remark").unwrap().values else { panic!() };
         assert_eq!(remarks[..2], ["as printed", "differs from print"]);

@@ -75,13 +75,19 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         .texts_column("factor", "", rows.texts(|l| l.factor.as_str()));
     for level in 0..most {
         let about = format!("mean response at level {}, in its unit", level + 1);
-        range = range.reals_column(&format!("level_{}", level + 1), "", &about, rows.reals(|l| l.means.get(level).copied()));
+        range = range.reals_column(
+            &format!("level_{}", level + 1),
+            "",
+            &about,
+            rows.reals(|l| l.means.get(level).copied()),
+        );
     }
     range = range
         .reals_column("range", "", "greatest mean minus least", rows.reals(|l| Some(l.range)))
         .ints_column("rank", "1 has the largest range", rows.ints(|l| l.rank))
         .ints_column("missing", "runs without a value", rows.ints(|l| l.missing));
-    let root = Group::new().with("range", Node::Table(range)).with("levels", Node::Table(levels(&columns, &lines, most)));
+    let root =
+        Group::new().with("range", Node::Table(range)).with("levels", Node::Table(levels(&columns, &lines, most)));
     Ok(Artifact::new("range", 1, root))
 }
 

@@ -55,7 +55,9 @@ impl Stage for Rsm {
         }
         if self.tables.len() != 1 && self.tables.len() != self.responses.len() {
             let message = format!("{} tables for {} responses", self.tables.len(), self.responses.len());
-            found.push(Complaint::new("tables", message).hint("one table per response in the same order, or one for all"));
+            found.push(
+                Complaint::new("tables", message).hint("one table per response in the same order, or one for all"),
+            );
         }
         for (i, response) in self.responses.iter().enumerate() {
             if self.responses[..i].contains(response) {

@@ -70,11 +70,7 @@ impl Stage for Screening {
         let factors = factors_of(&self.terms);
         let wanted = Wanted { factors: &factors, responses: &self.responses, weights: None, levels: false };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
-        let terms = if self.terms.is_empty() {
-            Term::first_order(&columns.factor_names())
-        } else {
-            self.terms.clone()
-        };
+        let terms = if self.terms.is_empty() { Term::first_order(&columns.factor_names()) } else { self.terms.clone() };
         let params = Params { columns, terms, alpha: self.alpha };
         Ok(Step::Finish(Task::new("screening", json!(params)).input("table", input.content)))
     }

@@ -34,7 +34,10 @@ fn main() {
     let large = table(100_000, 20);
     let names: Vec<String> = large.factors.iter().map(|f| f.name.clone()).collect();
     let terms = Term::second_order(&names);
-    println!("anova, 100000 x 20: {:.3} s", least(5, || anova(&large, &Settings::default()).map_err(|e| panic!("{e}"))));
+    println!(
+        "anova, 100000 x 20: {:.3} s",
+        least(5, || anova(&large, &Settings::default()).map_err(|e| panic!("{e}")))
+    );
     let surface = || regress(&large, "y", &terms, &regression::Settings::default()).map_err(|e| panic!("{e}"));
     println!("surface, 100000 x 20, {} terms: {:.3} s", terms.len(), least(5, surface));
     let small = table(64, 13);

@@ -58,7 +58,8 @@ fn types_of_sums_of_squares_on_unbalanced_data() {
 /// The columns of a CSV of `workflows/su2021`.
 pub(super) fn columns(file: &str, names: &[&str]) -> Vec<Vec<f64>> {
     let path = format!("{}/workflows/su2021/{file}", env!("CARGO_MANIFEST_DIR"));
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
     let heads = reader.headers().unwrap().clone();
     let place = |name: &str| heads.iter().position(|h| h.split(' ').next() == Some(name)).unwrap();
     let places: Vec<usize> = names.iter().map(|n| place(n)).collect();
