@@ -23,22 +23,33 @@ pub(super) struct Campaign {
 }
 
 impl Campaign {
-    /// The checked workflow, or all its faults printed.
-    pub(super) fn load(&self) -> Result<Workflow, Exit> {
+    /// The checked workflow, or all its faults printed; `stages` are names from the command line that must be in it.
+    pub(super) fn load(&self, stages: &[String]) -> Result<Workflow, Exit> {
         let overrides = Overrides { profile: self.profile.clone(), sets: self.sets.clone() };
-        plan::load(&self.workflow, &overrides).map_err(|faults| {
+        let workflow = plan::load(&self.workflow, &overrides).map_err(|faults| {
             for fault in faults {
                 eprintln!("{fault}");
             }
             Exit::BadInput
-        })
+        })?;
+        let known: Vec<&str> = workflow.stages.iter().map(|stage| stage.name.as_str()).collect();
+        let unknown: Vec<&String> = stages.iter().filter(|name| !known.contains(&name.as_str())).collect();
+        for name in &unknown {
+            let like = plan::nearest(name, known.iter().copied());
+            let meant = like.map_or_else(String::new, |like| format!("; did you mean `{like}`?"));
+            eprintln!("error: the workflow has no stage `{name}`{meant}\n  it has {}", known.join(", "));
+        }
+        if unknown.is_empty() { Ok(workflow) } else { Err(Exit::BadInput) }
     }
 
     /// The store.
     pub(super) fn open(&self) -> Result<Store, Exit> {
-        Store::open(&self.store).map_err(|e| {
-            eprintln!("error: {e}");
-            Exit::System
-        })
+        Store::open(&self.store).map_err(|e| system(&e))
     }
+}
+
+/// Prints what is wrong with the store or the system.
+pub(super) fn system(error: &dyn std::error::Error) -> Exit {
+    eprintln!("error: {error}");
+    Exit::System
 }

@@ -4,9 +4,12 @@
 //! is wrong, 3 the store or the system failed, 130 interrupted.
 
 mod common;
+mod diff;
+mod plan;
 mod progress;
 mod run;
 mod show;
+mod store;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -24,9 +27,13 @@ enum Command {
     /// Run what is missing of a campaign.
     Run(run::Run),
     /// Show what `run` would do, and why, without doing it.
-    Plan(run::Plan),
+    Plan(plan::Plan),
     /// Show a result as a table.
     Show(show::Show),
+    /// Compare two campaigns: what was set otherwise, what came out otherwise.
+    Diff(diff::Diff),
+    /// Look after the store: list, verify, sizes, remove what nothing reaches.
+    Store(store::StoreCommand),
 }
 
 /// How a command ended.
@@ -50,6 +57,8 @@ pub fn main() -> ExitCode {
         Command::Run(run) => run.go(),
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
+        Command::Diff(diff) => diff.go(),
+        Command::Store(store) => store.go(),
     };
     ExitCode::from(exit as u8)
 }

@@ -1,39 +1,176 @@
-//! What a person sees while a campaign runs: plain lines on standard error.
+//! What a person sees while a campaign runs: a live table on a terminal, plain lines elsewhere.
 
-use crate::run::{Event, StageStatus, Watch};
+use crate::run::{Event, StageReport, StageStatus, Watch};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::collections::HashMap;
+use std::io::IsTerminal;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
-/// One line per stage that ended and per failure.
-pub(super) struct Lines {
-    quiet: bool,
+/// Says nothing.
+pub(super) struct Silent;
+
+impl Watch for Silent {
+    fn event(&self, _: Event<'_>) {}
 }
 
-impl Lines {
-    pub(super) fn new(quiet: bool) -> Self {
-        Self { quiet }
+/// Between two plain lines of one stage.
+const PAUSE: Duration = Duration::from_secs(5);
+
+/// Tells failures at once, stages when they end, and now and then how far each is.
+pub(super) struct Progress<'a> {
+    screen: Option<MultiProgress>,
+    stages: Mutex<HashMap<String, Live>>,
+    /// Mean seconds of a task by stage, from earlier runs; looked up when the first task starts.
+    expected: OnceLock<HashMap<String, f64>>,
+    look_up: Box<dyn Fn() -> HashMap<String, f64> + Sync + 'a>,
+    workers: usize,
+}
+
+/// A stage at work.
+struct Live {
+    started: Instant,
+    told: Instant,
+    /// Tasks that ended since, other than from the store.
+    ended: usize,
+    bar: Option<ProgressBar>,
+}
+
+impl<'a> Progress<'a> {
+    /// `look_up` gives the mean seconds of a task by stage.
+    pub(super) fn new(look_up: impl Fn() -> HashMap<String, f64> + Sync + 'a, workers: usize) -> Self {
+        let screen = std::io::stderr().is_terminal().then(|| {
+            let target = ProgressDrawTarget::stderr_with_hz(8);
+            MultiProgress::with_draw_target(target)
+        });
+        Self { screen, stages: Mutex::default(), expected: OnceLock::new(), look_up: Box::new(look_up), workers }
+    }
+
+    fn stages(&self) -> MutexGuard<'_, HashMap<String, Live>> {
+        self.stages.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn say(&self, line: &str) {
+        match &self.screen {
+            Some(screen) => screen.suspend(|| eprintln!("{line}")),
+            None => eprintln!("{line}"),
+        }
+    }
+
+    fn bar(&self, stage: &str) -> Option<ProgressBar> {
+        let bar = self.screen.as_ref()?.add(ProgressBar::new(0));
+        let style = ProgressStyle::with_template("{prefix:16} {bar:24.cyan/dim} {pos:>5}/{len:5} {msg}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_prefix(stage.to_owned());
+        Some(bar)
+    }
+
+    fn started(&self, stage: &str) {
+        let mut stages = self.stages();
+        if !stages.contains_key(stage) {
+            let now = Instant::now();
+            stages.insert(stage.to_owned(), Live { started: now, told: now, ended: 0, bar: self.bar(stage) });
+        }
+    }
+
+    fn ended(&self, stage: &str, count: crate::run::TaskCount) {
+        let mut stages = self.stages();
+        let Some(live) = stages.get_mut(stage) else { return };
+        live.ended += 1;
+        let elapsed = live.started.elapsed().as_secs_f64();
+        let left = count.total - count.ended();
+        let message = pace(
+            live.ended,
+            left,
+            elapsed,
+            self.expected.get_or_init(&self.look_up).get(stage).map(|s| s / self.workers as f64),
+        );
+        if let Some(bar) = &live.bar {
+            bar.set_length(count.total as u64);
+            bar.set_position(count.ended() as u64);
+            bar.set_message(message);
+        } else if live.told.elapsed() >= PAUSE && left > 0 {
+            live.told = Instant::now();
+            eprintln!("{stage:16} {:>5}/{:<5} {message}", count.ended(), count.total);
+        }
+    }
+
+    fn closed(&self, report: &StageReport) {
+        let live = self.stages().remove(&report.name);
+        if let Some(bar) = live.and_then(|live| live.bar) {
+            bar.finish_and_clear();
+        }
+        let name = &report.name;
+        match &report.status {
+            StageStatus::Failed(why) => self.say(&format!("error: stage `{name}` failed: {why}")),
+            StageStatus::Skipped(cause) => self.say(&format!("{name:16} skipped, because `{cause}` failed")),
+            StageStatus::Done(_) => {
+                let time =
+                    if report.tasks.ran > 0 { format!(" in {}", duration(report.seconds)) } else { String::new() };
+                self.say(&format!("{name:16} done: {} ran{time}, {} cached", report.tasks.ran, report.tasks.cached));
+            }
+            StageStatus::Open => {}
+        }
     }
 }
 
-impl Watch for Lines {
+impl Watch for Progress<'_> {
     fn event(&self, event: Event<'_>) {
         match event {
-            Event::Ended { stage, row, failure: Some(why), .. } => {
-                let row = row.map_or_else(String::new, |row| format!("[{}]", row + 1));
-                eprintln!("error: {stage}{row}: {why}");
-            }
-            Event::Ended { stage, count, failure: None, .. } if !self.quiet => {
-                eprintln!("{stage:16} {} of {}", count.ran + count.cached, count.total);
-            }
-            Event::Stage { report } => match &report.status {
-                StageStatus::Failed(why) => eprintln!("error: stage `{}` failed: {why}", report.name),
-                StageStatus::Skipped(cause) if !self.quiet => {
-                    eprintln!("{:16} skipped, because `{cause}` failed", report.name);
+            Event::Started { stage, .. } => self.started(stage),
+            Event::Said { stage, row, progress } => {
+                if let Some(bar) = self.stages().get(stage).and_then(|live| live.bar.as_ref()) {
+                    let row = row.map_or_else(String::new, |row| format!("[{}] ", row + 1));
+                    let part = progress.fraction.map_or_else(String::new, |part| format!("{:.0} % ", 100.0 * part));
+                    bar.set_message(format!("{row}{part}{}", progress.note));
                 }
-                StageStatus::Done(_) if !self.quiet => {
-                    eprintln!("{:16} done: {} ran, {} cached", report.name, report.tasks.ran, report.tasks.cached);
+            }
+            Event::Ended { stage, row, count, failure } => {
+                if let Some(why) = failure {
+                    let row = row.map_or_else(String::new, |row| format!("[{}]", row + 1));
+                    self.say(&format!("error: {stage}{row}: {why}"));
                 }
-                StageStatus::Open | StageStatus::Done(_) | StageStatus::Skipped(_) => {}
-            },
-            Event::Started { .. } | Event::Said { .. } | Event::Ended { .. } => {}
+                self.ended(stage, count);
+            }
+            Event::Stage { report } => self.closed(report),
         }
+    }
+}
+
+/// Rate, elapsed time and expected rest.
+fn pace(ended: usize, left: usize, elapsed: f64, expected: Option<f64>) -> String {
+    let measured = elapsed / ended as f64;
+    // A few tasks tell less than an earlier campaign.
+    let each = expected.filter(|_| ended < 5).unwrap_or(measured);
+    let rate = if measured < 1.0 { format!("{:.0}/s", 1.0 / measured) } else { format!("{} each", duration(measured)) };
+    format!("{rate}, {} elapsed, {} left", duration(elapsed), duration(each * left as f64))
+}
+
+/// A time in seconds, in words.
+pub(super) fn duration(seconds: f64) -> String {
+    if seconds < 0.95 {
+        return format!("{:.0} ms", 1000.0 * seconds);
+    }
+    if seconds < 59.5 {
+        return if seconds < 9.95 { format!("{seconds:.1} s") } else { format!("{seconds:.0} s") };
+    }
+    let minutes = (seconds / 60.0).round() as u64;
+    if minutes < 60 { format!("{minutes} min") } else { format!("{} h {:02} min", minutes / 60, minutes % 60) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_told_in_fitting_units() {
+        let told = [0.0123, 3.21, 42.4, 600.0, 5430.0].map(duration);
+        assert_eq!(told, ["12 ms", "3.2 s", "42 s", "10 min", "1 h 31 min"]);
+    }
+
+    #[test]
+    fn the_rest_is_expected_from_earlier_runs_until_this_one_has_told_enough() {
+        assert_eq!(pace(1, 10, 1.0, Some(4.0)), "1.0 s each, 1.0 s elapsed, 40 s left");
+        assert_eq!(pace(5, 10, 5.0, Some(4.0)), "1.0 s each, 5.0 s elapsed, 10 s left");
     }
 }

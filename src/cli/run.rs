@@ -1,15 +1,18 @@
-//! `flow run` and `flow plan`: the same decisions, with and without doing.
+//! `flow run`: computes what is missing.
 
 use super::Exit;
-use super::common::Campaign;
-use super::progress::Lines;
+use super::common::{Campaign, system};
+use super::progress::{Progress, Silent, duration};
 use crate::exec::cores;
-use crate::run::{Report, Settings, StageStatus, run};
+use crate::plan::Workflow;
+use crate::run::{Past, Report, Settings, StageStatus, TaskState, Watch, record, run};
+use crate::store::Store;
 use clap::Args;
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::SystemTime;
 
 /// Run what is missing of a campaign.
 #[derive(Args)]
@@ -20,7 +23,7 @@ pub(super) struct Run {
     stages: Vec<String>,
     /// Tasks at once; the number of cores when not given.
     #[arg(long, short, value_name = "N")]
-    jobs: Option<usize>,
+    jobs: Option<std::num::NonZero<usize>>,
     /// Go on with what does not depend on a failed task.
     #[arg(long)]
     keep_going: bool,
@@ -32,67 +35,88 @@ pub(super) struct Run {
     quiet: bool,
 }
 
-/// Show what `run` would do, and why, without doing it.
-#[derive(Args)]
-pub(super) struct Plan {
-    #[command(flatten)]
-    campaign: Campaign,
-    /// Only these stages, with all they need.
-    stages: Vec<String>,
-}
-
 impl Run {
     pub(super) fn go(self) -> Exit {
         self.report().unwrap_or_else(|exit| exit)
     }
 
     fn report(&self) -> Result<Exit, Exit> {
-        let started = Instant::now();
-        let workflow = self.campaign.load()?;
+        let started = SystemTime::now();
+        let workflow = self.campaign.load(&self.stages)?;
         let store = self.campaign.open()?;
-        let stop = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&stop);
-        let handler = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-        if let Err(e) = handler {
-            eprintln!("warning: Ctrl-C will not stop cleanly: {e}");
-        }
-        let settings = Settings {
-            jobs: self.jobs.unwrap_or_else(cores),
-            keep_going: self.keep_going,
-            dry: false,
-            targets: self.stages.clone(),
+        let stop = interruption();
+        let jobs = self.jobs.map_or_else(cores, std::num::NonZero::get);
+        let settings =
+            Settings { jobs, keep_going: self.keep_going, dry: false, targets: self.stages.clone(), memos: true };
+        let watch: Box<dyn Watch> = match self.quiet {
+            true => Box::new(Silent),
+            false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
         };
-        let report = run(&workflow, &store, &settings, &Lines::new(self.quiet), &stop);
-        let seconds = started.elapsed().as_secs_f64();
+        let report = run(&workflow, &store, &settings, &*watch, &stop);
+        for damage in store.take_damages() {
+            eprintln!("warning: {damage}");
+        }
+        if report.count().ran + report.count().failed > 0 {
+            record(&workflow, &self.campaign.sets, &report, started, &store).map_err(|e| system(&e))?;
+        }
+        let seconds = started.elapsed().unwrap_or_default().as_secs_f64();
         if self.json {
             println!("{}", document(&workflow.name, &report, seconds));
         } else if !self.quiet {
-            let count = report.tasks();
-            println!(
-                "{} tasks: {} ran, {} cached, {} failed, {} skipped in {seconds:.1} s",
-                count.total, count.ran, count.cached, count.failed, count.skipped
-            );
+            println!("{}", summary(&report, seconds));
         }
+        self.failures(&workflow, &report);
         Ok(exit(&report))
+    }
+
+    /// Every failed task with the command that runs it again.
+    fn failures(&self, workflow: &Workflow, report: &Report) {
+        for task in &report.tasks {
+            if let TaskState::Failed(why) = &task.state {
+                let name = &workflow.stages[task.stage].name;
+                let row = task.row.map_or_else(String::new, |row| format!("[{}]", row + 1));
+                let path = self.campaign.workflow.display();
+                let profile = self.campaign.profile.as_ref().map_or_else(String::new, |p| format!(" --profile {p}"));
+                eprintln!("failed: {name}{row}: {why}\n  again: flow run {path} {name}{profile}");
+            }
+        }
     }
 }
 
-impl Plan {
-    pub(super) fn go(self) -> Exit {
-        self.report().unwrap_or_else(|exit| exit)
-    }
-
-    fn report(&self) -> Result<Exit, Exit> {
-        let workflow = self.campaign.load()?;
-        let store = self.campaign.open()?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: self.stages.clone() };
-        let report = run(&workflow, &store, &settings, &Lines::new(true), &AtomicBool::new(false));
-        for stage in &report.stages {
-            let open = stage.tasks.total - stage.tasks.cached;
-            println!("{:16} {:12} {} cached, {open} to run", stage.name, state(&stage.status), stage.tasks.cached);
+/// A flag that Ctrl-C or a termination request sets; a second Ctrl-C ends the process at once.
+fn interruption() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let handler = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(Exit::Interrupted as i32);
         }
-        Ok(Exit::Done)
+        eprintln!("stopping: what is finished is kept; once more to stop at once");
+    });
+    if let Err(e) = handler {
+        eprintln!("warning: Ctrl-C will not stop cleanly: {e}");
     }
+    stop
+}
+
+fn expected(workflow: &Workflow, store: &Store) -> HashMap<String, f64> {
+    let Ok(past) = Past::of(workflow, store) else { return HashMap::new() };
+    let seconds = |name: &String| Some((name.clone(), past.seconds(name)?));
+    workflow.stages.iter().filter_map(|stage| seconds(&stage.name)).collect()
+}
+
+fn summary(report: &Report, seconds: f64) -> String {
+    let count = report.count();
+    let mut parts = vec![format!("{} ran", count.ran), format!("{} cached", count.cached)];
+    for (n, word) in [(count.failed, "failed"), (count.skipped, "skipped")] {
+        if n > 0 {
+            parts.push(format!("{n} {word}"));
+        }
+    }
+    if report.interrupted {
+        parts.push("interrupted: a second run goes on".to_owned());
+    }
+    format!("{} tasks: {} in {}", count.total, parts.join(", "), duration(seconds))
 }
 
 fn exit(report: &Report) -> Exit {
@@ -108,27 +132,18 @@ fn exit(report: &Report) -> Exit {
     }
 }
 
-fn state(status: &StageStatus) -> &'static str {
-    match status {
-        StageStatus::Open => "open",
-        StageStatus::Done(_) => "done",
-        StageStatus::Failed(_) => "failed",
-        StageStatus::Skipped(_) => "skipped",
-    }
-}
-
 fn document(workflow: &str, report: &Report, seconds: f64) -> Value {
-    let count = report.tasks();
+    let count = report.count();
     let stages: Vec<Value> = report
         .stages
         .iter()
         .map(|stage| {
-            let object = match stage.status {
+            let object = match &stage.status {
                 StageStatus::Done(content) => json!(content.to_string()),
                 StageStatus::Open | StageStatus::Failed(_) | StageStatus::Skipped(_) => Value::Null,
             };
             json!({
-                "name": stage.name, "kind": stage.kind, "state": state(&stage.status),
+                "name": stage.name, "kind": stage.kind, "state": stage.status.word(),
                 "tasks": stage.tasks.total, "ran": stage.tasks.ran, "object": object,
             })
         })

@@ -1,11 +1,13 @@
-//! `flow show`: a result as a table.
+//! `flow show`: a result, or one row's run, as a readable table.
 
 use super::Exit;
-use super::common::Campaign;
-use super::progress::Lines;
-use crate::artifact::{Table, Values};
-use crate::run::{Settings, StageStatus, run};
+use super::common::{Campaign, system};
+use super::progress::Silent;
+use crate::artifact::{Artifact, Column, Node, Table, Values};
+use crate::run::{Report, Settings, StageStatus, run};
+use crate::store::{ObjectId, Store};
 use clap::Args;
+use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
 /// Show a result as a table.
@@ -13,14 +15,21 @@ use std::sync::atomic::AtomicBool;
 pub(super) struct Show {
     #[command(flatten)]
     campaign: Campaign,
-    /// The stage.
-    stage: String,
+    /// The stage, or one run of it: `orthogonal` or `orthogonal[12]` (rows are counted from 1).
+    #[arg(value_name = "STAGE[ROW]")]
+    what: String,
     /// One table of it; all when not given.
     #[arg(long, value_name = "NAME")]
     table: Option<String>,
     /// As CSV, with units in the first line.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["json", "path"])]
     csv: bool,
+    /// As JSON: all values, or the one table.
+    #[arg(long, conflicts_with = "path")]
+    json: bool,
+    /// Only the path of its HDF5 file.
+    #[arg(long)]
+    path: bool,
 }
 
 impl Show {
@@ -29,32 +38,113 @@ impl Show {
     }
 
     fn print(&self) -> Result<Exit, Exit> {
-        let workflow = self.campaign.load()?;
+        let (stage, row) = self.parts()?;
+        let workflow = self.campaign.load(std::slice::from_ref(&stage))?;
         let store = self.campaign.open()?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: vec![self.stage.clone()] };
-        let report = run(&workflow, &store, &settings, &Lines::new(true), &AtomicBool::new(false));
-        let Some(StageStatus::Done(content)) =
-            report.stages.iter().find(|stage| stage.name == self.stage).map(|stage| &stage.status)
-        else {
-            eprintln!("error: `{}` has no result yet; run it first", self.stage);
+        // Single rows are known only when every task is looked up.
+        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: vec![stage.clone()], memos: false };
+        let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
+        let place = workflow.position(&stage);
+        let object = match row {
+            None => stage_object(&report, &stage),
+            Some(row) => {
+                report.tasks.iter().find(|t| Some(t.stage) == place && t.row == Some(row)).and_then(|t| t.object)
+            }
+        };
+        let Some(object) = object else {
+            eprintln!("error: `{}` has no result yet{}", self.what, remedy(&self.campaign, &stage));
             return Err(Exit::BadInput);
         };
-        let artifact = store.get(content).map_err(|e| {
-            eprintln!("error: {e}");
-            Exit::System
-        })?;
-        let tables = artifact.tables();
-        let chosen: Vec<_> =
-            tables.iter().filter(|(name, _)| self.table.as_ref().is_none_or(|wanted| wanted == name)).collect();
-        if chosen.is_empty() {
-            let known: Vec<&str> = tables.iter().map(|(name, _)| name.as_str()).collect();
-            eprintln!("error: `{}` has no such table; it has {}", self.stage, known.join(", "));
-            return Err(Exit::BadInput);
+        if self.path {
+            println!("{}", store.path(&object).display());
+            return Ok(Exit::Done);
         }
-        for (name, table) in chosen {
-            if self.csv { print!("{}", csv_text(table)) } else { println!("{name}\n{}", text(table)) }
+        self.values(&store, &object)
+    }
+
+    /// Stage and row (from 0) of `stage[row]`.
+    fn parts(&self) -> Result<(String, Option<usize>), Exit> {
+        let Some((stage, row)) = self.what.strip_suffix(']').and_then(|what| what.split_once('[')) else {
+            return Ok((self.what.clone(), None));
+        };
+        match row.trim().parse::<usize>() {
+            Ok(row) if row > 0 => Ok((stage.to_owned(), Some(row - 1))),
+            Ok(_) | Err(_) => {
+                eprintln!("error: `{row}` is not a row; rows are counted from 1, as in orthogonal[12]");
+                Err(Exit::BadInput)
+            }
+        }
+    }
+
+    fn values(&self, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
+        let artifact = store.get(&object.content).map_err(|e| system(&e))?;
+        let tables = self.chosen(&artifact)?;
+        if self.json {
+            let value = match &self.table {
+                Some(_) => tables.first().map_or(Value::Null, |(_, table)| table_json(table)),
+                None => group_json(&artifact),
+            };
+            println!("{value}");
+        } else if self.csv {
+            tables.iter().for_each(|(_, table)| print!("{}", csv_text(table)));
+        } else {
+            for (name, table) in tables {
+                println!("{name}\n{}", text(table));
+            }
+            print_others(&artifact, self.table.is_some());
         }
         Ok(Exit::Done)
+    }
+
+    /// The tables to show, in order.
+    fn chosen<'a>(&self, artifact: &'a Artifact) -> Result<Vec<(String, &'a Table)>, Exit> {
+        let mut tables = artifact.tables();
+        let known = tables.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(", ");
+        if let Some(wanted) = &self.table {
+            tables.retain(|(name, _)| name == wanted);
+            if tables.is_empty() {
+                eprintln!("error: `{}` has no table `{wanted}`; it has {known}", self.what);
+                return Err(Exit::BadInput);
+            }
+        }
+        if self.csv && tables.len() > 1 {
+            eprintln!("error: `{}` has several tables; choose one with --table: {known}", self.what);
+            return Err(Exit::BadInput);
+        }
+        Ok(tables)
+    }
+}
+
+/// The object of a stage's result: that of the last task with its content.
+fn stage_object(report: &Report, stage: &str) -> Option<ObjectId> {
+    let status = report.stages.iter().find(|s| s.name == stage).map(|s| &s.status)?;
+    let StageStatus::Done(content) = status else { return None };
+    report.objects.iter().rev().find(|object| object.content == *content).copied()
+}
+
+fn remedy(campaign: &Campaign, stage: &str) -> String {
+    let profile = campaign.profile.as_ref().map_or_else(String::new, |p| format!(" --profile {p}"));
+    format!("; run it first: flow run {} {stage}{profile}", campaign.workflow.display())
+}
+
+/// What is no table: single values, and the shapes of arrays.
+fn print_others(artifact: &Artifact, only_table: bool) {
+    if only_table {
+        return;
+    }
+    for (name, node) in artifact.root.iter() {
+        match node {
+            Node::Text(text) if !text.is_empty() => println!("{name}: {text}"),
+            Node::Real { value, unit } => println!("{name}: {value} {unit}"),
+            Node::Int(value) => println!("{name}: {value}"),
+            Node::Flag(value) => println!("{name}: {}", if *value { "yes" } else { "no" }),
+            Node::Array(array) => {
+                let shape: Vec<String> = array.shape.iter().map(usize::to_string).collect();
+                println!("{name}: {} {} {}", shape.join(" × "), array.values.type_name(), array.unit);
+            }
+            Node::Bytes(bytes) => println!("{name}: {} bytes", bytes.len()),
+            Node::Group(_) | Node::Table(_) | Node::Text(_) => {}
+        }
     }
 }
 
@@ -68,17 +158,43 @@ fn cells(values: &Values) -> Vec<String> {
     }
 }
 
-fn text(table: &Table) -> comfy_table::Table {
-    let mut shown = comfy_table::Table::new();
-    shown.load_style(comfy_table::presets::UTF8_BORDERS_ONLY);
-    let head = |column: &crate::artifact::Column| match column.unit.as_str() {
+/// Numbers for a reader: seven digits, small and large ones with an exponent.
+fn short(values: &Values) -> Vec<String> {
+    let one = |v: &f64| match v.abs() {
+        _ if v.is_nan() => String::new(),
+        0.0 => "0".to_owned(),
+        size if !(1e-4..1e7).contains(&size) => format!("{v:.5e}"),
+        size => {
+            let decimals = (6 - size.log10().floor() as i32).max(0) as usize;
+            let text = format!("{v:.decimals$}");
+            if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+        }
+    };
+    match values {
+        Values::Reals(values) => values.iter().map(one).collect(),
+        Values::Ints(_) | Values::Texts(_) => cells(values),
+    }
+}
+
+fn head(column: &Column) -> String {
+    match column.unit.as_str() {
         "" => column.name.clone(),
         unit => format!("{} [{unit}]", column.name),
-    };
+    }
+}
+
+fn text(table: &Table) -> comfy_table::Table {
+    let mut shown = comfy_table::Table::new();
+    shown.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY);
     shown.set_header(table.columns.iter().map(head));
-    let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
+    let columns: Vec<Vec<String>> = table.columns.iter().map(|column| short(&column.values)).collect();
     for row in 0..table.rows() {
         shown.add_row(columns.iter().map(|column| &column[row]));
+    }
+    for (place, column) in table.columns.iter().enumerate() {
+        if let (Some(shown), Values::Reals(_) | Values::Ints(_)) = (shown.column_mut(place), &column.values) {
+            shown.set_cell_alignment(comfy_table::CellAlignment::Right);
+        }
     }
     shown
 }
@@ -86,15 +202,50 @@ fn text(table: &Table) -> comfy_table::Table {
 fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
     let mut out = csv::Writer::from_writer(Vec::new());
-    let head = table.columns.iter().map(|column| match column.unit.as_str() {
-        "" => column.name.clone(),
-        unit => format!("{} [{unit}]", column.name),
-    });
-    let written = out.write_record(head).and_then(|()| {
+    let written = out.write_record(table.columns.iter().map(head)).and_then(|()| {
         (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))
     });
     match (written, out.into_inner()) {
         (Ok(()), Ok(bytes)) => String::from_utf8_lossy(&bytes).into_owned(),
         (Err(_), _) | (_, Err(_)) => panic!("BUG: writing a table to memory failed"),
+    }
+}
+
+fn values_json(values: &Values) -> Value {
+    match values {
+        Values::Reals(values) => values.iter().map(|v| if v.is_finite() { json!(v) } else { Value::Null }).collect(),
+        Values::Ints(values) => json!(values),
+        Values::Texts(values) => json!(values),
+    }
+}
+
+fn table_json(table: &Table) -> Value {
+    let column =
+        |c: &Column| json!({ "name": c.name, "unit": c.unit, "about": c.about, "values": values_json(&c.values) });
+    json!({ "about": table.about, "columns": table.columns.iter().map(column).collect::<Vec<_>>() })
+}
+
+fn group_json(artifact: &Artifact) -> Value {
+    let values: serde_json::Map<String, Value> =
+        artifact.root.iter().map(|(name, node)| (name.to_owned(), node_json(node))).collect();
+    json!({ "kind": artifact.kind, "version": artifact.version, "values": values })
+}
+
+fn node_json(node: &Node) -> Value {
+    match node {
+        Node::Group(group) => group
+            .iter()
+            .map(|(name, node)| (name.to_owned(), node_json(node)))
+            .collect::<serde_json::Map<_, _>>()
+            .into(),
+        Node::Table(table) => table_json(table),
+        Node::Array(array) => json!({ "shape": array.shape, "unit": array.unit, "values": values_json(&array.values) }),
+        Node::Text(text) => json!(text),
+        Node::Real { value, unit } => {
+            json!({ "value": if value.is_finite() { json!(value) } else { Value::Null }, "unit": unit })
+        }
+        Node::Int(value) => json!(value),
+        Node::Flag(value) => json!(value),
+        Node::Bytes(bytes) => json!({ "bytes": bytes.len() }),
     }
 }

@@ -5,7 +5,7 @@
 //! step, and the frame is turned by ω dt. Pebbles follow as x = X + R b with v = V + ω × (x − X).
 
 use super::damping::damped;
-use super::simd::Quad;
+use super::simd::{Quad, Rows};
 use super::space::{Space, Spin, Tuple, Vector};
 use std::ops::Range;
 
@@ -31,18 +31,20 @@ pub(crate) struct Rigid<S: Space> {
     /// Inertia and its inverse in the clump's frame.
     pub(crate) inertia: [[f64; 3]; 3],
     pub(crate) inverse: [[f64; 3]; 3],
-    /// Weight, N.
-    pub(crate) weight: Vector<S>,
+    /// Weight and applied load: force, N, and moment, N·m.
+    pub(crate) weight: (Vector<S>, Spin<S>),
 }
 
 impl<S: Space> Rigid<S> {
     /// Resultant of the pebbles' loads in the order of the pebbles; the loads are cleared.
-    pub(crate) fn collect(&self, records: &[Quad], loads: &mut [Quad]) -> (Vector<S>, Spin<S>) {
-        let (mut force, mut moment) = (self.weight, Spin::<S>::zero());
+    #[inline(always)]
+    pub(crate) fn collect(&self, rows: &impl Rows, loads: &mut [Quad]) -> (Vector<S>, Spin<S>) {
+        let (mut force, mut moment) = self.weight;
         for p in self.pebbles.clone() {
             let load = &mut loads[p * S::LOADS..(p + 1) * S::LOADS];
             let (f, m) = split::<S>(load);
-            let arm = position::<S>(records, p).minus(self.centre);
+            let place = rows.read(p * S::RECORD);
+            let arm = Vector::<S>::build(|k| place.0[k]).minus(self.centre);
             force = force.plus(f);
             moment = moment.plus(m.plus(S::moment(arm, f)));
             load.fill(Quad::default());
@@ -50,8 +52,8 @@ impl<S: Space> Rigid<S> {
         (force, moment)
     }
 
-    /// One step under a resultant.
-    pub(crate) fn advance(&mut self, force: Vector<S>, moment: Spin<S>, damping: f64, dt: f64) {
+    /// One step under a resultant; returns the work of local damping, J.
+    pub(crate) fn advance(&mut self, force: Vector<S>, moment: Spin<S>, damping: f64, dt: f64) -> f64 {
         let velocity = self.velocity;
         let push = Vector::<S>::build(|k| damped(force.at(k), velocity.at(k), damping));
         self.velocity = velocity.plus(push.times(1.0 / self.mass).times(dt));
@@ -63,20 +65,31 @@ impl<S: Space> Rigid<S> {
         let middle = S::turn_on(self.turn, early.times(0.5 * dt));
         self.spin = S::spin_of(middle, &self.inverse, self.momentum);
         self.turn = S::turn_on(self.turn, self.spin.times(dt));
+        let shift = force.minus(push).dot(velocity.plus(self.velocity));
+        let turn = moment.minus(twist).dot(spin.plus(self.spin));
+        0.5 * dt * (shift + turn)
     }
 
-    /// Writes the pebbles' records.
-    pub(crate) fn place(&self, records: &mut [Quad]) {
+    /// Writes the pebbles' records; returns the largest speed components.
+    #[inline(always)]
+    pub(crate) fn place(&self, rows: &mut impl Rows) -> Quad {
+        let mut fastest = Quad::default();
         for (p, &offset) in self.pebbles.clone().zip(&self.offsets) {
             let arm = S::outward(self.turn, offset);
-            let record = &mut records[p * S::RECORD..(p + 1) * S::RECORD];
+            let mut record = [Quad::default(); 3];
+            record[0] = rows.read(p * S::RECORD);
             set_kinematics::<S>(
-                record,
+                &mut record,
                 self.centre.plus(arm),
                 self.velocity.plus(S::carried(self.spin, arm)),
                 self.spin,
             );
+            for (k, &quad) in record[..S::RECORD].iter().enumerate() {
+                rows.write(p * S::RECORD + k, quad);
+            }
+            fastest = fastest.larger(record[1]);
         }
+        fastest
     }
 
     /// Sets velocity and spin.
@@ -130,7 +143,7 @@ pub(crate) fn set_kinematics<S: Space>(record: &mut [Quad], x: Vector<S>, v: Vec
         record[0].0[k] = x.at(k);
         record[1].0[k] = v.at(k);
     }
-    for k in 0..(if S::DIMENSION == 2 { 1 } else { 3 }) {
+    for k in 0..S::Spin::<f64>::LENGTH {
         record[1 + row].0[first + k] = w.at(k);
     }
 }

@@ -234,7 +234,7 @@ mod tests {
     fn orthogonal_alpha_makes_squares_uncorrelated() {
         let orthogonal =
             |centre| CentralComposite { alpha: Alpha::Orthogonal, centre: Some(centre), ..Default::default() };
-        for (k, alpha) in [(2, 1.0), (3, 1.2154), (4, 1.4142), (5, 1.5467)] {
+        for (k, alpha) in [(2, 1.0), (3, 1.2154), (4, 2.0_f64.sqrt()), (5, 1.5467)] {
             let t = table(orthogonal(1), k);
             assert!((t.coded.iter().map(|r| r[0]).fold(0.0, f64::max) - alpha).abs() < 1e-4, "k = {k}");
         }

@@ -73,11 +73,12 @@ fn blocks_28() -> Vec<Vec<i8>> {
     (0..27).map(|r| (0..27).map(|c| cell(r, c)).collect()).collect()
 }
 
-/// (H, H; H, −H) of the matrix whose first column of ones is left out here.
+/// (H, H; H, −H), the first column of ones left out, with signs of columns such that the last row is −1.
 fn doubled(rows: &[Vec<i8>]) -> Vec<Vec<i8>> {
     let half = |sign: i8| {
         move |row: &Vec<i8>| -> Vec<i8> {
-            row.iter().copied().chain([sign]).chain(row.iter().map(|x| sign * x)).collect()
+            let right = row.iter().map(|x| -sign * x);
+            row.iter().copied().chain([sign]).chain(right).collect()
         }
     };
     rows.iter().map(half(1)).chain(rows.iter().map(half(-1))).collect()
@@ -92,6 +93,7 @@ mod tests {
         for runs in (4..=48).step_by(4) {
             let rows = two_level(runs).unwrap().rows;
             assert_eq!((rows.len(), rows[0].len()), (runs, runs - 1));
+            assert!(rows[runs - 1].iter().all(|&x| x == -1));
             for a in 0..runs - 1 {
                 assert_eq!(rows.iter().map(|r| i32::from(r[a])).sum::<i32>(), 0, "{runs} runs, column {a}");
                 for b in 0..a {

@@ -13,7 +13,10 @@ pub mod fractional;
 mod galois;
 pub mod given;
 mod hadamard;
+pub mod latin_hypercube;
+pub mod orthogonal;
 pub mod plackett_burman;
+pub mod sobol;
 pub mod table;
 
 pub use coding::{Domain, Factor};
@@ -64,12 +67,18 @@ methods! {
     FullFactorial(factorial),
     /// A regular fraction of the two-level factorial.
     FractionalFactorial(fractional),
+    /// Tables of finite geometry and difference schemes.
+    Orthogonal(orthogonal),
     /// Two-level screening in multiples of four runs.
     PlackettBurman(plackett_burman),
     /// Cube, axial and centre points.
     CentralComposite(central_composite),
     /// Edge midpoints and centre points.
     BoxBehnken(box_behnken),
+    /// A stratified sample.
+    LatinHypercube(latin_hypercube),
+    /// A low-discrepancy sample.
+    Sobol(sobol),
     /// Rows that are given.
     Given(given),
 }

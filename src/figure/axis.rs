@@ -186,13 +186,14 @@ fn log_ticks(low: f64, high: f64, want: usize) -> (Vec<Tick>, Vec<f64>) {
     let powers: Vec<i32> = (first..=last).filter(|&e| inside(power_of_ten(e))).collect();
     let every = (powers.len() / want.max(1)).max(1) as i32;
     let few = powers.len() < 2;
+    let plain = powers.iter().all(|e| (-2..=3).contains(e));
     let (mut ticks, mut minor) = (Vec::new(), Vec::new());
     for exponent in first..=last {
         for m in 1..=9 {
             let at = f64::from(m) * power_of_ten(exponent);
             let labelled = if few { [1, 2, 5].contains(&m) } else { m == 1 && exponent.rem_euclid(every) == 0 };
             match (inside(at), labelled) {
-                (true, true) => ticks.push(Tick { at, label: power_label(at, m, exponent, few) }),
+                (true, true) => ticks.push(Tick { at, label: power_label(at, m, exponent, plain) }),
                 (true, false) if every == 1 || m == 1 => minor.push(at),
                 _ => {}
             }
@@ -201,10 +202,10 @@ fn log_ticks(low: f64, high: f64, want: usize) -> (Vec<Tick>, Vec<f64>) {
     (ticks, minor)
 }
 
-fn power_label(at: f64, m: i32, exponent: i32, few: bool) -> String {
-    match (few || (-2..=3).contains(&exponent), m) {
-        (true, _) if (-3..=4).contains(&exponent) => shortest(at, at),
-        (_, 1) => format!("$10^{{{exponent}}}$"),
+fn power_label(at: f64, m: i32, exponent: i32, plain: bool) -> String {
+    match m {
+        _ if plain || exponent == 0 => shortest(at, at),
+        1 => format!("$10^{{{exponent}}}$"),
         _ => format!("{m}×$10^{{{exponent}}}$"),
     }
 }
@@ -285,7 +286,7 @@ mod tests {
     #[test]
     fn log_ticks_are_powers() {
         let axis = Axis::between("x", Scale::Log, 1e-6, 1.0, 7);
-        assert_eq!(labels(&axis), ["$10^{-6}$", "$10^{-5}$", "$10^{-4}$", "$10^{-3}$", "0.01", "0.1", "1"]);
+        assert_eq!(labels(&axis), ["$10^{-6}$", "$10^{-5}$", "$10^{-4}$", "$10^{-3}$", "$10^{-2}$", "$10^{-1}$", "1"]);
         assert_eq!(labels(&Axis::between("x", Scale::Log, 15.0, 90.0, 4)), ["20", "50"]);
         assert!((axis.fraction(1e-3) - 0.5).abs() < 1e-12);
     }

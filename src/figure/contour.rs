@@ -115,14 +115,29 @@ impl Bands {
         BAR + 1.6 + widest + 1.4 + size
     }
 
-    /// The bar with its numbers on the right.
+    /// The bar of the bands, its numbers on the right.
     pub fn draw_bar(&self, scene: &mut Scene, bar: Rect, style: &Style) {
-        let size = style.size();
-        let place = |v: f64| bar.bottom - self.axis.fraction(v) * bar.height();
         scene.fill(Path::rect(bar), self.color(0, style.map));
         for (k, &level) in self.levels.iter().enumerate() {
-            scene.fill(Path::rect(Rect { bottom: place(level), ..bar }), self.color(k + 1, style.map));
+            let bottom = bar.bottom - self.axis.fraction(level) * bar.height();
+            scene.fill(Path::rect(Rect { bottom, ..bar }), self.color(k + 1, style.map));
         }
+        self.draw_numbers(scene, bar, style);
+    }
+
+    /// The bar of all colours, for surfaces that are not cut into bands.
+    pub fn draw_smooth_bar(&self, scene: &mut Scene, bar: Rect, style: &Style) {
+        const STEPS: usize = 64;
+        for k in 0..STEPS {
+            let bottom = bar.bottom - k as f64 / STEPS as f64 * bar.height();
+            scene.fill(Path::rect(Rect { bottom, ..bar }), style.map.at((k as f64 + 0.5) / STEPS as f64));
+        }
+        self.draw_numbers(scene, bar, style);
+    }
+
+    fn draw_numbers(&self, scene: &mut Scene, bar: Rect, style: &Style) {
+        let size = style.size();
+        let place = |v: f64| bar.bottom - self.axis.fraction(v) * bar.height();
         scene.stroke(Path::rect(bar), Stroke::new(SOFT, 0.2));
         let mut widest = 0.0_f64;
         let mut ticks = Path::default();

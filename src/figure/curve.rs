@@ -150,7 +150,7 @@ impl StressStrain {
 
     /// With one curve the modes have colours of their own; with several the colour names the curve, the dash the mode.
     fn crack_style(&self, curve: usize, mode: usize) -> Stroke {
-        let color = if self.curves.len() == 1 { palette::category(mode + 1) } else { palette::category(curve) };
+        let color = if self.curves.len() == 1 { palette::mode(mode) } else { palette::category(curve) };
         Stroke::new(color, 0.42).dashed(palette::dash(mode))
     }
 

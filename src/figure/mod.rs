@@ -8,23 +8,39 @@
 //! * words and numbers: [`column`], [`table`]
 //! * every other file is a figure
 
+pub mod agreement;
 pub mod axis;
 pub mod bars;
+pub mod chains;
 pub mod column;
 pub mod contour;
+pub mod convergence;
+pub mod cracks;
 pub mod curve;
+pub mod dag;
 pub mod effects;
 pub mod font;
+pub mod half_normal;
 pub mod isoline;
+pub mod layers;
 pub mod legend;
 pub mod palette;
 pub mod panel;
 pub mod pdf;
 pub mod png;
+pub mod points;
+pub mod residuals;
+pub mod rose;
+pub mod scatter;
 pub mod scene;
+pub mod solutions;
+pub mod specimen;
+pub mod surface;
 pub mod svg;
 pub mod table;
 pub mod text;
+pub mod verification;
+pub mod view;
 
 use column::Column;
 use scene::Scene;
@@ -85,6 +101,13 @@ impl Quantity {
     /// Name, symbol and unit as an axis title.
     pub fn title(&self) -> String {
         text::quantity(&self.name, &self.symbol, &self.unit)
+    }
+
+    /// A word before the symbol, or before the name when there is none: "Published σ_u / MPa".
+    pub fn titled(&self, word: &str) -> String {
+        let name =
+            if self.symbol.is_empty() { format!("{word} {}", self.name.to_lowercase()) } else { word.to_string() };
+        text::quantity(&name, &self.symbol, &self.unit)
     }
 
     /// Symbol and unit, or name and unit when there is no symbol.

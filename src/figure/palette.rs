@@ -15,6 +15,8 @@ pub const SOFT: Color = Color(0x5c, 0x63, 0x6b);
 pub const GRID: Color = Color(0xe3, 0xe6, 0xea);
 /// Ground of bands and boxes.
 pub const WASH: Color = Color(0xf2, 0xf4, 0xf6);
+/// Ground of tolerance bands.
+pub const BAND: Color = Color(0xe4, 0xec, 0xf3);
 /// White.
 pub const PAPER: Color = Color(0xff, 0xff, 0xff);
 
@@ -59,6 +61,11 @@ const MARKERS: [Marker; 7] =
 /// Colour of category number `i`.
 pub fn category(i: usize) -> Color {
     CATEGORIES[i % CATEGORIES.len()]
+}
+
+/// Colour of crack mode `i`: vermilion (tension), dark blue (shear; darker in grey too), then others.
+pub fn mode(i: usize) -> Color {
+    [VERMILION, Color(0x0b, 0x3c, 0x6f), GREEN, PURPLE, ORANGE, SKY][i % 6]
 }
 
 /// Colour of category number `i` for areas: lighter neighbours than lines need, so that grey tells them apart.

@@ -359,12 +359,12 @@ impl Scene {
         self.items.push(Item::Group { clip, facts, items });
     }
 
-    /// Every text with the rectangle it takes, groups included.
-    pub fn texts(&self) -> Vec<(String, Rect)> {
-        fn walk(items: &[Item], out: &mut Vec<(String, Rect)>) {
+    /// Every text with the corners of the place it takes, groups included.
+    pub fn texts(&self) -> Vec<(String, [Point; 4])> {
+        fn walk(items: &[Item], out: &mut Vec<(String, [Point; 4])>) {
             for item in items {
                 match item {
-                    Item::Text { line, at, angle, .. } => out.push((line.plain.clone(), line.bounds(*at, *angle))),
+                    Item::Text { line, at, angle, .. } => out.push((line.plain.clone(), line.corners(*at, *angle))),
                     Item::Group { items, .. } => walk(items, out),
                     Item::Shape { .. } | Item::Discs { .. } => {}
                 }
@@ -381,14 +381,27 @@ impl Scene {
         let page = self.page();
         let mut faults = Vec::new();
         for (i, (text, place)) in texts.iter().enumerate() {
-            if !page.holds(place) {
+            if Rect::around(*place).is_some_and(|r| !page.holds(&r)) {
                 faults.push(format!("“{text}” leaves the page: {place:.1?}"));
             }
-            let over = texts[..i].iter().filter(|(_, other)| place.meets(other));
+            let over = texts[..i].iter().filter(|(_, other)| meet(place, other));
             faults.extend(over.map(|(other, _)| format!("“{text}” covers “{other}”")));
         }
         faults
     }
+}
+
+/// Whether two rectangles, each given by its corners in turn, overlap: no side of either parts them.
+pub fn meet(a: &[Point; 4], b: &[Point; 4]) -> bool {
+    let parts = |side: [f64; 2]| {
+        let reach = |c: &[Point; 4]| {
+            let along = c.map(|p| p[0] * side[0] + p[1] * side[1]);
+            (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let ((a0, a1), (b0, b1)) = (reach(a), reach(b));
+        a1 <= b0 || b1 <= a0
+    };
+    ![a, b].iter().any(|c| (0..2).any(|k| parts([c[k + 1][0] - c[k][0], c[k + 1][1] - c[k][1]])))
 }
 
 /// One line per item with its place, to compare and to read.

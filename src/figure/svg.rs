@@ -28,12 +28,19 @@ pub fn svg(scene: &Scene) -> String {
     if !glyphs.is_empty() {
         out += "<defs>\n";
         for (face, id) in glyphs {
-            put(&mut out, format_args!("<path id=\"{}{id}\" d=\"{}\"/>\n", face.letter(), outline(face, id)));
+            put(
+                &mut out,
+                format_args!(
+                    "<path id=\"{}{id}\" fill-rule=\"nonzero\" d=\"{}\"/>\n",
+                    face.letter(),
+                    outline(face, id)
+                ),
+            );
         }
         out += "</defs>\n";
     }
     put(&mut out, format_args!("<path fill=\"#fff\" d=\"M0 0H{w}V{h}H0Z\"/>\n"));
-    out += "<g stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
+    out += "<g fill-rule=\"evenodd\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
     out += &body;
     out += "</g>\n</svg>\n";
     out
@@ -85,7 +92,7 @@ fn shape(out: &mut String, path: &Path, fill: Option<&Fill>, stroke: Option<&Str
     match fill {
         None => *out += " fill=\"none\"",
         Some(fill) => {
-            put(out, format_args!(" fill=\"{}\" fill-rule=\"evenodd\"", hex(fill.color)));
+            put(out, format_args!(" fill=\"{}\"", hex(fill.color)));
             if fill.opacity < 1.0 {
                 put(out, format_args!(" fill-opacity=\"{}\"", number(fill.opacity)));
             }
@@ -104,11 +111,11 @@ fn shape(out: &mut String, path: &Path, fill: Option<&Fill>, stroke: Option<&Str
     put(out, format_args!(" d=\"{}\"/>\n", path_data(path)));
 }
 
-/// Relative steps on a grid of a micrometre: short, and rounding does not add up.
+/// Relative steps on a grid of 0.01 mm: short, and rounding does not add up.
 fn path_data(path: &Path) -> String {
     let mut d = String::new();
     let (mut here, mut start) = ([0_i64; 2], [0_i64; 2]);
-    let grid = |p: Point| [(p[0] * 1e3).round() as i64, (p[1] * 1e3).round() as i64];
+    let grid = |p: Point| p.map(|v| 10 * (v * 100.0).round() as i64);
     let mut last = ' ';
     for step in &path.0 {
         match *step {

@@ -212,13 +212,17 @@ impl Line {
         Line { glyphs: pen.glyphs, rules: pen.rules, size, width: pen.x, above, below, plain: pen.plain }
     }
 
-    /// The rectangle of the ink when the baseline starts at `at` and is turned by `angle` degrees anticlockwise.
-    pub fn bounds(&self, at: Point, angle: f64) -> Rect {
+    /// The corners of the ink's place when the baseline starts at `at` and is turned by `angle` degrees anticlockwise.
+    pub fn corners(&self, at: Point, angle: f64) -> [Point; 4] {
         let (s, c) = sin_cos(angle.to_radians());
         let turn = |x: f64, y: f64| [at[0] + x * c + y * s, at[1] - x * s + y * c];
         let (w, up, down) = (self.width, -self.above, self.below);
-        Rect::around([turn(0.0, up), turn(w, up), turn(w, down), turn(0.0, down)])
-            .unwrap_or(Rect::new(at[0], at[1], 0.0, 0.0))
+        [turn(0.0, up), turn(w, up), turn(w, down), turn(0.0, down)]
+    }
+
+    /// The upright rectangle around the ink when the baseline starts at `at` and is turned by `angle` degrees anticlockwise.
+    pub fn bounds(&self, at: Point, angle: f64) -> Rect {
+        Rect::around(self.corners(at, angle)).unwrap_or(Rect::new(at[0], at[1], 0.0, 0.0))
     }
 }
 

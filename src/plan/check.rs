@@ -15,14 +15,18 @@ use std::sync::Arc;
 /// Keys of the root.
 const ROOT: [&str; 6] = ["workflow", "factor", "response", "material", "stage", "profile"];
 
-/// Longest name of a stage, factor, response or profile.
+/// Longest name of a stage, factor, response or material.
 const LONGEST_NAME: usize = 64;
+
+/// What such a name is like.
+pub(super) const NAME_PATTERN: &str = "^[A-Za-z][A-Za-z0-9_-]{0,63}$";
 
 /// The checked workflow, or every fault of it in the order of the file.
 pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
     let mut sources = Sources(vec![Arc::new(Source { name: name.to_owned(), text: text.to_owned() })]);
     let (tree, mut faults) = syntax::tree(&sources, 0);
     let Some(Node { value: Value::Table(mut root), .. }) = tree else { return Err(faults) };
+    let profiles = overlay::names(&root);
     overlay::profile(&mut root, overrides.profile.as_deref(), &mut sources, &mut faults);
     overlay::sets(&mut root, &overrides.sets, &mut sources, &mut faults);
     let mut check = Check { sources: &sources, faults };
@@ -47,6 +51,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         about: head.about,
         context,
         profile: overrides.profile.clone(),
+        profiles,
         stages,
     })
 }
@@ -71,7 +76,9 @@ impl Check<'_> {
 
     fn head(&mut self, root: &mut Table) -> Option<Head> {
         match root.0.get_mut("workflow") {
-            Some(entry) => read(&mut entry.node, self.sources, &mut self.faults, |reader| Head::deserialize(reader)),
+            Some(entry) => {
+                read(&mut entry.node, self.sources, &mut self.faults, Vec::new, |reader| Head::deserialize(reader))
+            }
             None => {
                 let empty = if root.0.is_empty() { "the file is empty: " } else { "" };
                 let hint = "begin with\n[workflow]\ntitle = \"what it is\"\nseed = 1";
@@ -124,7 +131,7 @@ impl Check<'_> {
     }
 
     fn factor(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Factor> {
-        let table = read(node, self.sources, &mut self.faults, |reader| FactorTable::deserialize(reader))?;
+        let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| FactorTable::deserialize(reader))?;
         let before = self.faults.len();
         self.unit(&table.unit, node);
         if table.levels.is_empty() && table.range.is_none() {
@@ -148,14 +155,14 @@ impl Check<'_> {
     }
 
     fn response(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Response> {
-        let table = read(node, self.sources, &mut self.faults, |reader| ResponseTable::deserialize(reader))?;
+        let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| ResponseTable::deserialize(reader))?;
         self.unit(&table.unit, node);
         Some(table.response(name))
     }
 
     fn material(&mut self, _: &str, node: &mut Node) -> Option<BTreeMap<String, crate::stage::Parameter>> {
-        let read_table = |reader: super::read::Reader<'_>| MaterialTable::deserialize(reader);
-        read(node, self.sources, &mut self.faults, read_table).map(MaterialTable::material)
+        let read_table = |reader: super::reader::Reader<'_>| MaterialTable::deserialize(reader);
+        read(node, self.sources, &mut self.faults, Vec::new, read_table).map(MaterialTable::material)
     }
 
     fn unit(&mut self, unit: &str, node: &Node) {

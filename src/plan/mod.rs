@@ -13,6 +13,8 @@ pub mod key;
 mod node;
 mod overlay;
 mod read;
+mod reader;
+pub mod schema;
 mod stages;
 mod syntax;
 pub mod why;
@@ -45,6 +47,8 @@ pub struct Workflow {
     pub context: Context,
     /// The profile that was laid over it.
     pub profile: Option<String>,
+    /// Names of all profiles of the file.
+    pub profiles: Vec<String>,
     /// Stages so that each comes after its inputs, else in the order of the file.
     pub stages: Vec<StageNode>,
 }

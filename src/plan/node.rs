@@ -54,6 +54,8 @@ pub(super) enum Value {
     Table(Table),
     /// A value whose fault is reported already: it reads as whatever is wanted.
     Hole,
+    /// A value of a type that nothing wants: only where it is not looked at does it pass.
+    Probe,
 }
 
 /// Named values; names are unique.
@@ -101,7 +103,8 @@ impl Node {
             | Value::Flag(_)
             | Value::Date(_)
             | Value::List(_)
-            | Value::Hole => None,
+            | Value::Hole
+            | Value::Probe => None,
         }
     }
 
@@ -132,6 +135,35 @@ impl Node {
         node
     }
 
+    /// The steps to the values inside it.
+    pub(super) fn steps(&self) -> Vec<Step> {
+        match &self.value {
+            Value::Table(table) => table.0.keys().cloned().map(Step::Key).collect(),
+            Value::List(list) => (0..list.len()).map(Step::Index).collect(),
+            Value::Text(_)
+            | Value::Int(_)
+            | Value::Real(_)
+            | Value::Flag(_)
+            | Value::Date(_)
+            | Value::Hole
+            | Value::Probe => Vec::new(),
+        }
+    }
+
+    /// Puts a value of no known type here.
+    pub(super) fn make_probe(&mut self) {
+        self.value = Value::Probe;
+    }
+
+    /// Takes out the value at one step.
+    pub(super) fn remove(&mut self, step: &Step) {
+        match (&mut self.value, step) {
+            (Value::Table(table), Step::Key(key)) => drop(table.0.remove(key)),
+            (Value::List(list), Step::Index(i)) if *i < list.len() => drop(list.remove(*i)),
+            _ => {}
+        }
+    }
+
     /// What it is, in a person's words.
     pub(super) fn describe(&self) -> String {
         match &self.value {
@@ -142,7 +174,7 @@ impl Node {
             Value::Date(text) => format!("the date {text}"),
             Value::List(list) => format!("a list of {} value{}", list.len(), if list.len() == 1 { "" } else { "s" }),
             Value::Table(_) => "a table".to_owned(),
-            Value::Hole => "nothing".to_owned(),
+            Value::Hole | Value::Probe => "nothing".to_owned(),
         }
     }
 }

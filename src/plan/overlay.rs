@@ -8,7 +8,16 @@ use super::node::{Entry, Node, Sources, Span, Table, Value};
 use super::syntax;
 
 /// Tables of named things: their names must exist.
-const NAMED: [(&str, &str); 3] = [("stage", "stages"), ("factor", "factors"), ("response", "responses")];
+const NAMED: [(&str, &str); 4] =
+    [("stage", "stages"), ("factor", "factors"), ("response", "responses"), ("material", "materials")];
+
+/// Names of the file's profiles.
+pub(super) fn names(root: &Table) -> Vec<String> {
+    match root.0.get("profile").map(|entry| &entry.node.value) {
+        Some(Value::Table(table)) => table.in_order().into_iter().map(|(name, _)| name.to_owned()).collect(),
+        Some(_) | None => Vec::new(),
+    }
+}
 
 /// Takes `[profile]` out of the root, checks every profile's paths, and lays the named one over it.
 pub(super) fn profile(root: &mut Table, name: Option<&str>, sources: &mut Sources, faults: &mut Vec<Fault>) {

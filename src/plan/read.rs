@@ -3,69 +3,142 @@
 //! serde stops at the first fault. Here a fault knows the path to the value it is about, so that value is replaced by a
 //! *hole*, which reads as whatever is wanted, and the reading begins again: the next fault appears, until none is left. A
 //! missing key becomes a hole in the same way, an unknown key is taken out.
+//!
+//! Types with `flatten`, `tag` or `untagged` make serde copy a table before it looks inside, and the path ends there.
+//! Then the value is looked for by taking out one after the other: the one without which the fault is another is the one
+//! ([`narrow`]). The copy also lets unknown keys pass; a key is unknown when its value may be of a type that does not
+//! exist ([`unread_key`]).
 
 use super::fault::Fault;
-use super::node::{Entry, Node, Sources, Span, Step, Table, Value, shortened};
-use serde::de::value::StrDeserializer;
-use serde::de::{self, DeserializeSeed, Deserializer, Expected, IntoDeserializer, Unexpected, Visitor};
-use std::fmt;
+use super::node::{Entry, Node, Sources, Step, Value, shortened};
+use super::reader::{Cause, Reader, Unread};
+use std::slice;
 
 /// So many faults of one table are told.
 const MOST_FAULTS: usize = 20;
 
-/// Why the tree could not be read as what was wanted, and where.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Unread {
-    /// Steps from the innermost outwards.
-    path: Vec<Step>,
-    cause: Cause,
-}
+/// Tables and lists with more values are not searched.
+const MOST_SEARCHED: usize = 64;
 
-#[derive(Clone, Debug, PartialEq)]
-enum Cause {
-    /// A required key is not there.
-    Missing(&'static str),
-    /// A key that nothing reads.
-    Unknown(String, &'static [&'static str]),
-    /// A word that is none of the known ones.
-    Word(String, &'static [&'static str]),
-    /// Another type or a value out of range: what was wanted.
-    Wanted(String),
-    /// What the type itself says.
-    Other(String),
-}
-
-/// Reads `node` with `read`; every fault goes to `faults`, and the value is given only when there is none.
+/// Reads `node` with `read`; every fault goes to `faults`, and the value is given only when there is none. `known` gives
+/// the keys of the table for a message, when the type itself does not tell them.
 pub(super) fn read<T>(
     node: &mut Node,
     sources: &Sources,
     faults: &mut Vec<Fault>,
+    known: impl Fn() -> Vec<String>,
     read: impl Fn(Reader<'_>) -> Result<T, Unread>,
 ) -> Option<T> {
     let before = faults.len();
-    loop {
+    let value = loop {
         let error = match read(Reader(node)) {
-            Ok(value) => return (faults.len() == before).then_some(value),
+            Ok(value) => break value,
             Err(error) => error,
         };
-        let path: Vec<Step> = error.path.into_iter().rev().collect();
-        let told = match error.cause {
-            Cause::Missing(name) => missing(node, &path, name, sources),
-            Cause::Unknown(name, known) => unknown(node, &path, &name, known, sources),
-            Cause::Word(word, known) => wrong(node, &path, sources, |_| {
-                Fault::new(format!("`{word}` is not known here")).known(&word, "words", known.iter().copied())
-            }),
-            Cause::Wanted(wanted) => {
-                wrong(node, &path, sources, |found| Fault::new(format!("wanted {wanted}, found {}", found.describe())))
-            }
-            Cause::Other(message) => wrong(node, &path, sources, |_| Fault::new(message)),
-        };
-        faults.extend(told.clone());
-        if told.is_none() || faults.len() - before >= MOST_FAULTS {
+        let told = tell(node, &error, sources, &read);
+        let stop = told.is_none() || faults.len() - before >= MOST_FAULTS;
+        faults.extend(told);
+        if stop {
             assert!(faults.len() > before, "BUG: a table cannot be read, and no fault says why");
             return None;
         }
+    };
+    while let Some(mut path) = unread_key(node, &mut Vec::new(), &|node| read(Reader(node)).is_ok()) {
+        let Some(Step::Key(name)) = path.pop() else { break };
+        let names = if path.is_empty() { known() } else { Vec::new() };
+        faults.extend(unknown(node, &path, &name, &names, sources));
     }
+    (faults.len() == before).then_some(value)
+}
+
+/// The fault, told with its place; the tree is changed so that the next reading gets past it. `None` when the error is a
+/// consequence of faults that were told.
+fn tell<T>(
+    node: &mut Node,
+    error: &Unread,
+    sources: &Sources,
+    read: &impl Fn(Reader<'_>) -> Result<T, Unread>,
+) -> Option<Fault> {
+    let path = error.path();
+    match &error.cause {
+        Cause::Missing(name) => missing(node, &path, name, sources),
+        Cause::Unknown(name, known) => {
+            let known: Vec<String> = known.iter().map(|&name| name.to_owned()).collect();
+            unknown(node, &path, name, &known, sources)
+        }
+        Cause::Word(word, known) => {
+            let path = narrow(node, path, error, read);
+            let fault = Fault::new(format!("`{}` is not one of the known words", shortened(word)));
+            wrong(node, &path, sources, |_| fault.known(word, "words", known.iter().copied()))
+        }
+        Cause::Wanted(wanted) => {
+            let path = narrow(node, path, error, read);
+            wrong(node, &path, sources, |found| Fault::new(format!("wanted {wanted}, found {}", found.describe())))
+        }
+        Cause::Other(message) => {
+            let path = narrow(node, path, error, read);
+            wrong(node, &path, sources, |_| Fault::new(message))
+        }
+    }
+}
+
+/// The path to the value that the error is about. Below the path that the error itself knows, only values that were
+/// copied first can be meant; it is followed as long as there is just one without which the error is another. The word
+/// that says how to read the others (a tag) is meant only when the error is about a word.
+fn narrow<T>(
+    node: &Node,
+    mut path: Vec<Step>,
+    error: &Unread,
+    read: &impl Fn(Reader<'_>) -> Result<T, Unread>,
+) -> Vec<Step> {
+    loop {
+        let steps = node.nearest(&path).steps();
+        if steps.len() > MOST_SEARCHED {
+            return path;
+        }
+        let after = |change: &dyn Fn(&mut Node)| {
+            let mut changed = node.clone();
+            changed.find_mut(&path).map(change);
+            read(Reader(&changed)).err()
+        };
+        let copied = |step: &Step| {
+            let probed = after(&|found| found.find_mut(slice::from_ref(step)).into_iter().for_each(Node::make_probe));
+            probed.filter(|probed| probed.path().get(path.len()) != Some(step))
+        };
+        let decides = |step: &&Step| {
+            let about_it = |probed: Unread| !probed.is_about_a_word() || error.is_about_a_word();
+            copied(step).is_some_and(about_it) && after(&|found| found.remove(step)).as_ref() != Some(error)
+        };
+        let mut deciding = steps.iter().filter(decides);
+        match (deciding.next(), deciding.next()) {
+            (Some(step), None) => path.push(step.clone()),
+            _ => return path,
+        }
+    }
+}
+
+/// The path of a key that nothing reads, below `path`.
+fn unread_key(root: &mut Node, path: &mut Vec<Step>, reads: &impl Fn(&Node) -> bool) -> Option<Vec<Step>> {
+    let steps = root.nearest(path).steps();
+    if steps.len() > MOST_SEARCHED {
+        return None;
+    }
+    for step in steps {
+        let named = matches!(step, Step::Key(_));
+        path.push(step);
+        let value = std::mem::replace(&mut root.find_mut(path)?.value, Value::Probe);
+        let unread = named && reads(root);
+        root.find_mut(path)?.value = value;
+        if unread {
+            return Some(path.clone());
+        }
+        let inner = unread_key(root, path, reads);
+        if inner.is_some() {
+            return inner;
+        }
+        path.pop();
+    }
+    None
 }
 
 /// Tells the missing key and puts a hole there; `None` when one was there already.
@@ -82,11 +155,11 @@ fn missing(node: &mut Node, path: &[Step], name: &str, sources: &Sources) -> Opt
 }
 
 /// Tells the unknown key and takes it out.
-fn unknown(node: &mut Node, path: &[Step], name: &str, known: &[&str], sources: &Sources) -> Option<Fault> {
+fn unknown(node: &mut Node, path: &[Step], name: &str, known: &[String], sources: &Sources) -> Option<Fault> {
     let Some(Value::Table(table)) = node.find_mut(path).map(|found| &mut found.value) else { return None };
     let entry = table.0.remove(name)?;
     let fault = Fault::new(format!("unknown key `{}`", shortened(name))).at(sources.place(entry.key));
-    Some(fault.known(name, "keys", known.iter().copied()))
+    Some(if known.is_empty() { fault } else { fault.known(name, "keys", known.iter().map(String::as_str)) })
 }
 
 /// Tells what is wrong with a value and puts a hole there; `None` when it is one already.
@@ -100,312 +173,5 @@ fn wrong(node: &mut Node, path: &[Step], sources: &Sources, tell: impl FnOnce(&N
     Some(fault)
 }
 
-impl Unread {
-    fn new(cause: Cause) -> Self {
-        Self { path: Vec::new(), cause }
-    }
-
-    fn inside(mut self, step: Step) -> Self {
-        self.path.push(step);
-        self
-    }
-}
-
-impl fmt::Display for Unread {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?}", self.cause)
-    }
-}
-
-impl std::error::Error for Unread {}
-
-impl de::Error for Unread {
-    fn custom<T: fmt::Display>(message: T) -> Self {
-        Self::new(Cause::Other(message.to_string()))
-    }
-    fn invalid_type(_: Unexpected<'_>, wanted: &dyn Expected) -> Self {
-        Self::new(Cause::Wanted(in_words(&wanted.to_string())))
-    }
-    fn invalid_value(_: Unexpected<'_>, wanted: &dyn Expected) -> Self {
-        Self::new(Cause::Wanted(in_words(&wanted.to_string())))
-    }
-    fn invalid_length(_: usize, wanted: &dyn Expected) -> Self {
-        Self::new(Cause::Wanted(in_words(&wanted.to_string())))
-    }
-    fn unknown_variant(word: &str, known: &'static [&'static str]) -> Self {
-        Self::new(Cause::Word(word.to_owned(), known))
-    }
-    fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
-        Self::new(Cause::Unknown(name.to_owned(), known))
-    }
-    fn missing_field(name: &'static str) -> Self {
-        Self::new(Cause::Missing(name))
-    }
-}
-
-/// serde's names of types in the words of the workflow file.
-fn in_words(wanted: &str) -> String {
-    let words = match wanted {
-        "f32" | "f64" => "a number",
-        "u8" => "a whole number from 0 to 255",
-        "u16" => "a whole number from 0 to 65535",
-        "u32" => "a whole number from 0 to 4294967295",
-        "u64" | "usize" => "a whole number of 0 or more",
-        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
-        "a string" | "string" => "a text in quotes",
-        "a boolean" => "true or false",
-        "a sequence" => "a list",
-        "a map" | "map" => "a table",
-        other if other.starts_with("struct ") => "a table",
-        other if other.starts_with("a nonzero ") => "a whole number of 1 or more",
-        other => match other.strip_prefix("an array of length ") {
-            Some(length) => return format!("a list of {length} values"),
-            None => other,
-        },
-    };
-    words.to_owned()
-}
-
-/// Reads one node.
-#[derive(Clone, Copy)]
-pub(super) struct Reader<'a>(&'a Node);
-
-impl<'a> Reader<'a> {
-    fn hole(self) -> bool {
-        matches!(self.0.value, Value::Hole)
-    }
-}
-
-macro_rules! filled {
-    ($($method:ident => $visit:ident($value:expr);)*) => {$(
-        fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
-            if self.hole() { visitor.$visit($value) } else { self.deserialize_any(visitor) }
-        }
-    )*};
-}
-
-impl<'de> Deserializer<'de> for Reader<'de> {
-    type Error = Unread;
-
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
-        match &self.0.value {
-            Value::Text(text) => visitor.visit_borrowed_str(text),
-            Value::Int(value) => visitor.visit_i64(*value),
-            Value::Real(value) => visitor.visit_f64(*value),
-            Value::Flag(value) => visitor.visit_bool(*value),
-            Value::Date(_) => Err(de::Error::invalid_type(Unexpected::Other("date"), &visitor)),
-            Value::List(list) => visitor.visit_seq(Items { items: list.iter().enumerate() }),
-            Value::Table(table) => visitor.visit_map(Entries::new(table)),
-            Value::Hole => visitor.visit_unit(),
-        }
-    }
-
-    filled! {
-        deserialize_bool => visit_bool(false);
-        deserialize_i8 => visit_i64(1);
-        deserialize_i16 => visit_i64(1);
-        deserialize_i32 => visit_i64(1);
-        deserialize_i64 => visit_i64(1);
-        deserialize_u8 => visit_u64(1);
-        deserialize_u16 => visit_u64(1);
-        deserialize_u32 => visit_u64(1);
-        deserialize_u64 => visit_u64(1);
-        deserialize_f32 => visit_f64(1.0);
-        deserialize_f64 => visit_f64(1.0);
-        deserialize_char => visit_char('?');
-        deserialize_str => visit_borrowed_str("?");
-        deserialize_string => visit_borrowed_str("?");
-        deserialize_seq => visit_seq(Holes { fields: &[], left: 0 });
-        deserialize_map => visit_map(Holes { fields: &[], left: 0 });
-    }
-
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Unread> {
-        if self.hole() { visitor.visit_none() } else { visitor.visit_some(self) }
-    }
-
-    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Unread> {
-        visitor.visit_newtype_struct(self)
-    }
-
-    fn deserialize_tuple<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, Unread> {
-        match &self.0.value {
-            Value::Hole => visitor.visit_seq(Holes { fields: &[], left: length }),
-            Value::List(list) if list.len() != length => Err(de::Error::invalid_length(list.len(), &visitor)),
-            _ => self.deserialize_any(visitor),
-        }
-    }
-
-    fn deserialize_tuple_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        length: usize,
-        visitor: V,
-    ) -> Result<V::Value, Unread> {
-        self.deserialize_tuple(length, visitor)
-    }
-
-    /// Strict whatever the type says: a key that is none of the struct's fields is a fault.
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Unread> {
-        match &self.0.value {
-            Value::Hole => visitor.visit_map(Holes { fields, left: fields.len() }),
-            Value::Table(table) => match table.0.keys().find(|name| !fields.contains(&name.as_str())) {
-                Some(name) => Err(de::Error::unknown_field(name, fields)),
-                None => self.deserialize_any(visitor),
-            },
-            _ => Err(Unread::new(Cause::Wanted("a table".to_owned()))),
-        }
-    }
-
-    fn deserialize_enum<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        variants: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Unread> {
-        match &self.0.value {
-            Value::Text(word) => visitor.visit_enum(Variant { word, content: None }),
-            Value::Table(table) if table.0.len() == 1 => {
-                let (word, entry) = table.0.iter().next().unwrap_or_else(|| panic!("BUG: one entry"));
-                visitor.visit_enum(Variant { word, content: Some(&entry.node) })
-            }
-            Value::Hole => visitor.visit_enum(Variant { word: variants[0], content: Some(self.0) }),
-            _ => Err(Unread::new(Cause::Wanted(format!("one of {}", variants.join(", "))))),
-        }
-    }
-
-    serde::forward_to_deserialize_any! { i128 u128 bytes byte_buf unit unit_struct identifier ignored_any }
-}
-
-/// The values of a list.
-struct Items<'a> {
-    items: std::iter::Enumerate<std::slice::Iter<'a, Node>>,
-}
-
-impl<'a> de::SeqAccess<'a> for Items<'a> {
-    type Error = Unread;
-
-    fn next_element_seed<S: DeserializeSeed<'a>>(&mut self, seed: S) -> Result<Option<S::Value>, Unread> {
-        let Some((i, node)) = self.items.next() else { return Ok(None) };
-        seed.deserialize(Reader(node)).map(Some).map_err(|e| e.inside(Step::Index(i)))
-    }
-
-    fn size_hint(&self) -> Option<usize> {
-        Some(self.items.len())
-    }
-}
-
-/// The names and values of a table.
-struct Entries<'a> {
-    entries: std::collections::btree_map::Iter<'a, String, Entry>,
-    value: Option<(&'a str, &'a Node)>,
-}
-
-impl<'a> Entries<'a> {
-    fn new(table: &'a Table) -> Self {
-        Self { entries: table.0.iter(), value: None }
-    }
-}
-
-impl<'a> de::MapAccess<'a> for Entries<'a> {
-    type Error = Unread;
-
-    fn next_key_seed<S: DeserializeSeed<'a>>(&mut self, seed: S) -> Result<Option<S::Value>, Unread> {
-        let Some((name, entry)) = self.entries.next() else { return Ok(None) };
-        self.value = Some((name, &entry.node));
-        seed.deserialize(de::value::BorrowedStrDeserializer::new(name)).map(Some)
-    }
-
-    fn next_value_seed<S: DeserializeSeed<'a>>(&mut self, seed: S) -> Result<S::Value, Unread> {
-        let (name, node) = self.value.take().unwrap_or_else(|| panic!("BUG: a value is read before its name"));
-        seed.deserialize(Reader(node)).map_err(|e| e.inside(Step::Key(name.to_owned())))
-    }
-}
-
-/// What every hole reads from.
-static HOLE: Node = Node { span: Span { source: 0, start: 0, end: 0 }, value: Value::Hole };
-
-/// So many holes, with names when a struct is wanted.
-struct Holes {
-    fields: &'static [&'static str],
-    left: usize,
-}
-
-impl<'a> de::SeqAccess<'a> for Holes {
-    type Error = Unread;
-
-    fn next_element_seed<S: DeserializeSeed<'a>>(&mut self, seed: S) -> Result<Option<S::Value>, Unread> {
-        if self.left == 0 {
-            return Ok(None);
-        }
-        self.left -= 1;
-        seed.deserialize(Reader(&HOLE)).map(Some)
-    }
-}
-
-impl<'a> de::MapAccess<'a> for Holes {
-    type Error = Unread;
-
-    fn next_key_seed<S: DeserializeSeed<'a>>(&mut self, seed: S) -> Result<Option<S::Value>, Unread> {
-        let Some(name) = self.fields.get(self.fields.len().wrapping_sub(self.left)) else { return Ok(None) };
-        self.left -= 1;
-        seed.deserialize(StrDeserializer::new(name)).map(Some)
-    }
-
-    fn next_value_seed<S: DeserializeSeed<'a>>(&mut self, seed: S) -> Result<S::Value, Unread> {
-        seed.deserialize(Reader(&HOLE))
-    }
-}
-
-/// A word, or a table with one word and what belongs to it.
-struct Variant<'a> {
-    word: &'a str,
-    content: Option<&'a Node>,
-}
-
-impl<'a> Variant<'a> {
-    fn content(self, wanted: &str) -> Result<(Step, Reader<'a>), Unread> {
-        let step = Step::Key(self.word.to_owned());
-        self.content.map(|node| (step, Reader(node))).ok_or_else(|| Unread::new(Cause::Wanted(wanted.to_owned())))
-    }
-}
-
-impl<'a> de::EnumAccess<'a> for Variant<'a> {
-    type Error = Unread;
-    type Variant = Self;
-
-    fn variant_seed<S: DeserializeSeed<'a>>(self, seed: S) -> Result<(S::Value, Self), Unread> {
-        let word: StrDeserializer<'_, Unread> = self.word.into_deserializer();
-        Ok((seed.deserialize(word)?, self))
-    }
-}
-
-impl<'a> de::VariantAccess<'a> for Variant<'a> {
-    type Error = Unread;
-
-    fn unit_variant(self) -> Result<(), Unread> {
-        match self.content.map(|node| &node.value) {
-            None | Some(Value::Hole) => Ok(()),
-            Some(_) => Err(Unread::new(Cause::Wanted(format!("the text \"{}\"", self.word)))),
-        }
-    }
-
-    fn newtype_variant_seed<S: DeserializeSeed<'a>>(self, seed: S) -> Result<S::Value, Unread> {
-        let (step, reader) = self.content("a table")?;
-        seed.deserialize(reader).map_err(|e| e.inside(step))
-    }
-
-    fn tuple_variant<V: Visitor<'a>>(self, length: usize, visitor: V) -> Result<V::Value, Unread> {
-        let (step, reader) = self.content("a table")?;
-        reader.deserialize_tuple(length, visitor).map_err(|e| e.inside(step))
-    }
-
-    fn struct_variant<V: Visitor<'a>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Unread> {
-        let (step, reader) = self.content("a table")?;
-        reader.deserialize_struct("", fields, visitor).map_err(|e| e.inside(step))
-    }
-}
+#[cfg(test)]
+mod tests;

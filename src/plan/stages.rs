@@ -3,7 +3,8 @@
 use super::check::{Check, steps};
 use super::fault::Fault;
 use super::node::{Entry, Node, Step, Table, Value};
-use super::read::{Reader, Unread, read};
+use super::read::read;
+use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
 use crate::stage::{Context, KINDS, Port, Stage};
 use std::collections::BTreeMap;
@@ -42,8 +43,9 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &Context) -> Vec
     for (name, entry) in entries {
         check.name(name, entry);
         let Some(kind) = take_kind(check, name, &mut entry.node) else { continue };
+        let keys = || super::schema::keys(kind);
         let by_kind = |reader: Reader<'_>| stage_of(kind, reader);
-        let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, by_kind) else { continue };
+        let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, keys, by_kind) else { continue };
         for complaint in stage.check(context) {
             let fault = Fault { hint: complaint.hint, ..Fault::new(complaint.message) };
             check.complain(&entry.node, &steps(complaint.path.iter().map(String::as_str)), fault);

@@ -120,7 +120,13 @@ fn shift(node: &mut Node, offset: u32) {
             moved(&mut entry.key);
             shift(&mut entry.node, offset);
         }),
-        Value::Text(_) | Value::Int(_) | Value::Real(_) | Value::Flag(_) | Value::Date(_) | Value::Hole => {}
+        Value::Text(_)
+        | Value::Int(_)
+        | Value::Real(_)
+        | Value::Flag(_)
+        | Value::Date(_)
+        | Value::Hole
+        | Value::Probe => {}
     }
 }
 

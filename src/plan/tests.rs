@@ -43,7 +43,7 @@ fn a_good_workflow_is_read() {
 fn all_faults_are_told_at_once() {
     let text = "x = 1\n[workflow]\nsed = 1\n[stage.b]\nfil = 3\nkind = \"data\"\n[stage.c]\nkind = \"dta\"";
     let expected = [
-        "w.toml:1:1: unknown key `x` | known tables: `workflow`, `factor`, `response`, `stage`, `profile`",
+        "w.toml:1:1: unknown key `x` | known tables: `workflow`, `factor`, `response`, `material`, `stage`, `profile`",
         "w.toml:2:1: missing key `seed` | `seed` is needed here",
         "w.toml:3:1: unknown key `sed` | did you mean `seed`? | known keys: `title`, `about`, `seed`",
         "w.toml:4:1: missing key `file` | `file` is needed here",

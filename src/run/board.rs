@@ -3,9 +3,11 @@
 //! A node stands for one task; equal tasks are one node, whichever stage asked first. Equality is that of the
 //! *recipe*: the task text with the recipe of each input task in place of its result, so it is known before anything ran.
 
+use super::TaskReport;
 use crate::artifact::{ContentHash, Key};
 use crate::plan::key::task_text;
 use crate::stage::{Source, Task};
+use crate::store::ObjectId;
 use std::collections::HashMap;
 use std::ops::Add;
 use std::sync::Arc;
@@ -47,6 +49,13 @@ pub struct TaskCount {
     pub skipped: usize,
 }
 
+impl TaskCount {
+    /// Tasks that have ended one way or another.
+    pub fn ended(&self) -> usize {
+        self.ran + self.cached + self.failed + self.skipped
+    }
+}
+
 impl Add for TaskCount {
     type Output = Self;
     fn add(self, other: Self) -> Self {
@@ -67,6 +76,8 @@ struct Node {
     inputs: Vec<Option<NodeId>>,
     dependents: Vec<NodeId>,
     recipe: Key,
+    /// Its key, once its inputs are known.
+    key: Option<Key>,
     state: TaskState,
 }
 
@@ -79,6 +90,8 @@ pub(super) struct Board {
     by_address: HashMap<*const Task, NodeId>,
     kept: Vec<Arc<Task>>,
     counts: Vec<TaskCount>,
+    /// Seconds that the tasks of each stage took in this run.
+    seconds: Vec<f64>,
 }
 
 impl Board {
@@ -100,8 +113,8 @@ impl Board {
         let node = match self.by_recipe.get(&recipe) {
             Some(&node) => node,
             None => {
-                let (task, dependents, state) = (Arc::clone(task), Vec::new(), TaskState::Open);
-                let node = self.add(Node { task, stage, inputs, dependents, recipe, state });
+                let (task, dependents, key, state) = (Arc::clone(task), Vec::new(), None, TaskState::Open);
+                let node = self.add(Node { task, stage, inputs, dependents, recipe, key, state });
                 new.push(node);
                 node
             }
@@ -117,6 +130,7 @@ impl Board {
         }
         if self.counts.len() <= node.stage {
             self.counts.resize(node.stage + 1, TaskCount::default());
+            self.seconds.resize(node.stage + 1, 0.0);
         }
         self.counts[node.stage].total += 1;
         self.by_recipe.insert(node.recipe, id);
@@ -178,8 +192,54 @@ impl Board {
     }
 
     /// The key of an open node whose inputs are known.
-    pub(super) fn key(&self, node: NodeId) -> Option<Key> {
-        self.text(node).map(|text| Key::of(&text))
+    pub(super) fn key(&mut self, node: NodeId) -> Option<Key> {
+        let key = self.text(node).map(|text| Key::of(&text));
+        self.nodes[node].key = key.or(self.nodes[node].key);
+        key
+    }
+
+    /// The object that holds a node's result.
+    pub(super) fn object(&self, node: NodeId) -> Option<ObjectId> {
+        match self.nodes[node].state {
+            TaskState::Done { content, .. } => Some(ObjectId { content, key: self.nodes[node].key? }),
+            TaskState::Open | TaskState::Running | TaskState::Failed(_) | TaskState::Skipped => None,
+        }
+    }
+
+    /// These nodes and all that they need, each once, in the order they were put on the board.
+    pub(super) fn closure(&self, roots: &[NodeId]) -> Vec<NodeId> {
+        let mut seen = vec![false; self.nodes.len()];
+        let mut open = roots.to_vec();
+        while let Some(node) = open.pop() {
+            if !seen[node] {
+                seen[node] = true;
+                open.extend(self.nodes[node].inputs.iter().flatten());
+            }
+        }
+        (0..self.nodes.len()).filter(|&node| seen[node]).collect()
+    }
+
+    /// Every task.
+    pub(super) fn reports(&self) -> Vec<TaskReport> {
+        let report = |node: NodeId| TaskReport {
+            stage: self.nodes[node].stage,
+            row: self.nodes[node].task.row,
+            state: self.nodes[node].state.clone(),
+            text: self.text(node),
+            object: self.object(node),
+        };
+        (0..self.nodes.len()).map(report).collect()
+    }
+
+    /// Seconds that the tasks of a stage took in this run.
+    pub(super) fn seconds(&self, stage: usize) -> f64 {
+        self.seconds.get(stage).copied().unwrap_or(0.0)
+    }
+
+    /// Notes how long a task took.
+    pub(super) fn took(&mut self, node: NodeId, seconds: f64) {
+        let stage = self.nodes[node].stage;
+        self.seconds[stage] += seconds;
     }
 
     /// Notes a result; answers with the nodes that may be decided now.

@@ -5,13 +5,21 @@ use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
 use crate::stage::{FileInput, Library, Outcome, StageError, Task};
 use crate::store::Store;
-use std::path::Path;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(super) struct Shelf<'a> {
     pub(super) workflow: &'a Workflow,
     pub(super) store: &'a Store,
     pub(super) board: &'a Board,
+    /// Files that were looked at, with their digests.
+    pub(super) files: RefCell<Vec<(String, String)>>,
+}
+
+/// Where a file named by the workflow lies.
+pub(super) fn path_of(workflow: &Workflow, path: &str) -> PathBuf {
+    workflow.path.parent().unwrap_or(Path::new("")).join(path)
 }
 
 impl Library for Shelf<'_> {
@@ -31,10 +39,12 @@ impl Library for Shelf<'_> {
     }
 
     fn file(&self, name: &str, path: &str) -> Result<FileInput, StageError> {
-        let full = self.workflow.path.parent().unwrap_or(Path::new("")).join(path);
+        let full = path_of(self.workflow, path);
         let bytes = std::fs::read(&full).map_err(|e| {
             StageError::new(format!("{}: {e}", full.display())).hint("paths are relative to the workflow file")
         })?;
-        Ok(FileInput { name: name.to_owned(), path: full, digest: *blake3::hash(&bytes).as_bytes() })
+        let digest = blake3::hash(&bytes);
+        self.files.borrow_mut().push((path.to_owned(), digest.to_hex().to_string()));
+        Ok(FileInput { name: name.to_owned(), path: full, digest: *digest.as_bytes() })
     }
 }

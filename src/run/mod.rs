@@ -12,16 +12,20 @@
 
 mod board;
 mod library;
+mod memo;
+mod record;
 mod stages;
 mod task;
 
 pub use board::{TaskCount, TaskState};
+pub use memo::remembered;
+pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
 
 use crate::exec::Threads;
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress};
-use crate::store::{Store, StoreError};
+use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
 use stages::Stages;
 use std::collections::BTreeSet;
@@ -39,6 +43,8 @@ pub struct Settings {
     pub dry: bool,
     /// Stages that are wanted, with all they need; all stages when empty.
     pub targets: Vec<String>,
+    /// Believe what is remembered about unchanged stages; without it every task is looked up.
+    pub memos: bool,
 }
 
 /// What the person watching is told.
@@ -92,11 +98,30 @@ pub struct Report {
     pub interrupted: bool,
     /// The store could not be read; what was wrong.
     pub broken: Option<String>,
+    /// The tasks that are known, in the order they became known; none of stages that were remembered.
+    pub tasks: Vec<TaskReport>,
+    /// Every object that the campaign rests on.
+    pub objects: Vec<ObjectId>,
+}
+
+/// One task, for people and programs.
+#[derive(Clone, Debug)]
+pub struct TaskReport {
+    /// Place of its stage in the workflow.
+    pub stage: usize,
+    /// Its design row.
+    pub row: Option<usize>,
+    /// Where it stands.
+    pub state: TaskState,
+    /// Its text, when its inputs are known and it is not done.
+    pub text: Option<String>,
+    /// The object that holds its result.
+    pub object: Option<ObjectId>,
 }
 
 impl Report {
     /// Counts over all stages.
-    pub fn tasks(&self) -> TaskCount {
+    pub fn count(&self) -> TaskCount {
         self.stages.iter().fold(TaskCount::default(), |sum, stage| sum + stage.tasks)
     }
 }
@@ -115,7 +140,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             pool,
             answers,
             board: Board::default(),
-            stages: Stages::new(workflow, &settings.targets),
+            stages: Stages::new(workflow, &settings.targets, settings.memos),
             ready: BTreeSet::new(),
             running: 0,
             failed: false,
@@ -163,8 +188,10 @@ impl Loop<'_> {
             }
         }
         let interrupted = self.stop.load(Ordering::Relaxed);
+        let tasks: Vec<TaskReport> = self.board.reports();
+        let objects = tasks.iter().filter_map(|task| task.object).chain(self.stages.remembered()).collect();
         let broken = self.fatal.map(|error| error.to_string());
-        Report { stages: self.stages.reports(self.workflow, &self.board), interrupted, broken }
+        Report { stages: self.stages.reports(self.workflow, &self.board), interrupted, broken, tasks, objects }
     }
 
     /// Asks each stage that can say more; whether any did.
@@ -172,14 +199,15 @@ impl Loop<'_> {
         let mut moved = false;
         for index in self.stages.due(self.workflow, &self.board) {
             moved = true;
-            let library = library::Shelf { workflow: self.workflow, store: self.store, board: &self.board };
-            let step = self.stages.ask(self.workflow, index, &library);
-            let new = self.stages.take(index, step, &mut self.board);
-            for node in new {
+            if self.stages.recall(self.workflow, index, self.store) {
+                continue;
+            }
+            for node in self.stages.step(self.workflow, index, self.store, &mut self.board) {
                 self.settle(node);
             }
         }
-        for report in self.stages.close(self.workflow, &self.board) {
+        let keeps = (!self.settings.dry).then_some(self.store);
+        for report in self.stages.close(self.workflow, &self.board, keeps) {
             moved = true;
             self.failed |= matches!(report.status, StageStatus::Failed(_));
             if !self.settings.dry {
@@ -245,6 +273,7 @@ impl Loop<'_> {
         }
         let failure = match answer.result {
             Ok(finished) => {
+                self.board.took(node, finished.seconds);
                 for next in self.board.done(node, finished.content, finished.shared) {
                     self.settle(next);
                 }
@@ -256,10 +285,7 @@ impl Loop<'_> {
             }
             Err(Failure::Failed(error)) => {
                 self.failed = true;
-                let text = match error.hint {
-                    Some(hint) => format!("{} ({hint})", error.message),
-                    None => error.message,
-                };
+                let text = stages::in_words(error);
                 self.board.failed(node, &text);
                 Some(text)
             }

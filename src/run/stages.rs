@@ -1,9 +1,13 @@
 //! Where each stage of the workflow stands.
 
 use super::board::{Board, NodeId, TaskCount, TaskState};
-use crate::artifact::ContentHash;
+use super::library::Shelf;
+use super::memo;
+use crate::artifact::{ContentHash, Key};
 use crate::plan::Workflow;
 use crate::stage::{Input, Known, Library, StageError, Step};
+use crate::store::{ObjectId, Store};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// What became of a stage, for people and programs.
@@ -17,6 +21,10 @@ pub struct StageReport {
     pub status: StageStatus,
     /// Its tasks.
     pub tasks: TaskCount,
+    /// Key of its memo, when its inputs are known.
+    pub memo: Option<Key>,
+    /// Time of the tasks that ran, seconds of one worker.
+    pub seconds: f64,
 }
 
 /// Where a stage stands.
@@ -32,6 +40,18 @@ pub enum StageStatus {
     Skipped(String),
 }
 
+impl StageStatus {
+    /// One word for it.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::Done(_) => "done",
+            Self::Failed(_) => "failed",
+            Self::Skipped(_) => "skipped",
+        }
+    }
+}
+
 enum State {
     /// Some inputs are not there, or its step is still to be asked for.
     Waiting,
@@ -42,13 +62,26 @@ enum State {
     Ended(StageStatus),
 }
 
+struct Place {
+    state: State,
+    wanted: bool,
+    /// Key of its memo, from the moment its inputs are known.
+    key: Option<Key>,
+    /// Every node it asked for, and the one it finishes with.
+    asked: Vec<NodeId>,
+    files: Vec<(String, String)>,
+    /// What its memo said, when that was enough.
+    remembered: Option<memo::Known>,
+}
+
 pub(super) struct Stages {
-    states: Vec<State>,
-    wanted: Vec<bool>,
+    places: Vec<Place>,
+    base: Option<Key>,
 }
 
 impl Stages {
-    pub(super) fn new(workflow: &Workflow, targets: &[String]) -> Self {
+    /// No stage begun; `memos` says whether memos may be believed.
+    pub(super) fn new(workflow: &Workflow, targets: &[String], memos: bool) -> Self {
         let mut wanted: Vec<bool> =
             workflow.stages.iter().map(|stage| targets.is_empty() || targets.contains(&stage.name)).collect();
         for index in (0..workflow.stages.len()).rev().filter(|_| !targets.is_empty()) {
@@ -56,32 +89,76 @@ impl Stages {
                 workflow.stages[index].inputs.iter().for_each(|&(_, input)| wanted[input] = true);
             }
         }
-        Self { states: workflow.stages.iter().map(|_| State::Waiting).collect(), wanted }
+        let place = |wanted| Place {
+            state: State::Waiting,
+            wanted,
+            key: None,
+            asked: Vec::new(),
+            files: Vec::new(),
+            remembered: None,
+        };
+        Self { places: wanted.into_iter().map(place).collect(), base: memos.then(|| memo::base(workflow)) }
     }
 
     /// Wanted stages that can be asked for their next step.
     pub(super) fn due(&self, workflow: &Workflow, board: &Board) -> Vec<usize> {
         let settled = |node: &NodeId| !matches!(board.state(*node), TaskState::Open | TaskState::Running);
-        (0..self.states.len())
-            .filter(|&index| self.wanted[index])
-            .filter(|&index| match &self.states[index] {
-                State::Waiting => workflow.stages[index].inputs.iter().all(|&(_, input)| self.content(input).is_some()),
-                State::Asking(nodes) => nodes.iter().all(settled),
-                State::Finishing(_) | State::Ended(_) => false,
-            })
-            .collect()
+        let due = |index: &usize| match &self.places[*index].state {
+            State::Waiting => workflow.stages[*index].inputs.iter().all(|&(_, input)| self.content(input).is_some()),
+            State::Asking(nodes) => nodes.iter().all(settled),
+            State::Finishing(_) | State::Ended(_) => false,
+        };
+        (0..self.places.len()).filter(|&index| self.places[index].wanted).filter(due).collect()
     }
 
     fn content(&self, index: usize) -> Option<ContentHash> {
-        match self.states[index] {
+        match self.places[index].state {
             State::Ended(StageStatus::Done(content)) => Some(content),
             State::Waiting | State::Asking(_) | State::Finishing(_) | State::Ended(_) => None,
         }
     }
 
-    /// Asks a stage for its next step.
-    pub(super) fn ask(&self, workflow: &Workflow, index: usize, library: &dyn Library) -> Result<Step, StageError> {
-        workflow.stages[index].stage.next(&self.known(workflow, index, library))
+    /// Ends a stage at once when its memo says what it comes to; whether it did.
+    pub(super) fn recall(&mut self, workflow: &Workflow, index: usize, store: &Store) -> bool {
+        if !matches!(self.places[index].state, State::Waiting) {
+            return false;
+        }
+        let Some(base) = self.base else { return false };
+        let inputs: Option<Vec<(Key, ContentHash)>> = workflow.stages[index]
+            .inputs
+            .iter()
+            .map(|&(_, input)| Some((self.places[input].key?, self.content(input)?)))
+            .collect();
+        let Some(inputs) = inputs else { return false };
+        let key = memo::key(workflow, index, &base, &inputs);
+        self.places[index].key = Some(key);
+        let Some(known) = memo::recall(workflow, store, &key) else { return false };
+        self.places[index].state = State::Ended(StageStatus::Done(known.content));
+        self.places[index].remembered = Some(known);
+        true
+    }
+
+    /// Asks a stage for its next step; answers with the nodes that are new on the board.
+    pub(super) fn step(&mut self, workflow: &Workflow, index: usize, store: &Store, board: &mut Board) -> Vec<NodeId> {
+        let shelf = Shelf { workflow, store, board, files: RefCell::default() };
+        let step = workflow.stages[index].stage.next(&self.known(workflow, index, &shelf));
+        let files = shelf.files.into_inner();
+        let mut new = Vec::new();
+        let mut put = |task| board.put(&Arc::new(task), index, &mut new);
+        let state = match step {
+            Ok(Step::Finish(task)) => State::Finishing(put(task)),
+            Ok(Step::Ask(tasks)) => State::Asking(tasks.into_iter().map(put).collect()),
+            Err(error) => State::Ended(StageStatus::Failed(in_words(error))),
+        };
+        let place = &mut self.places[index];
+        match &state {
+            State::Finishing(node) => place.asked.push(*node),
+            State::Asking(nodes) => place.asked.extend(nodes),
+            State::Waiting | State::Ended(_) => {}
+        }
+        place.files.extend(files);
+        place.state = state;
+        new
     }
 
     /// What a stage knows once its inputs are there.
@@ -103,50 +180,42 @@ impl Stages {
         Known { context: &workflow.context, inputs, library }
     }
 
-    /// Takes a step; answers with the nodes that are new on the board.
-    pub(super) fn take(&mut self, index: usize, step: Result<Step, StageError>, board: &mut Board) -> Vec<NodeId> {
-        let mut new = Vec::new();
-        self.states[index] = match step {
-            Ok(Step::Finish(task)) => State::Finishing(board.put(&Arc::new(task), index, &mut new)),
-            Ok(Step::Ask(tasks)) => {
-                State::Asking(tasks.into_iter().map(|task| board.put(&Arc::new(task), index, &mut new)).collect())
-            }
-            Err(error) => State::Ended(StageStatus::Failed(match error.hint {
-                Some(hint) => format!("{} ({hint})", error.message),
-                None => error.message,
-            })),
-        };
-        new
-    }
-
-    /// Ends the stages that can end now.
-    pub(super) fn close(&mut self, workflow: &Workflow, board: &Board) -> Vec<StageReport> {
+    /// Ends the stages that can end now, and keeps their memos when something was or may be run.
+    pub(super) fn close(&mut self, workflow: &Workflow, board: &Board, store: Option<&Store>) -> Vec<StageReport> {
         let mut closed = Vec::new();
-        for index in 0..self.states.len() {
+        for index in 0..self.places.len() {
             let Some(status) = self.end(workflow, index, board) else { continue };
-            self.states[index] = State::Ended(status);
+            if let (StageStatus::Done(content), Some(store)) = (&status, store) {
+                self.keep(index, *content, board, store);
+            }
+            self.places[index].state = State::Ended(status);
             closed.push(self.report(workflow, index, board));
         }
         closed
     }
 
+    fn keep(&mut self, index: usize, content: ContentHash, board: &Board, store: &Store) {
+        let place = &mut self.places[index];
+        if let Some(key) = &place.key {
+            let (nodes, own) = (board.closure(&place.asked), board.count(index).total);
+            memo::keep(store, key, content, board, (&nodes, own), std::mem::take(&mut place.files));
+        }
+    }
+
     fn end(&self, workflow: &Workflow, index: usize, board: &Board) -> Option<StageStatus> {
-        match &self.states[index] {
-            State::Waiting => workflow.stages[index].inputs.iter().find_map(|&(_, input)| match &self.states[input] {
-                State::Ended(StageStatus::Failed(_)) => Some(StageStatus::Skipped(workflow.stages[input].name.clone())),
-                State::Ended(StageStatus::Skipped(cause)) => Some(StageStatus::Skipped(cause.clone())),
-                _ => None,
-            }),
+        match &self.places[index].state {
+            State::Waiting => {
+                workflow.stages[index].inputs.iter().find_map(|&(_, input)| match &self.places[input].state {
+                    State::Ended(StageStatus::Failed(_)) => {
+                        Some(StageStatus::Skipped(workflow.stages[input].name.clone()))
+                    }
+                    State::Ended(StageStatus::Skipped(cause)) => Some(StageStatus::Skipped(cause.clone())),
+                    State::Waiting | State::Asking(_) | State::Finishing(_) | State::Ended(_) => None,
+                })
+            }
             State::Finishing(node) => match board.state(*node) {
                 TaskState::Done { content, .. } => Some(StageStatus::Done(*content)),
-                TaskState::Failed(_) | TaskState::Skipped => {
-                    Some(StageStatus::Failed(board.cause(*node).map_or_else(String::new, |(cause, why)| {
-                        match board.task(cause).row {
-                            Some(row) => format!("row {}: {why}", row + 1),
-                            None => why.to_owned(),
-                        }
-                    })))
-                }
+                TaskState::Failed(_) | TaskState::Skipped => Some(StageStatus::Failed(cause(board, *node))),
                 TaskState::Open | TaskState::Running => None,
             },
             State::Asking(_) | State::Ended(_) => None,
@@ -154,20 +223,41 @@ impl Stages {
     }
 
     fn report(&self, workflow: &Workflow, index: usize, board: &Board) -> StageReport {
+        let place = &self.places[index];
         StageReport {
             name: workflow.stages[index].name.clone(),
             kind: workflow.stages[index].kind,
-            status: match &self.states[index] {
+            status: match &place.state {
                 State::Ended(status) => status.clone(),
                 State::Waiting | State::Asking(_) | State::Finishing(_) => StageStatus::Open,
             },
-            tasks: board.count(index),
+            tasks: place.remembered.as_ref().map_or_else(|| board.count(index), |known| known.count),
+            memo: place.key,
+            seconds: board.seconds(index),
         }
     }
 
     /// Every wanted stage.
     pub(super) fn reports(&self, workflow: &Workflow, board: &Board) -> Vec<StageReport> {
-        let wanted = (0..self.states.len()).filter(|&index| self.wanted[index]);
+        let wanted = (0..self.places.len()).filter(|&index| self.places[index].wanted);
         wanted.map(|index| self.report(workflow, index, board)).collect()
+    }
+
+    /// Objects that memos spoke for.
+    pub(super) fn remembered(&self) -> impl Iterator<Item = ObjectId> {
+        self.places.iter().filter_map(|place| place.remembered.as_ref()).flat_map(|known| known.objects.iter().copied())
+    }
+}
+
+fn cause(board: &Board, node: NodeId) -> String {
+    let Some((cause, why)) = board.cause(node) else { panic!("BUG: a failure without a cause") };
+    board.task(cause).row.map_or_else(|| why.to_owned(), |row| format!("row {}: {why}", row + 1))
+}
+
+/// An error with its hint.
+pub(super) fn in_words(error: StageError) -> String {
+    match error.hint {
+        Some(hint) => format!("{} ({hint})", error.message),
+        None => error.message,
     }
 }

@@ -22,6 +22,8 @@ pub(super) struct Finished {
     pub(super) content: ContentHash,
     /// Whether another process computed it meanwhile.
     pub(super) shared: bool,
+    /// How long it took here, seconds.
+    pub(super) seconds: f64,
 }
 
 impl Order {
@@ -51,10 +53,9 @@ impl Order {
         let key = Key::of(&self.text);
         loop {
             match store.claim(&key).map_err(failure)? {
-                Claim::Done(record) => return Ok(Finished { content: record.content, shared: true }),
+                Claim::Done(record) => return Ok(Finished { content: record.content, shared: true, seconds: 0.0 }),
                 Claim::Mine(_guard) => {
-                    let content = self.compute(store, say, stop)?;
-                    return Ok(Finished { content, shared: false });
+                    return self.compute(store, say, stop);
                 }
                 Claim::Theirs(waiting) => {
                     say(Progress { fraction: None, note: format!("waits for {}", waiting.holder_now()) });
@@ -66,12 +67,7 @@ impl Order {
         }
     }
 
-    fn compute(
-        &self,
-        store: &Store,
-        say: &(dyn Fn(Progress) + Sync),
-        stop: &AtomicBool,
-    ) -> Result<ContentHash, Failure> {
+    fn compute(&self, store: &Store, say: &(dyn Fn(Progress) + Sync), stop: &AtomicBool) -> Result<Finished, Failure> {
         let Some(work) = work(self.task.work) else { panic!("BUG: no work is called `{}`", self.task.work) };
         let job = Job {
             params: &self.task.params,
@@ -87,7 +83,7 @@ impl Order {
         let artifact = (work.run)(&job)?;
         let timing = Timing { started, seconds: clock.elapsed().as_secs_f64() };
         let (record, _) = store.put(&self.text, artifact, &timing).map_err(failure)?;
-        Ok(record.content)
+        Ok(Finished { content: record.content, shared: false, seconds: timing.seconds })
     }
 }
 

@@ -31,12 +31,23 @@
 //! when at their default (`skip_serializing_if`), so that they rerun nothing. Parameters of tasks are plain SI numbers
 //! (the domain's own spec types), built from the config in `next`.
 
+pub mod anova;
+mod columns;
 pub mod command;
 mod context;
 pub mod data;
+pub mod figure;
+pub mod fitted;
+pub mod formula;
+mod published;
+pub mod range;
+pub mod regression;
 pub mod rows;
+pub mod rsm;
+pub mod screening;
 pub mod simulate;
 pub mod specimen;
+pub mod table;
 mod task;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
@@ -191,10 +202,18 @@ macro_rules! kinds {
 }
 
 kinds! {
+    anova::Anova,
     command::Command,
     data::Data,
+    figure::Figure,
+    formula::Formula,
+    range::Range,
+    regression::Regression,
+    rsm::Rsm,
+    screening::Screening,
     simulate::Simulate,
     specimen::Specimen,
+    table::Table,
 }
 
 /// The work called `name`.

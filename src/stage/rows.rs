@@ -85,6 +85,34 @@ pub fn apply(
     Ok(set)
 }
 
+/// Everything a run may name at a point: the material's parameters by path (SI) after the point was applied, and the
+/// factors by name (in their units) that set something.
+///
+/// # Errors
+/// As [`apply`].
+pub fn values(
+    material: Option<&String>,
+    point: &Point,
+    context: &Context,
+) -> Result<BTreeMap<String, f64>, StageError> {
+    let mut values = BTreeMap::new();
+    if let Some(material) = material.and_then(|name| context.materials.get(name)) {
+        let base = material.iter().map(|(path, parameter)| (path.clone(), parameter.value)).collect();
+        values = apply(&base, point, context)?;
+    }
+    let sets = |name: &str| context.factors.get(name).is_none_or(|factor| !factor.sets.is_empty());
+    values.extend(point.iter().filter(|(name, _)| sets(name)).map(|(name, value)| (name.clone(), *value)));
+    Ok(values)
+}
+
+/// The complaint about a material that is not in the workflow.
+pub fn check_material(name: Option<&String>, context: &Context) -> Option<Complaint> {
+    let name = name.filter(|name| !context.materials.contains_key(*name))?;
+    let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
+    let hint = if known.is_empty() { "there is none".to_owned() } else { format!("there is {}", known.join(", ")) };
+    Some(Complaint::new("material", format!("there is no [material.{name}]")).hint(hint))
+}
+
 #[derive(Serialize, Deserialize)]
 struct GatherParams {
     /// Factor columns to take from the design.

@@ -136,6 +136,17 @@ pub struct Anova {
     pub not_estimable: Vec<String>,
 }
 
+impl Anova {
+    /// Standard deviation of the F of a line when every response is rounded to multiples of `step`.
+    ///
+    /// Rounding errors are uniform with variance `step²/12`, and the gradient of F by the responses has the squared
+    /// length `4F²(1/SS + 1/SSE)`, for the parts of the response in a term and in the residual are orthogonal.
+    pub fn f_rounding(&self, line: &Line, step: f64) -> Option<f64> {
+        let error = self.lines.iter().find(|l| l.source == "residual").filter(|l| l.ss > 0.0 && line.ss > 0.0)?;
+        Some(line.f? * 2.0 * (1.0 / line.ss + 1.0 / error.ss).sqrt() * step / 12.0_f64.sqrt())
+    }
+}
+
 /// Analyses every response.
 ///
 /// # Errors

@@ -31,6 +31,18 @@ pub enum Nature {
     Ridge,
 }
 
+impl Nature {
+    /// The word for tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Maximum => "maximum",
+            Self::Minimum => "minimum",
+            Self::Saddle => "saddle",
+            Self::Ridge => "ridge",
+        }
+    }
+}
+
 /// A principal axis of a surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Principal {

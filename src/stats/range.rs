@@ -62,20 +62,20 @@ pub fn range_analysis(sample: &Sample) -> Result<Vec<Range>, Faults> {
 /// Factors with one level, and levels without a usable row.
 pub(crate) fn level_faults(sample: &Sample, usable: &Usable, response: &str) -> Vec<Fault> {
     let of_factor = |factor: &super::sample::Factor| {
-        let found = factor.occurring(&usable.rows);
+        let found = factor.occurring(usable.rows.iter().copied());
         if let [value] = found[..] {
             return vec![Fault::OneLevel { factor: factor.name.clone(), value }];
         }
-        let empty = factor.levels.iter().filter(|level| !found.contains(level));
-        let fault = |&level| Fault::EmptyLevel { factor: factor.name.clone(), level, response: response.into() };
-        empty.map(fault).collect()
+        let lost = factor.all_levels().into_iter().filter(|level| !found.contains(level));
+        let fault = |level| Fault::EmptyLevel { factor: factor.name.clone(), level, response: response.into() };
+        lost.map(fault).collect()
     };
     sample.factors.iter().flat_map(of_factor).collect()
 }
 
 fn one(sample: &Sample, usable: &Usable, response: usize, factor: usize) -> Range {
     let column = &sample.factors[factor];
-    let levels = column.known_levels(&usable.rows);
+    let levels = column.all_levels();
     let mean = |&level: &f64| {
         let rows = usable.rows.iter().zip(&usable.values).filter(|(row, _)| column.values[**row] == level);
         let (sum, weights) = rows.fold((0.0, 0.0), |(sum, weights), (&row, value)| {
@@ -128,11 +128,10 @@ mod tests {
 
     #[test]
     fn faults_name_factor_and_level() {
-        let mut a = Factor::new("a", vec![1.0, 1.0, 2.0]);
-        a.levels = vec![1.0, 2.0, 3.0];
-        let flat = Factor::new("b", vec![4.0; 3]);
-        let sample =
-            Sample { factors: vec![a, flat], responses: vec![Response::new("y", vec![1.0, 2.0, 3.0])], weights: None };
+        let a = Factor::new("a", vec![1.0, 1.0, 2.0, 3.0]);
+        let flat = Factor::new("b", vec![4.0; 4]);
+        let y = Response { name: "y".into(), values: vec![Some(1.0), Some(2.0), Some(3.0), None] };
+        let sample = Sample { factors: vec![a, flat], responses: vec![y], weights: None };
         let Faults(faults) = range_analysis(&sample).unwrap_err();
         assert_eq!(
             faults,

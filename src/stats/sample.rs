@@ -9,7 +9,7 @@ pub struct Factor {
     pub name: String,
     /// One value per row, in the unit of the table.
     pub values: Vec<f64>,
-    /// The declared levels, ascending; empty when whatever occurs is a level.
+    /// The declared levels, which no row may leave; empty when whatever occurs is a level.
     pub levels: Vec<f64>,
     /// The values that stand for −1 and +1 in coded units; `None` takes the least and greatest that occur.
     pub coding: Option<(f64, f64)>,
@@ -22,9 +22,9 @@ impl Factor {
     }
 
     /// The levels that occur in `rows`, ascending.
-    pub(crate) fn occurring(&self, rows: &[usize]) -> Vec<f64> {
+    pub(crate) fn occurring(&self, rows: impl IntoIterator<Item = usize>) -> Vec<f64> {
         let mut found: Vec<f64> = Vec::new();
-        for &row in rows {
+        for row in rows {
             let value = self.values[row] + 0.0;
             if let Err(place) = found.binary_search_by(|level| level.total_cmp(&value)) {
                 found.insert(place, value);
@@ -33,9 +33,9 @@ impl Factor {
         found
     }
 
-    /// The declared levels, or those that occur.
-    pub(crate) fn known_levels(&self, rows: &[usize]) -> Vec<f64> {
-        if self.levels.is_empty() { self.occurring(rows) } else { self.levels.clone() }
+    /// The levels that occur in the table, ascending.
+    pub(crate) fn all_levels(&self) -> Vec<f64> {
+        self.occurring(0..self.values.len())
     }
 }
 

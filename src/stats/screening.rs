@@ -121,10 +121,9 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
 
 /// Factors of the terms that do not have exactly two levels.
 fn two_levels(sample: &Sample, terms: &[Term]) -> Vec<Fault> {
-    let all: Vec<usize> = (0..sample.rows()).collect();
     let used = |f: &&super::sample::Factor| terms.iter().any(|t| t.power_of(&f.name) > 0);
     let fault = |f: &super::sample::Factor| {
-        let levels = f.occurring(&all).len();
+        let levels = f.all_levels().len();
         (levels != 2).then(|| Fault::NotTwoLevels { factor: f.name.clone(), levels })
     };
     sample.factors.iter().filter(used).filter_map(fault).collect()
@@ -133,9 +132,8 @@ fn two_levels(sample: &Sample, terms: &[Term]) -> Vec<Fault> {
 /// The same table with every two-level factor as −1 and +1.
 fn in_signs(sample: &Sample) -> Sample {
     let mut signs = sample.clone();
-    let all: Vec<usize> = (0..sample.rows()).collect();
     for factor in &mut signs.factors {
-        if let [low, _] = factor.occurring(&all)[..] {
+        if let [low, _] = factor.all_levels()[..] {
             factor.values.iter_mut().for_each(|v| *v = if *v == low { -1.0 } else { 1.0 });
             factor.levels = vec![-1.0, 1.0];
             factor.coding = None;

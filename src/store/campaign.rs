@@ -54,6 +54,9 @@ pub struct StageRun {
     pub seconds: f64,
     /// Content hash of its result.
     pub object: Option<String>,
+    /// Key of its memo.
+    #[serde(default)]
+    pub memo: Option<String>,
 }
 
 fn folder(disk: &Disk) -> PathBuf {

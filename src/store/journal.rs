@@ -62,7 +62,7 @@ pub(super) struct Index {
     pub(super) contradictions: Vec<(Key, ContentHash, ContentHash)>,
 }
 
-/// A segment of another live process.
+/// A segment of another live process; without locks on the file system, of any process.
 struct Growing {
     file: File,
     /// How far it has been read.
@@ -201,6 +201,11 @@ impl Index {
         records
     }
 
+    /// Names of the segments read so far.
+    pub(super) fn segments(&self) -> Vec<OsString> {
+        self.seen.iter().cloned().collect()
+    }
+
     fn record(&self, key: Key, entry: &Entry) -> Record {
         let Entry { content, seal, started, seconds, origin } = *entry;
         Record { key, content, seal, started, seconds, origin: self.origins[origin as usize].clone() }
@@ -247,7 +252,6 @@ fn create(disk: &Disk, origin: &Origin) -> Result<Open, StoreError> {
     disk.make_dir(&folder)?;
     let fail = |error| disk.fail("create a file in", &folder, error);
     let mut file = disk.temporary_in(&folder, 0o644)?;
-    // Without locks on this file system the segment counts as finished: its new records are seen by the next run.
     let _ = file.as_file().try_lock();
     file.write_all(&head(origin)).and_then(|()| file.as_file().sync_all()).map_err(fail)?;
     let name = file.path().file_name().unwrap_or_default().to_string_lossy().replacen(TEMPORARY, "", 1);
@@ -257,8 +261,17 @@ fn create(disk: &Disk, origin: &Origin) -> Result<Open, StoreError> {
     Ok(Open { file, path, end: HEAD as u64 })
 }
 
+/// Writes a finished segment with these records, which have one origin.
+pub(super) fn write_segment(disk: &Disk, records: &[Record]) -> Result<(), StoreError> {
+    let Some(first) = records.first() else { return Ok(()) };
+    let mut open = create(disk, &first.origin)?;
+    let bytes: Vec<u8> = records.iter().flat_map(pack).collect();
+    let written = open.file.write_all(&bytes).and_then(|()| open.file.sync_all());
+    written.map_err(|error| disk.fail("write", &open.path, error))
+}
+
 /// The head of a segment: one line of text, padded.
-pub(super) fn head(origin: &Origin) -> Vec<u8> {
+fn head(origin: &Origin) -> Vec<u8> {
     let mut line = format!("{MAGIC}{}", serde_json::to_string(&origin.shortened()).unwrap_or_default());
     while line.len() < HEAD - 1 {
         line.push(' ');
@@ -273,7 +286,7 @@ fn read_head(bytes: &[u8]) -> Origin {
 }
 
 /// The bytes of a record.
-pub(super) fn pack(record: &Record) -> [u8; RECORD] {
+fn pack(record: &Record) -> [u8; RECORD] {
     let mut bytes = [0; RECORD];
     bytes[..32].copy_from_slice(&record.key.0);
     bytes[32..64].copy_from_slice(&record.content.0);

@@ -17,6 +17,7 @@
 
 mod cache;
 mod campaign;
+mod clean;
 mod disk;
 mod error;
 mod hdf5;
@@ -27,6 +28,7 @@ mod object;
 mod origin;
 
 pub use campaign::{Campaign, StageRun};
+pub use clean::{Amount, Swept, Usage, Verdict};
 pub use error::{Damage, StoreError};
 pub use hdf5::Hdf5Error;
 pub use lock::{Guard, Holder, Waiting};
@@ -133,6 +135,11 @@ impl Store {
     pub fn with_origin(mut self, origin: Origin) -> Self {
         self.origin = OnceLock::from(Arc::new(origin));
         self
+    }
+
+    /// Where and by what results are computed now.
+    pub fn origin(&self) -> &Origin {
+        self.origin.get_or_init(|| Arc::new(Origin::here()))
     }
 
     /// The folder of the store.
@@ -320,10 +327,15 @@ impl Store {
         if matches!(why, Hdf5Error::Newer { .. }) {
             return StoreError::Newer { path, why };
         }
-        match object::set_aside(&self.disk, &path, &why.to_string()) {
+        self.set_aside(&record.object(), &why.to_string())
+    }
+
+    /// Moves a damaged object out of the way and reports it.
+    fn set_aside(&self, object: &ObjectId, why: &str) -> StoreError {
+        locked(&self.presence).remove(object);
+        match object::set_aside(&self.disk, &self.path(object), why) {
             Ok(fault) => {
                 locked(&self.damages).push(fault.clone());
-                locked(&self.presence).remove(&record.object());
                 StoreError::Damaged { fault }
             }
             Err(error) => error,

@@ -214,12 +214,16 @@ impl Presence {
 
 /// The first bytes of content and key, which tell all objects apart.
 fn short(id: &ObjectId) -> [u64; 2] {
-    let first = |bytes: &[u8; 32]| bytes.iter().take(8).fold(0, |word, &byte| word << 8 | u64::from(byte));
-    [first(&id.content.0), first(&id.key.0)]
+    [first_word(&id.content.0), first_word(&id.key.0)]
+}
+
+/// The first bytes of a hash, as names show them.
+pub(super) fn first_word(hash: &[u8; 32]) -> u64 {
+    hash.iter().take(8).fold(0, |word, &byte| word << 8 | u64::from(byte))
 }
 
 /// As [`short`], from the name of a file.
-fn short_of_name(name: &str) -> Option<[u64; 2]> {
+pub(super) fn short_of_name(name: &str) -> Option<[u64; 2]> {
     let (content, key) = (name.get(..16)?, name.get(65..81)?);
     if name.len() != 84 {
         return None;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Where and by what results were computed; kept with them, and never part of a key or a result.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Origin {
     /// Name of the machine.
     pub machine: String,

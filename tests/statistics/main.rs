@@ -1,6 +1,8 @@
 //! The statistics against certified data, published tables and other programs.
 
 mod nist;
+mod other_code;
+mod su2021;
 
 use flow::stats::sample::{Factor, Response, Sample};
 use toml::{Table, Value};

@@ -3,9 +3,10 @@
 //! The order of contacts (class, wall, i, j) decides the order of every sum, so it depends on nothing but the contacts.
 
 use crate::dem::interaction::Bond;
-use crate::dem::law::{KN, REFERENCE, Rows};
+use crate::dem::law::{KN, LEDGER, REFERENCE, Rows};
 use crate::dem::simd::{Row, WIDEST};
 use crate::dem::space::Space;
+use std::ops::Range;
 
 /// Which law a class follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,12 +46,16 @@ pub(crate) struct Section {
     pub(crate) wall: Option<u32>,
     /// Real contacts; the last block is filled up with idle ones.
     pub(crate) count: usize,
+    /// The contacts before this one belong to another stretch, which computes them too.
+    pub(crate) own_from: usize,
     /// Ends of each block: i, then j.
     pub(crate) ends: Vec<[[u32; WIDEST]; 2]>,
     /// `Rows::COUNT` rows a block.
     pub(crate) rows: Vec<Row>,
     /// Force on the wall, `DIMENSION` rows a block; empty between particles.
     pub(crate) reactions: Vec<Row>,
+    /// What the contacts have spent, `LEDGER` rows a block; empty unless a run keeps the books.
+    pub(crate) ledger: Vec<Row>,
 }
 
 impl Section {
@@ -64,7 +69,21 @@ impl Section {
             block[Rows::<S>::COHESION] = Row([f64::INFINITY; WIDEST]);
         }
         let reactions = if wall.is_some() { vec![Row::default(); blocks * S::DIMENSION] } else { Vec::new() };
-        Self { class, wall, count: contacts, ends: vec![dummy; blocks], rows, reactions }
+        Self {
+            class,
+            wall,
+            count: contacts,
+            own_from: 0,
+            ends: vec![dummy; blocks],
+            rows,
+            reactions,
+            ledger: Vec::new(),
+        }
+    }
+
+    /// Its place in the order of sections.
+    pub(crate) fn rank(&self) -> (bool, usize, u32) {
+        (self.wall.is_some(), self.class, self.wall.unwrap_or(0))
     }
 
     /// The key of contact `c`.
@@ -97,6 +116,18 @@ impl Section {
         self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
     }
 
+    /// Opens the books.
+    pub(crate) fn open_ledger(&mut self) {
+        self.ledger = vec![Row::default(); self.ends.len() * LEDGER];
+    }
+
+    /// Adds one row of the ledger of some contacts to `sum`, one by one: the order of the list decides the bits.
+    pub(crate) fn add_spent(&self, row: usize, contacts: Range<usize>, sum: &mut f64) {
+        for c in contacts {
+            *sum += self.ledger.get(c / WIDEST * LEDGER + row).map_or(0.0, |r| r.0[c % WIDEST]);
+        }
+    }
+
     /// Copies contact `c` out.
     pub(crate) fn pack<S: Space>(&self, c: usize, into: &mut Packed) {
         into.keys.push((self.key(c), self.class as u32));
@@ -114,6 +145,12 @@ pub(crate) struct Packed {
 }
 
 impl Packed {
+    /// Empty, with room for `contacts`.
+    pub(crate) fn with_capacity<S: Space>(contacts: usize) -> Self {
+        let (keys, values) = (Vec::with_capacity(contacts), Vec::with_capacity(contacts * Rows::<S>::COUNT));
+        Self { keys, values }
+    }
+
     /// Adds a fresh, unbonded contact.
     pub(crate) fn push_new<S: Space>(&mut self, key: Key, class: u32, kn: f64) {
         self.keys.push((key, class));
@@ -136,9 +173,20 @@ impl Packed {
         &self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
     }
 
-    /// Sections in the order (wall or not, class, wall), contacts by (i, j) within each.
-    pub(crate) fn sections<S: Space>(&self, particles: usize) -> Vec<Section> {
-        let mut order: Vec<u32> = (0..self.keys.len() as u32).collect();
+    /// Rows of contact `k`.
+    pub(crate) fn rows_mut<S: Space>(&mut self, k: usize) -> &mut [f64] {
+        &mut self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
+    }
+
+    /// Sections in the order (wall or not, class, wall), contacts by (i, j) within each; of the contacts that touch
+    /// `particles`, a stretch of all `total` ones.
+    pub(crate) fn sections<S: Space>(&self, total: usize, particles: &Range<usize>) -> Vec<Section> {
+        let own = |p: u32| particles.contains(&(p as usize));
+        let touches = |k: &u32| {
+            let key = self.keys[*k as usize].0;
+            own(key.i) || (!key.at_wall && own(key.j))
+        };
+        let mut order: Vec<u32> = (0..self.keys.len() as u32).filter(touches).collect();
         let place = |k: u32| {
             let (key, class) = self.keys[k as usize];
             (key.at_wall, class, if key.at_wall { key.j } else { 0 }, key.i, key.j)
@@ -148,20 +196,21 @@ impl Packed {
             let (a, b) = (place(*a), place(*b));
             (a.0, a.1, a.2) == (b.0, b.1, b.2)
         };
-        order
-            .chunk_by(same)
-            .map(|chunk| {
-                let (key, class) = self.keys[chunk[0] as usize];
-                let wall = key.at_wall.then_some(key.j);
-                let mut section = Section::new::<S>(class as usize, wall, chunk.len(), particles);
-                for (c, &k) in chunk.iter().enumerate() {
-                    section.set_key(c, self.keys[k as usize].0);
-                    for (row, &value) in self.rows::<S>(k as usize).iter().enumerate() {
-                        section.set_value::<S>(c, row, value);
-                    }
-                }
-                section
-            })
-            .collect()
+        order.chunk_by(same).map(|chunk| self.section::<S>(chunk, total, particles)).collect()
+    }
+
+    fn section<S: Space>(&self, chunk: &[u32], total: usize, particles: &Range<usize>) -> Section {
+        let (key, class) = self.keys[chunk[0] as usize];
+        let wall = key.at_wall.then_some(key.j);
+        let mut section = Section::new::<S>(class as usize, wall, chunk.len(), total);
+        // i < j, so a contact whose i lies elsewhere has it before the stretch.
+        section.own_from = chunk.partition_point(|&k| (self.keys[k as usize].0.i as usize) < particles.start);
+        for (c, &k) in chunk.iter().enumerate() {
+            section.set_key(c, self.keys[k as usize].0);
+            for (row, &value) in self.rows::<S>(k as usize).iter().enumerate() {
+                section.set_value::<S>(c, row, value);
+            }
+        }
+        section
     }
 }

@@ -1,7 +1,9 @@
 //! The one contact loop: geometry, law, loads, for every block of a section.
 
 use super::section::{LawKind, Section};
-use crate::dem::law::{Constants, ContactBondLaw, KN, Law, LinearLaw, ParallelBondLaw, Rows, Viscous};
+use crate::dem::law::{
+    BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Rows, Viscous,
+};
 use crate::dem::simd::{Lane, Quad, Row, WIDEST};
 use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
 
@@ -37,6 +39,10 @@ pub(crate) struct Break {
     pub(crate) at_wall: bool,
     /// Tension, else shear.
     pub(crate) tensile: bool,
+    /// Gap, unit normal from i and contact point when it broke; the third coordinate is 0 in the plane.
+    pub(crate) gap: f64,
+    pub(crate) normal: [f64; 3],
+    pub(crate) point: [f64; 3],
 }
 
 /// Touch of two balls.
@@ -107,15 +113,22 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
                 Some(face) => wall_touch(&i, face, dt),
             };
             let drag = viscous.then(|| drag(constants, task, first, face.is_none().then_some(second), rows, at));
-            let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at);
-            S::push_i(loads, first, &touch, &load);
+            let mut ledger = Ledger(section.ledger.get_mut(b * LEDGER..(b + 1) * LEDGER));
+            let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at, &mut ledger);
             match face {
-                None => S::push_j(loads, second, &touch, &load),
-                Some(_) => react(&mut section.reactions[b * S::DIMENSION..], at, &touch, &load),
+                None => S::push_both(loads, [first, second], &touch, &load),
+                Some(face) => {
+                    if ledger.open() {
+                        ledger.charge(BOUNDARY, at, wall_work(face, task.dt, &touch, &load));
+                    }
+                    S::push_one(loads, first, &touch, &load);
+                    react(&mut section.reactions[b * S::DIMENSION..], at, &touch, &load);
+                }
             }
             if let Some(broken) = broken {
                 let (tension, shear) = (L::bits(broken.tension), L::bits(broken.shear));
-                note(class, wall, [first, second], tension, tension | shear, breaks);
+                let places = Places::new(&i, &touch);
+                note(class, wall, [first, second], [tension, tension | shear], &places, breaks);
             }
         }
     }
@@ -146,6 +159,13 @@ fn drag<L: Lane>(
     }
 }
 
+/// Work of a moving wall on the ball, J.
+#[inline(always)]
+fn wall_work<S: Space, L: Lane>(face: &Face<S>, dt: f64, touch: &Touch<S, L>, load: &Load<S, L>) -> L {
+    let way = face.velocity.times(dt);
+    S::force(touch, load).dot(S::Vector::<L>::build(|k| L::splat(way.at(k))))
+}
+
 /// Keeps the force on the wall.
 #[inline(always)]
 fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L>, load: &Load<S, L>) {
@@ -155,11 +175,41 @@ fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L
     }
 }
 
+/// Where the contacts of a lane are, out of the registers.
+struct Places {
+    gap: Row,
+    normal: [Row; 3],
+    point: [Row; 3],
+}
+
+impl Places {
+    #[inline(always)]
+    fn new<S: Space, L: Lane>(i: &End<S, L>, touch: &Touch<S, L>) -> Self {
+        let mut places = Self { gap: Row::default(), normal: [Row::default(); 3], point: [Row::default(); 3] };
+        touch.gap.store(&mut places.gap, 0);
+        let point = i.position.plus(touch.normal.times(touch.arm_i));
+        for k in 0..S::DIMENSION {
+            touch.normal.at(k).store(&mut places.normal[k], 0);
+            point.at(k).store(&mut places.point[k], 0);
+        }
+        places
+    }
+}
+
+/// Notes the contacts of a lane that broke: in tension (first mask) or at all (second).
 #[cold]
 #[inline(never)]
-fn note(class: usize, wall: Option<u32>, ends: [&[u32]; 2], tension: u8, any: u8, breaks: &mut Vec<Break>) {
-    for k in (0..ends[0].len()).filter(|k| any >> k & 1 == 1) {
-        let j = wall.unwrap_or(ends[1][k]);
-        breaks.push(Break { class, i: ends[0][k], j, at_wall: wall.is_some(), tensile: tension >> k & 1 == 1 });
+fn note(class: usize, wall: Option<u32>, ends: [&[u32]; 2], masks: [u8; 2], places: &Places, breaks: &mut Vec<Break>) {
+    for k in (0..ends[0].len()).filter(|k| masks[1] >> k & 1 == 1) {
+        breaks.push(Break {
+            class,
+            i: ends[0][k],
+            j: wall.unwrap_or(ends[1][k]),
+            at_wall: wall.is_some(),
+            tensile: masks[0] >> k & 1 == 1,
+            gap: places.gap.0[k],
+            normal: places.normal.map(|row| row.0[k]),
+            point: places.point.map(|row| row.0[k]),
+        });
     }
 }

@@ -1,7 +1,7 @@
 //! What a caller may read. Particles are named by their places in the caller's list.
 
 use super::{Engine, Settings};
-use crate::dem::body;
+use crate::dem::body::{self, Rigid};
 use crate::dem::contact::{Contact, Key, Other, Section};
 use crate::dem::law::{KN, REFERENCE, Rows, SHEAR};
 use crate::dem::measure::Crack;
@@ -21,7 +21,7 @@ impl<S: Space> Engine<S> {
 
     /// Time, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.epoch.0 + (self.step - self.epoch.1) as f64 * self.dt
     }
 
     /// Time step, s.
@@ -64,7 +64,12 @@ impl<S: Space> Engine<S> {
         self.groups[self.place[particle] as usize]
     }
 
-    /// Mass of a particle that belongs to no clump, as it moves, kg.
+    /// Mass and inertia that move a ball: its own, or those of [`super::Masses::EqualStep`].
+    pub fn moving_mass(&self, particle: usize) -> [f64; 2] {
+        self.moving[self.place[particle] as usize]
+    }
+
+    /// Mass of a particle that belongs to no clump, kg.
     pub fn mass(&self, particle: usize) -> f64 {
         self.masses[self.place[particle] as usize]
     }
@@ -72,7 +77,7 @@ impl<S: Space> Engine<S> {
     /// The clump of a particle, by its place in the caller's list of clumps.
     pub fn clump_of(&self, particle: usize) -> Option<usize> {
         let body = self.bodies[self.place[particle] as usize] as usize;
-        (body < self.clumps.len()).then_some(body)
+        self.clump_caller.get(body).map(|&clump| clump as usize)
     }
 
     /// A particle as it is now.
@@ -91,7 +96,7 @@ impl<S: Space> Engine<S> {
 
     /// A clump as it is now; its inertia in the present frame of the specimen.
     pub fn clump(&self, clump: usize) -> Clump<S> {
-        let rigid = &self.clumps[clump];
+        let rigid = self.rigid(clump);
         Clump {
             pebbles: rigid.pebbles.clone().map(|p| self.caller[p] as usize).collect(),
             centre: rigid.centre,
@@ -102,19 +107,29 @@ impl<S: Space> Engine<S> {
         }
     }
 
+    /// The constant force that [`apply`](Engine::apply) put on the body of a particle, N.
+    pub fn applied_force(&self, particle: usize) -> Vector<S> {
+        let p = self.place[particle] as usize;
+        self.applied.get(&p).map_or(Vector::<S>::zero(), |load| load.0)
+    }
+
     /// Centre of mass of a clump, m.
     pub fn clump_centre(&self, clump: usize) -> Vector<S> {
-        self.clumps[clump].centre
+        self.rigid(clump).centre
     }
 
     /// Mass of a clump, kg.
     pub fn clump_mass(&self, clump: usize) -> f64 {
-        self.clumps[clump].mass
+        self.rigid(clump).mass
     }
 
     /// Whether a particle's velocity is prescribed.
     pub fn is_fixed(&self, particle: usize) -> bool {
         self.fixed[self.place[particle] as usize][0]
+    }
+
+    fn rigid(&self, clump: usize) -> &Rigid<S> {
+        &self.clumps[self.clump_place[clump] as usize]
     }
 
     /// Number of clumps.
@@ -137,9 +152,18 @@ impl<S: Space> Engine<S> {
         self.walls[w].face.velocity
     }
 
+    /// Force of the balls on wall `w`, N, at the positions of the last step.
+    pub fn wall_force(&self, w: usize) -> Vector<S> {
+        let mut sum = Vector::<S>::zero();
+        for (section, _) in self.stretches().filter(|(s, _)| s.wall == Some(w as u32)) {
+            Self::visit_reactions(section, |force| sum = sum.plus(Vector::<S>::build(|k| force[k])));
+        }
+        sum
+    }
+
     /// All listed contacts, in the engine's order.
     pub fn contacts(&self) -> impl Iterator<Item = Contact<S>> + '_ {
-        self.sections.iter().flat_map(move |section| (0..section.count).map(move |c| self.contact(section, c)))
+        self.stretches().flat_map(move |(section, own)| own.map(move |c| self.contact(section, c)))
     }
 
     pub(super) fn position_of(&self, p: usize) -> Vector<S> {
@@ -175,6 +199,9 @@ impl<S: Space> Engine<S> {
         };
         let spring = Load::<S, f64> { normal: -push, shear: shear(SHEAR), ..cement };
         let touch = Touch::<S, f64>::still(normal, gap);
+        let constants = &self.classes[section.class].constants;
+        let [first, second] = self.contact_radii(key);
+        let bond_radius = constants.multiplier * first.min(second);
         Contact {
             particle: self.caller[i] as usize,
             other: if key.at_wall { Other::Wall(j) } else { Other::Particle(self.caller[j] as usize) },
@@ -185,10 +212,13 @@ impl<S: Space> Engine<S> {
             reference: value(REFERENCE),
             bonded,
             active: bonded || overlap > 0.0,
-            kn: value(KN),
+            stiffness: [value(KN), value(KN) * constants.shear_share],
+            bond_stiffness: [value(Rows::<S>::BOND), value(Rows::<S>::BOND) * constants.bond_share],
+            gyration: S::GYRATION * bond_radius * bond_radius,
             spring: S::force(&touch, &spring),
             cement: S::force(&touch, &cement),
             moment: S::bond_moment(&touch, &cement),
+            twist: cement.twist,
         }
     }
 }

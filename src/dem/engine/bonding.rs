@@ -1,6 +1,7 @@
 //! Bonds put into contacts, and overlaps taken as the state of rest.
 
 use super::Engine;
+use crate::dem::contact::{Key, Packed};
 use crate::dem::interaction::Bond;
 use crate::dem::law::{REFERENCE, Rows, SHEAR};
 use crate::dem::space::Space;
@@ -13,80 +14,77 @@ impl<S: Space> Engine<S> {
     /// spring's shear force is dropped with its overlap. Strengths are drawn per contact from N(mean, deviation),
     /// negative ones again, from the stream "bond strength" of `seed`, contacts in the caller's order.
     pub fn install_bonds(&mut self, gap: f64, seed: u64) -> usize {
-        self.margin = self.margin.max(1.01 * gap);
+        // Bonded bodies move little: begin with a narrow list.
+        self.margin = (0.02 * self.smallest_radius).max(1.01 * gap);
         self.relist();
-        let mut order: Vec<(usize, usize, usize, usize)> = Vec::new();
-        for (s, section) in self.sections.iter().enumerate() {
-            for c in 0..section.count {
-                let key = section.key(c);
-                let near = self.gap(key) <= gap && !section.bonded::<S>(c);
-                if near && self.table.entries[section.class].2.bond != Bond::None {
-                    let i = self.caller[key.i as usize] as usize;
-                    let j = if key.at_wall {
-                        self.caller.len() + key.j as usize
-                    } else {
-                        self.caller[key.j as usize] as usize
-                    };
-                    order.push((i.min(j), i.max(j), s, c));
-                }
-            }
-        }
-        order.sort_unstable();
+        let mut listed = self.packed();
+        let near = |k: &usize| {
+            let (key, class) = listed.keys[*k];
+            let bonded = listed.rows::<S>(*k)[Rows::<S>::TENSION] < f64::INFINITY;
+            self.table.entries[class as usize].2.bond != Bond::None && !bonded && self.gap(key) <= gap
+        };
+        let mut chosen: Vec<usize> = (0..listed.keys.len()).filter(near).collect();
+        chosen.sort_by_cached_key(|&k| self.caller_ends(listed.keys[k].0));
         let mut stream = Stream::new(seed, "bond strength", 0);
-        for &(_, _, s, c) in &order {
-            self.install_bond(s, c, &mut stream);
+        for &k in &chosen {
+            self.install_bond(&mut listed, k, &mut stream);
         }
-        self.derive_step();
-        order.len()
+        self.adopt(&listed);
+        self.choose_masses();
+        chosen.len()
     }
 
-    fn install_bond(&mut self, s: usize, c: usize, stream: &mut Stream) {
-        let key = self.sections[s].key(c);
+    /// The caller's places of the two ends, the smaller first; walls after all particles.
+    fn caller_ends(&self, key: Key) -> (usize, usize) {
+        let i = self.caller[key.i as usize] as usize;
+        let j = if key.at_wall { self.caller.len() + key.j as usize } else { self.caller[key.j as usize] as usize };
+        (i.min(j), i.max(j))
+    }
+
+    fn install_bond(&self, listed: &mut Packed, k: usize, stream: &mut Stream) {
+        let (key, class) = listed.keys[k];
         let (gap, radii) = (self.gap(key), self.contact_radii(key));
-        let small = radii[0].min(radii[1]);
-        let bond = self.table.entries[self.sections[s].class].2.bond;
-        let (strengths, deviation, section, stiffness, reference) = match bond {
+        let rows = listed.rows_mut::<S>(k);
+        let (strengths, deviation, section, stiffness, reference) = match self.table.entries[class as usize].2.bond {
             Bond::None => return,
-            Bond::Contact(b) => ([b.tensile_strength, b.shear_strength], b.deviation, S::section(small), 0.0, gap),
+            Bond::Contact(b) => {
+                let section = S::section(radii[0].min(radii[1]));
+                ([b.tensile_strength, b.shear_strength], b.deviation, section, 0.0, gap)
+            }
             Bond::Parallel(b) => {
-                let reference = if gap < 0.0 { gap } else { self.sections[s].value::<S>(c, REFERENCE) };
+                let reference = if gap < 0.0 { gap } else { rows[REFERENCE] };
                 ([b.tensile_strength, b.cohesion], b.deviation, b.section::<S>(radii), b.normal::<S>(radii), reference)
             }
         };
+        // A bond is in force where its capacity is finite, so an endless strength is the largest number.
         let capacity = strengths.map(|mean| (draw(mean, deviation, stream) * section).min(f64::MAX));
-        let rows = &mut self.sections[s];
-        rows.set_value::<S>(c, REFERENCE, reference);
-        for k in 0..S::SHEAR {
-            rows.set_value::<S>(c, SHEAR + k, 0.0);
-        }
-        for row in Rows::<S>::BOND..Rows::<S>::COUNT {
-            rows.set_value::<S>(c, row, 0.0);
-        }
-        rows.set_value::<S>(c, Rows::<S>::TENSION, capacity[0]);
-        rows.set_value::<S>(c, Rows::<S>::COHESION, capacity[1]);
-        rows.set_value::<S>(c, Rows::<S>::BOND, stiffness);
+        rows[REFERENCE] = reference;
+        rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
+        rows[Rows::<S>::BOND..].fill(0.0);
+        rows[Rows::<S>::TENSION] = capacity[0];
+        rows[Rows::<S>::COHESION] = capacity[1];
+        rows[Rows::<S>::BOND] = stiffness;
     }
 
     /// Takes every overlap, at walls too, as the state of rest: its gap becomes the reference gap and its forces vanish.
     pub fn absorb_overlaps(&mut self) {
         self.relist();
-        for s in 0..self.sections.len() {
-            for c in 0..self.sections[s].count {
-                let gap = self.gap(self.sections[s].key(c));
-                if gap < self.sections[s].value::<S>(c, REFERENCE).min(0.0) {
-                    self.sections[s].set_value::<S>(c, REFERENCE, gap);
-                    for k in 0..S::SHEAR {
-                        self.sections[s].set_value::<S>(c, SHEAR + k, 0.0);
-                    }
-                }
+        let mut listed = self.packed();
+        for k in 0..listed.keys.len() {
+            let gap = self.gap(listed.keys[k].0);
+            let rows = listed.rows_mut::<S>(k);
+            if gap < rows[REFERENCE].min(0.0) {
+                rows[REFERENCE] = gap;
+                rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
             }
         }
+        self.adopt(&listed);
         self.derive_step();
     }
 
     /// Bonds in force.
     pub fn bond_count(&self) -> usize {
-        self.sections.iter().map(|s| (0..s.count).filter(|&c| s.bonded::<S>(c)).count()).sum()
+        self.stretches().map(|(s, own)| own.filter(|&c| s.bonded::<S>(c)).count()).sum()
     }
 }
 

@@ -1,15 +1,17 @@
 //! From a model to an engine.
 
 use super::{Class, Engine, Model, MovingWall};
-use crate::dem::body::{Rigid, set_kinematics};
+use crate::dem::body::{Rigid, set_kinematics, spin_place};
 use crate::dem::boundary::{Motion, Wall};
 use crate::dem::contact::{Face, LawKind};
 use crate::dem::error::Faults;
 use crate::dem::interaction::ContactTable;
 use crate::dem::law::Constants;
 use crate::dem::neighbour::morton_order;
-use crate::dem::simd::Quad;
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::dem::particle::Clump;
+use crate::dem::simd::{Quad, Same, Table, Width};
+use crate::dem::space::{Space, Spin, Tuple, Vector};
+use std::collections::BTreeMap;
 
 /// A body of its own, in `bodies`.
 const NO_CLUMP: u32 = u32::MAX;
@@ -32,9 +34,7 @@ impl<S: Space> Engine<S> {
         engine.set_inverse_masses();
         engine.relist();
         engine.derive_step();
-        if model.settings.masses == super::Masses::EqualStep {
-            engine.equalise_masses();
-        }
+        engine.choose_masses();
         Ok(engine)
     }
 
@@ -63,16 +63,21 @@ impl<S: Space> Engine<S> {
             radii: Vec::with_capacity(n),
             masses: Vec::with_capacity(n),
             inertias: Vec::with_capacity(n),
+            moving: Vec::with_capacity(n),
             fixed: vec![[false; 2]; n],
-            records: vec![Quad::default(); (n + 2) * S::RECORD],
-            loads: vec![Quad::default(); (n + 2) * S::LOADS],
-            inverse: vec![Quad::default(); n * S::LOADS],
+            applied: BTreeMap::new(),
+            records: Table::new((n + 2) * S::RECORD),
+            spare: Table::default(),
+            inverse: Table::new(n * S::LOADS),
             inverse_mass: vec![0.0; n + 2],
             weights: Vec::new(),
             clumps: Vec::with_capacity(model.clumps.len()),
+            clump_place: vec![0; model.clumps.len()],
+            clump_caller: Vec::with_capacity(model.clumps.len()),
             walls: Vec::with_capacity(model.walls.len()),
-            sections: Vec::new(),
-            breaks: Vec::new(),
+            domains: Vec::new(),
+            threads: 1,
+            width: Width::detect(),
             cracks: Vec::new(),
             margin: 0.1 * smallest,
             smallest_radius: smallest,
@@ -82,7 +87,8 @@ impl<S: Space> Engine<S> {
             stale: false,
             dt: 0.0,
             step: 0,
-            time: 0.0,
+            epoch: (0.0, 0),
+            books: None,
         }
     }
 
@@ -97,6 +103,7 @@ impl<S: Space> Engine<S> {
             self.radii.push(particle.radius);
             self.masses.push(particle.mass);
             self.inertias.push(particle.inertia);
+            self.moving.push([particle.mass, particle.inertia]);
         }
         // Two dummies, apart from each other and at rest, for the idle lanes of the last blocks.
         for (k, p) in [n, n + 1].into_iter().enumerate() {
@@ -105,39 +112,41 @@ impl<S: Space> Engine<S> {
     }
 
     fn add_clumps(&mut self, model: &Model<S>) {
-        for clump in &model.clumps {
-            // Pebbles stand together in the engine's order.
-            let first = clump.pebbles.iter().map(|&id| self.place[id]).min().unwrap_or(0) as usize;
+        // Pebbles of a clump stand together in the engine's order.
+        let first = |clump: &Clump<S>| clump.pebbles.iter().map(|&id| self.place[id] as usize).min().unwrap_or(0);
+        let mut order: Vec<(usize, usize)> = model.clumps.iter().map(first).zip(0..).collect();
+        order.sort_unstable();
+        for (k, &(first, id)) in order.iter().enumerate() {
+            let clump = &model.clumps[id];
+            self.clump_place[id] = k as u32;
+            self.clump_caller.push(id as u32);
             let pebbles = first..first + clump.pebbles.len();
+            self.bodies[pebbles.clone()].fill(k as u32);
             let offset = |p: usize| model.particles[self.caller[p] as usize].position.minus(clump.centre);
-            let inverse = S::inverse_inertia(&clump.inertia).unwrap_or_default();
             let mut rigid = Rigid {
                 offsets: pebbles.clone().map(offset).collect(),
                 pebbles,
                 centre: clump.centre,
                 velocity: clump.velocity,
-                momentum: S::momentum_of(&clump.inertia, clump.spin),
+                momentum: clump.spin,
                 spin: clump.spin,
                 turn: S::upright(),
                 mass: clump.mass,
                 inertia: clump.inertia,
-                inverse,
-                weight: Vector::<S>::zero(),
+                inverse: S::inverse_inertia(&clump.inertia).unwrap_or_default(),
+                weight: (Vector::<S>::zero(), Spin::<S>::zero()),
             };
             rigid.set_motion(clump.velocity, clump.spin);
-            rigid.place(&mut self.records);
+            rigid.place(&mut Same(&mut self.records));
             self.clumps.push(rigid);
         }
     }
 
-    /// Inverse masses and weights, from masses, fixed components and gravity.
+    /// Inverse masses from the moving masses and the fixed components, and the weights.
     pub(super) fn set_inverse_masses(&mut self) {
-        let n = self.caller.len();
-        let heavy = self.settings.gravity.norm() > 0.0;
-        self.weights = if heavy { vec![Quad::default(); n * S::LOADS] } else { Vec::new() };
-        let (row, first) = crate::dem::body::spin_place::<S>();
-        let spins = if S::DIMENSION == 2 { 1 } else { 3 };
-        for p in 0..n {
+        let (row, first) = spin_place::<S>();
+        let spins = first..first + S::Spin::<f64>::LENGTH;
+        for p in 0..self.caller.len() {
             let inverse = &mut self.inverse[p * S::LOADS..(p + 1) * S::LOADS];
             inverse.fill(Quad::default());
             self.inverse_mass[p] = 0.0;
@@ -147,21 +156,45 @@ impl<S: Space> Engine<S> {
                 continue;
             }
             if !self.fixed[p][0] {
-                self.inverse_mass[p] = 1.0 / self.masses[p];
-                inverse[0].0[..S::DIMENSION].fill(1.0 / self.masses[p]);
+                self.inverse_mass[p] = 1.0 / self.moving[p][0];
+                inverse[0].0[..S::DIMENSION].fill(self.inverse_mass[p]);
             }
             if !self.fixed[p][1] {
-                inverse[row].0[first..first + spins].fill(1.0 / self.inertias[p]);
-            }
-            if heavy {
-                for k in 0..S::DIMENSION {
-                    self.weights[p * S::LOADS].0[k] = self.masses[p] * self.settings.gravity.at(k);
-                }
+                inverse[row].0[spins.clone()].fill(1.0 / self.moving[p][1]);
             }
         }
+        self.set_weights();
+    }
+
+    /// Weights of the real masses, and the loads that the caller applies.
+    fn set_weights(&mut self) {
+        let (n, gravity) = (self.caller.len(), self.settings.gravity);
+        let any = gravity.norm() > 0.0 || !self.applied.is_empty();
+        self.weights = if any { vec![Quad::default(); n * S::LOADS] } else { Vec::new() };
         for clump in &mut self.clumps {
-            clump.weight = self.settings.gravity.times(clump.mass);
+            clump.weight = (gravity.times(clump.mass), Spin::<S>::zero());
         }
+        for p in (0..if any { n } else { 0 }).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
+            let weight = gravity.times(self.masses[p]);
+            add_load::<S>(&mut self.weights[p * S::LOADS..(p + 1) * S::LOADS], weight, Spin::<S>::zero());
+        }
+        for (&p, &(force, moment)) in &self.applied {
+            match self.clumps.get_mut(self.bodies[p] as usize) {
+                Some(clump) => clump.weight = (clump.weight.0.plus(force), clump.weight.1.plus(moment)),
+                None => add_load::<S>(&mut self.weights[p * S::LOADS..(p + 1) * S::LOADS], force, moment),
+            }
+        }
+    }
+}
+
+/// Adds to a load record.
+fn add_load<S: Space>(load: &mut [Quad], force: Vector<S>, moment: Spin<S>) {
+    let (row, first) = spin_place::<S>();
+    for k in 0..S::DIMENSION {
+        load[0].0[k] += force.at(k);
+    }
+    for k in 0..S::Spin::<f64>::LENGTH {
+        load[row].0[first + k] += moment.at(k);
     }
 }
 
@@ -186,6 +219,8 @@ pub(super) fn moving<S: Space>(wall: &Wall<S>) -> MovingWall<S> {
         motion: wall.motion,
         group: wall.group,
         present: true,
+        origin: wall.point,
+        stiffness: 0.0,
     }
 }
 

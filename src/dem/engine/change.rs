@@ -8,6 +8,7 @@ use crate::dem::contact::LawKind;
 use crate::dem::error::Faults;
 use crate::dem::interaction::ContactTable;
 use crate::dem::law::{KN, Rows};
+use crate::dem::simd::{Same, Width};
 use crate::dem::space::{Space, Spin, Tuple, Vector};
 
 impl<S: Space> Engine<S> {
@@ -33,7 +34,7 @@ impl<S: Space> Engine<S> {
         match self.clumps.get_mut(self.bodies[p] as usize) {
             Some(clump) => {
                 clump.set_motion(velocity, spin);
-                clump.place(&mut self.records);
+                clump.place(&mut Same(&mut self.records));
             }
             None => {
                 let x = self.position_of(p);
@@ -50,6 +51,14 @@ impl<S: Space> Engine<S> {
         self.derive_step();
     }
 
+    /// Puts a constant force (and moment) on a ball, or at the centre of the clump it belongs to, instead of an earlier one.
+    pub fn apply(&mut self, particle: usize, force: Vector<S>, moment: Spin<S>) {
+        let p = self.place[particle] as usize;
+        let body = self.clumps.get(self.bodies[p] as usize).map_or(p, |clump| clump.pebbles.start);
+        self.applied.insert(body, (force, moment));
+        self.set_inverse_masses();
+    }
+
     /// Multiplies the radius of some balls; mass and inertia follow at constant density. Stiffnesses are derived anew.
     pub fn scale_radii(&mut self, factors: &[(usize, f64)]) {
         for &(particle, factor) in factors {
@@ -59,6 +68,7 @@ impl<S: Space> Engine<S> {
             let growth = S::volume(self.radii[p]) / volume;
             self.masses[p] *= growth;
             self.inertias[p] *= growth * factor * factor;
+            self.moving[p] = [self.masses[p], self.inertias[p]];
             self.records[p * S::RECORD].0[3] = self.radii[p];
         }
         self.smallest_radius = self.radii.iter().copied().fold(f64::INFINITY, f64::min);
@@ -72,7 +82,7 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// All faults of the table.
     pub fn set_contacts(&mut self, table: &ContactTable) -> Result<(), Faults> {
-        super::validate::check_table::<S>(table, &self.meetings())?;
+        super::validate::check_table(table, &self.meetings())?;
         let mut all = self.packed();
         let before: Vec<LawKind> = self.classes.iter().map(|class| class.law).collect();
         self.table = table.clone();
@@ -81,15 +91,15 @@ impl<S: Space> Engine<S> {
             let (key, old) = all.keys[k];
             let class = self.class_of(key);
             all.keys[k].1 = class;
+            let rows = all.rows_mut::<S>(k);
             if self.classes[class as usize].law != before[old as usize] {
-                let rows = &mut all.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT];
                 rows[Rows::<S>::TENSION] = f64::INFINITY;
                 rows[Rows::<S>::COHESION] = f64::INFINITY;
                 rows[Rows::<S>::BOND..].fill(0.0);
             }
-            all.values[k * Rows::<S>::COUNT + KN] = self.linear_stiffness(key);
+            rows[KN] = self.linear_stiffness(key);
         }
-        self.sections = all.sections::<S>(self.caller.len());
+        self.adopt(&all);
         self.renew();
         Ok(())
     }
@@ -101,7 +111,7 @@ impl<S: Space> Engine<S> {
     pub fn add_wall(&mut self, wall: &Wall<S>) -> Result<usize, Faults> {
         super::validate::check_wall(self.walls.len(), wall)?;
         self.walls.push(moving(wall));
-        if let Err(faults) = super::validate::check_table::<S>(&self.table, &self.meetings()) {
+        if let Err(faults) = super::validate::check_table(&self.table, &self.meetings()) {
             self.walls.pop();
             return Err(faults);
         }
@@ -112,7 +122,6 @@ impl<S: Space> Engine<S> {
     /// Takes a wall away. The places of the others stay.
     pub fn remove_wall(&mut self, w: usize) {
         self.walls[w].present = false;
-        self.sections.retain(|section| section.wall != Some(w as u32));
         self.walls[w].motion = Motion::Velocity(Vector::<S>::zero());
         self.walls[w].face.velocity = Vector::<S>::zero();
         self.renew();
@@ -126,9 +135,32 @@ impl<S: Space> Engine<S> {
         }
     }
 
+    /// Which masses move the balls from now on, for the present contacts.
+    pub fn set_masses(&mut self, masses: super::Masses) {
+        self.settings.masses = masses;
+        self.choose_masses();
+    }
+
     /// Local damping from now on.
     pub fn set_damping(&mut self, alpha: f64) {
         self.settings.damping = alpha;
+    }
+
+    /// Threads of a run from now on, at least one. Results do not depend on it.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.threads = threads.max(1);
+        let listed = self.packed();
+        self.divide(&listed);
+    }
+
+    /// Threads of a run.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Contacts computed at a time; the machine's best by default. Results do not depend on it.
+    pub fn set_width(&mut self, width: Width) {
+        self.width = width;
     }
 
     /// Forgets the cracks so far.

@@ -12,18 +12,16 @@ use crate::dem::neighbour::pairs;
 use crate::dem::space::{Space, Tuple, Vector};
 
 /// Limits of the margin over the smallest radius.
-const NARROW: f64 = 0.02;
+const NARROW: f64 = 0.01;
 const WIDE: f64 = 0.5;
-/// A list that lasts fewer (more) steps than this makes the margin wider (narrower).
-const SHORT: u64 = 200;
-const LONG: u64 = 4000;
+/// A list that lasts fewer (more) steps than this makes the margin wider (narrower): a wide margin costs idle contacts in
+/// every step, a narrow one a search, which takes as long as some thirty steps.
+const SHORT: u64 = 500;
+const LONG: u64 = 2000;
 
 impl<S: Space> Engine<S> {
-    /// Searches contacts again if the list may have missed one.
-    pub(super) fn relist_if_due(&mut self) {
-        if !self.stale {
-            return;
-        }
+    /// Searches contacts again, with a margin that follows how long the last list held.
+    pub(super) fn relist_when_old(&mut self) {
         let age = self.step - self.listed_at;
         let factor = if age < SHORT {
             1.5
@@ -36,13 +34,29 @@ impl<S: Space> Engine<S> {
         self.relist();
     }
 
-    /// Searches contacts with the present margin and derives the time step.
+    /// Searches contacts with the present margin.
     pub(super) fn relist(&mut self) {
+        self.close_ledgers();
         let old = self.packed();
+        // The blocks are written anew; two lists at a time are enough memory.
+        self.domains.iter_mut().for_each(|domain| domain.sections = Vec::new());
         let found = self.candidates();
         let listed = self.merge(&old, &found);
-        self.sections = listed.sections::<S>(self.caller.len());
+        drop(old);
+        self.adopt(&listed);
+    }
+
+    /// Makes `listed` (sorted by key) the contact list, as of now.
+    pub(super) fn adopt(&mut self, listed: &Packed) {
+        self.divide(listed);
         self.origins = (0..self.caller.len()).map(|p| position::<S>(&self.records, p)).collect();
+        for wall in &mut self.walls {
+            wall.origin = wall.face.point;
+            wall.stiffness = 0.0;
+        }
+        for (k, (key, _)) in listed.keys.iter().enumerate().filter(|(_, (key, _))| key.at_wall) {
+            self.walls[key.j as usize].stiffness += listed.rows::<S>(k)[KN];
+        }
         self.travelled = 0.0;
         self.listed_at = self.step;
         self.stale = false;
@@ -50,19 +64,16 @@ impl<S: Space> Engine<S> {
 
     /// All contacts, sorted by key.
     pub(super) fn packed(&self) -> Packed {
-        let mut all = Packed::default();
-        for section in &self.sections {
-            for c in 0..section.count {
-                section.pack::<S>(c, &mut all);
-            }
+        let mut places: Vec<_> = Vec::new();
+        for (section, own) in self.stretches() {
+            places.extend(own.map(|c| (section.key(c), section, c)));
         }
-        let mut order: Vec<usize> = (0..all.keys.len()).collect();
-        order.sort_unstable_by_key(|&k| all.keys[k].0);
-        let mut sorted = Packed::default();
-        for k in order {
-            sorted.push_old::<S>(&all, k);
+        places.sort_unstable_by_key(|place| place.0);
+        let mut packed = Packed::with_capacity::<S>(places.len());
+        for (_, section, c) in places {
+            section.pack::<S>(c, &mut packed);
         }
-        sorted
+        packed
     }
 
     /// Keys of everything nearer than the margin, sorted.
@@ -89,7 +100,7 @@ impl<S: Space> Engine<S> {
 
     /// The new list: what was found, with the state of the old contacts, and old ones that must not be forgotten.
     fn merge(&self, old: &Packed, found: &[Key]) -> Packed {
-        let mut listed = Packed::default();
+        let mut listed = Packed::with_capacity::<S>(found.len());
         let mut next = 0;
         for &key in found {
             while next < old.keys.len() && old.keys[next].0 < key {
@@ -103,7 +114,7 @@ impl<S: Space> Engine<S> {
                 listed.push_new::<S>(key, self.class_of(key), 0.0);
             }
             let last = listed.keys.len() - 1;
-            listed.values[last * Rows::<S>::COUNT + KN] = self.linear_stiffness(key);
+            listed.rows_mut::<S>(last)[KN] = self.linear_stiffness(key);
         }
         for k in next..old.keys.len() {
             self.keep_if_needed(old, k, &mut listed);
@@ -155,9 +166,10 @@ impl<S: Space> Engine<S> {
         interaction.linear.stiffness.normal::<S>(self.contact_radii(key))
     }
 
-    /// Largest distance that any particle came since the list was made, m.
+    /// Largest distance that any particle or wall came since the list was made, m.
     pub(super) fn true_travel(&self) -> f64 {
         let moved = |(p, origin): (usize, &Vector<S>)| position::<S>(&self.records, p).minus(*origin).norm();
-        self.origins.iter().enumerate().map(moved).fold(0.0, f64::max)
+        let balls = self.origins.iter().enumerate().map(moved).fold(0.0, f64::max);
+        self.walls.iter().map(|w| w.face.point.minus(w.origin).norm()).fold(balls, f64::max)
     }
 }

@@ -2,10 +2,13 @@
 
 mod access;
 mod bonding;
+mod books;
 mod build;
 mod change;
+mod domain;
 mod list;
-mod step;
+mod march;
+mod run;
 #[cfg(test)]
 mod tests;
 mod timestep;
@@ -13,13 +16,15 @@ mod validate;
 
 use super::body::Rigid;
 use super::boundary::{Motion, Wall};
-use super::contact::{Break, Face, LawKind, Section};
+use super::contact::{Face, LawKind};
 use super::interaction::ContactTable;
-use super::law::Constants;
+use super::law::{Constants, LEDGER};
 use super::particle::{Clump, Group, Particle};
-use super::simd::Quad;
-use super::space::{Space, Vector};
+use super::simd::{Quad, Table, Width};
+use super::space::{Space, Spin, Vector};
 use crate::dem::measure::Crack;
+use domain::Domain;
+use std::collections::BTreeMap;
 
 /// Numbers of a run that belong to no body.
 #[derive(Clone, Debug)]
@@ -96,6 +101,10 @@ pub(crate) struct MovingWall<S: Space> {
     pub(crate) motion: Motion<S>,
     pub(crate) group: Group,
     pub(crate) present: bool,
+    /// Where its point was when the contacts were listed, m.
+    pub(crate) origin: Vector<S>,
+    /// Sum of the normal stiffnesses of its listed contacts, N/m.
+    pub(crate) stiffness: f64,
 }
 
 /// A model in motion. See the head of [`crate::dem`] for how it is used.
@@ -113,16 +122,25 @@ pub struct Engine<S: Space> {
     radii: Vec<f64>,
     masses: Vec<f64>,
     inertias: Vec<f64>,
+    /// Mass and inertia that move each ball: its own, or those of [`Masses::EqualStep`].
+    moving: Vec<[f64; 2]>,
     fixed: Vec<[bool; 2]>,
-    records: Vec<Quad>,
-    loads: Vec<Quad>,
-    inverse: Vec<Quad>,
+    /// Constant loads on bodies, by their first particle.
+    applied: BTreeMap<usize, (Vector<S>, Spin<S>)>,
+    records: Table,
+    spare: Table,
+    inverse: Table,
     inverse_mass: Vec<f64>,
     weights: Vec<Quad>,
+    /// Clumps stand in the order of their pebbles; `clump_place` leads from the caller's place to theirs,
+    /// `clump_caller` back.
     clumps: Vec<Rigid<S>>,
+    clump_place: Vec<u32>,
+    clump_caller: Vec<u32>,
     walls: Vec<MovingWall<S>>,
-    sections: Vec<Section>,
-    breaks: Vec<Break>,
+    domains: Vec<Domain>,
+    threads: usize,
+    width: Width,
     cracks: Vec<Crack<S>>,
     /// Contacts nearer than this are listed; `travelled` bounds how far any body came since, from `origins`.
     margin: f64,
@@ -133,7 +151,21 @@ pub struct Engine<S: Space> {
     stale: bool,
     dt: f64,
     step: u64,
-    time: f64,
+    /// Time at the step from which `dt` holds, s, and that step.
+    epoch: (f64, u64),
+    /// Energy spent up to the last renewal of the list, and the total at the start, if a run keeps the books.
+    books: Option<Books>,
+}
+
+/// The books of energy, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Books {
+    /// Rows of the contacts' ledgers.
+    pub(crate) contacts: [f64; LEDGER],
+    /// Local damping, prescribed motion.
+    pub(crate) bodies: [f64; 2],
+    /// Kinetic, strain and potential energy when the books were opened.
+    pub(crate) initial: f64,
 }
 
 /// What a watcher of a run wants next.

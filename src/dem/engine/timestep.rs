@@ -7,7 +7,7 @@
 //! Counted are closed and bonded contacts. A body with fewer stiffness than one closed contact with its own like is
 //! given that of one, so that a body in flight has a step as well.
 
-use super::Engine;
+use super::{Engine, Masses};
 use crate::dem::body::position;
 use crate::dem::law::{KN, REFERENCE, Rows};
 use crate::dem::space::{Space, Tuple};
@@ -28,15 +28,16 @@ impl Diagonal {
 impl<S: Space> Engine<S> {
     /// Sets the time step for the present contacts.
     pub(super) fn derive_step(&mut self) {
-        if let Some(dt) = self.settings.fixed_step {
-            self.dt = dt;
-            return;
-        }
+        self.epoch = (self.time(), self.step);
+        self.dt = self.settings.fixed_step.unwrap_or_else(|| self.stable_step());
+    }
+
+    fn stable_step(&self) -> f64 {
         let stiffness = self.body_stiffness();
         // Where nothing can move any step will do; that of the free bodies keeps the time scale.
         let free = shortest_period(&self.body_masses(true), &stiffness);
         let shortest = if free.is_finite() { free } else { shortest_period(&self.body_masses(false), &stiffness) };
-        self.dt = self.settings.safety * shortest;
+        self.settings.safety * shortest
     }
 
     /// Mass and smallest inertia of each body, clumps first; 0 where a body cannot move, if `fixing` counts.
@@ -49,7 +50,7 @@ impl<S: Space> Engine<S> {
         }
         for p in (0..self.caller.len()).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
             let free = |fixed: bool, x: f64| if fixed && fixing { 0.0 } else { x };
-            masses.push([free(self.fixed[p][0], self.masses[p]), free(self.fixed[p][1], self.inertias[p])]);
+            masses.push([free(self.fixed[p][0], self.moving[p][0]), free(self.fixed[p][1], self.moving[p][1])]);
         }
         masses
     }
@@ -57,8 +58,8 @@ impl<S: Space> Engine<S> {
     /// Largest stiffness of each body along and about an axis.
     fn body_stiffness(&self) -> Vec<[f64; 2]> {
         let mut bodies = vec![Diagonal::default(); self.bodies.iter().map(|&b| b as usize + 1).max().unwrap_or(0)];
-        for section in &self.sections {
-            for c in 0..section.count {
+        for (section, own) in self.stretches() {
+            for c in own {
                 self.add_stiffness(section, c, &mut bodies);
             }
         }
@@ -120,8 +121,19 @@ impl<S: Space> Engine<S> {
         }
     }
 
-    /// Gives every free ball a mass in proportion to its stiffness, with the same total; its inertia follows.
-    pub(super) fn equalise_masses(&mut self) {
+    /// Sets the masses that move the balls as [`Settings::masses`](super::Settings) wants them.
+    pub(super) fn choose_masses(&mut self) {
+        self.moving = self.masses.iter().zip(&self.inertias).map(|(&m, &i)| [m, i]).collect();
+        if self.settings.masses == Masses::EqualStep {
+            self.equalise_masses();
+        }
+        self.set_inverse_masses();
+        self.derive_step();
+    }
+
+    /// Gives every free ball a mass in proportion to its stiffness, with the same total. Its inertia is that of a ball, or
+    /// what its rotational stiffness asks for.
+    fn equalise_masses(&mut self) {
         let clumps = self.clumps.len();
         let (masses, stiffness) = (self.body_masses(true), self.body_stiffness());
         let free = |b: usize| b >= clumps && masses[b][0] > 0.0;
@@ -130,13 +142,11 @@ impl<S: Space> Engine<S> {
         for p in 0..self.caller.len() {
             let body = self.bodies[p] as usize;
             if free(body) {
-                let square = total / whole;
-                self.masses[p] = square * stiffness[body][0];
-                self.inertias[p] = (square * stiffness[body][1]).max(S::inertia(self.masses[p], self.radii[p]));
+                let mass = total / whole * stiffness[body][0];
+                let inertia = total / whole * stiffness[body][1];
+                self.moving[p] = [mass, inertia.max(S::inertia(mass, self.radii[p]))];
             }
         }
-        self.set_inverse_masses();
-        self.derive_step();
     }
 }
 

@@ -10,6 +10,28 @@ pub const WIDEST: usize = 8;
 #[repr(C, align(32))]
 pub struct Quad(pub [f64; 4]);
 
+impl Quad {
+    /// Componentwise sum.
+    #[inline(always)]
+    pub(crate) fn plus(mut self, other: Self) -> Self {
+        for (t, o) in self.0.iter_mut().zip(other.0) {
+            *t += o;
+        }
+        self
+    }
+
+    /// Componentwise the larger absolute value.
+    #[inline(always)]
+    pub(crate) fn larger(self, other: Self) -> Self {
+        let mut top = self;
+        for (t, o) in top.0.iter_mut().zip(other.0) {
+            let size = o.abs();
+            *t = if size > *t { size } else { *t };
+        }
+        top
+    }
+}
+
 /// One quantity of the eight contacts of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
@@ -60,6 +82,8 @@ pub trait Lane:
     fn gather(table: &[Quad], stride: usize, row: usize, ends: &[u32]) -> [Self; 4];
     /// Adds one row to each of the records `ends`, in their order.
     fn scatter_add(table: &mut [Quad], stride: usize, row: usize, ends: &[u32], value: [Self; 4]);
+    /// Adds one row to both ends of each contact: contact by contact, its first end before its second.
+    fn scatter_add_both(table: &mut [Quad], stride: usize, row: usize, ends: [&[u32]; 2], value: [[Self; 4]; 2]);
 }
 
 impl Lane for f64 {
@@ -119,5 +143,10 @@ impl Lane for f64 {
         for (t, v) in target.iter_mut().zip(value) {
             *t += v;
         }
+    }
+    #[inline(always)]
+    fn scatter_add_both(table: &mut [Quad], stride: usize, row: usize, ends: [&[u32]; 2], value: [[Self; 4]; 2]) {
+        Self::scatter_add(table, stride, row, ends[0], value[0]);
+        Self::scatter_add(table, stride, row, ends[1], value[1]);
     }
 }

@@ -17,6 +17,8 @@ pub use solid::D3;
 
 /// A few numbers of one kind: a vector, a spin, a shear force.
 pub trait Tuple<L: Lane>: Copy {
+    /// How many.
+    const LENGTH: usize;
     /// All zero.
     fn zero() -> Self;
     /// Sum.
@@ -35,22 +37,33 @@ pub trait Tuple<L: Lane>: Copy {
     fn build(f: impl FnMut(usize) -> L) -> Self;
 }
 
+// Plain loops: closures handed to the array functions are not always inlined, and then run without the wide registers.
 impl<L: Lane, const N: usize> Tuple<L> for [L; N] {
+    const LENGTH: usize = N;
     #[inline(always)]
     fn zero() -> Self {
         [L::splat(0.0); N]
     }
     #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        std::array::from_fn(|k| self[k] + other[k])
+    fn plus(mut self, other: Self) -> Self {
+        for k in 0..N {
+            self[k] = self[k] + other[k];
+        }
+        self
     }
     #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        std::array::from_fn(|k| self[k] - other[k])
+    fn minus(mut self, other: Self) -> Self {
+        for k in 0..N {
+            self[k] = self[k] - other[k];
+        }
+        self
     }
     #[inline(always)]
-    fn times(self, factor: L) -> Self {
-        self.map(|x| x * factor)
+    fn times(mut self, factor: L) -> Self {
+        for x in &mut self {
+            *x = *x * factor;
+        }
+        self
     }
     #[inline(always)]
     fn dot(self, other: Self) -> L {
@@ -69,8 +82,12 @@ impl<L: Lane, const N: usize> Tuple<L> for [L; N] {
         self[k]
     }
     #[inline(always)]
-    fn build(f: impl FnMut(usize) -> L) -> Self {
-        std::array::from_fn(f)
+    fn build(mut f: impl FnMut(usize) -> L) -> Self {
+        let mut tuple = Self::zero();
+        for (k, x) in tuple.iter_mut().enumerate() {
+            *x = f(k);
+        }
+        tuple
     }
 }
 
@@ -181,10 +198,10 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn turned<L: Lane>(shear: Self::Shear<L>, touch: &Touch<Self, L>) -> Self::Shear<L>;
     /// The shear vector shortened to `limit`.
     fn limited<L: Lane>(shear: Self::Shear<L>, limit: L) -> Self::Shear<L>;
-    /// Adds the load to i.
-    fn push_i<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>);
-    /// Adds the reaction to j.
-    fn push_j<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>);
+    /// Adds the load to i, at a wall.
+    fn push_one<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>);
+    /// Adds the load to i and the reaction to j, contact by contact.
+    fn push_both<L: Lane>(loads: &mut [Quad], ends: [&[u32]; 2], touch: &Touch<Self, L>, load: &Load<Self, L>);
     /// Force on i as a vector.
     fn force<L: Lane>(touch: &Touch<Self, L>, load: &Load<Self, L>) -> Self::Vector<L>;
     /// Moment of the bond on i as a spin-like quantity.

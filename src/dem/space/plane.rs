@@ -78,17 +78,19 @@ impl Space for D2 {
     }
 
     #[inline(always)]
-    fn push_i<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
+    fn push_one<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
         let [fx, fy] = Self::force(touch, load);
         let moment = touch.arm_i * load.shear[0] + load.bend[0];
         L::scatter_add(loads, Self::LOADS, 0, ends, [fx, fy, moment, L::splat(0.0)]);
     }
 
     #[inline(always)]
-    fn push_j<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
+    fn push_both<L: Lane>(loads: &mut [Quad], ends: [&[u32]; 2], touch: &Touch<Self, L>, load: &Load<Self, L>) {
+        let zero = L::splat(0.0);
         let [fx, fy] = Self::force(touch, load);
-        let moment = touch.arm_j * load.shear[0] - load.bend[0];
-        L::scatter_add(loads, Self::LOADS, 0, ends, [-fx, -fy, moment, L::splat(0.0)]);
+        let first = touch.arm_i * load.shear[0] + load.bend[0];
+        let second = touch.arm_j * load.shear[0] - load.bend[0];
+        L::scatter_add_both(loads, Self::LOADS, 0, ends, [[fx, fy, first, zero], [-fx, -fy, second, zero]]);
     }
 
     #[inline(always)]

@@ -104,23 +104,25 @@ impl Space for D3 {
     }
 
     #[inline(always)]
-    fn push_i<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
+    fn push_one<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
         let zero = L::splat(0.0);
         let [fx, fy, fz] = Self::force(touch, load);
-        let bending = touch.normal.times(load.twist).plus(load.bend);
-        let [mx, my, mz] = cross(touch.normal, load.shear).times(touch.arm_i).plus(bending);
+        let bond = Self::bond_moment(touch, load);
+        let [mx, my, mz] = cross(touch.normal, load.shear).times(touch.arm_i).plus(bond);
         L::scatter_add(loads, Self::LOADS, 0, ends, [fx, fy, fz, zero]);
         L::scatter_add(loads, Self::LOADS, 1, ends, [mx, my, mz, zero]);
     }
 
     #[inline(always)]
-    fn push_j<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
+    fn push_both<L: Lane>(loads: &mut [Quad], ends: [&[u32]; 2], touch: &Touch<Self, L>, load: &Load<Self, L>) {
         let zero = L::splat(0.0);
         let [fx, fy, fz] = Self::force(touch, load);
-        let bending = touch.normal.times(load.twist).plus(load.bend);
-        let [mx, my, mz] = cross(touch.normal, load.shear).times(touch.arm_j).minus(bending);
-        L::scatter_add(loads, Self::LOADS, 0, ends, [-fx, -fy, -fz, zero]);
-        L::scatter_add(loads, Self::LOADS, 1, ends, [mx, my, mz, zero]);
+        let bond = Self::bond_moment(touch, load);
+        let lever = cross(touch.normal, load.shear);
+        let [mx, my, mz] = lever.times(touch.arm_i).plus(bond);
+        let [ox, oy, oz] = lever.times(touch.arm_j).minus(bond);
+        L::scatter_add_both(loads, Self::LOADS, 0, ends, [[fx, fy, fz, zero], [-fx, -fy, -fz, zero]]);
+        L::scatter_add_both(loads, Self::LOADS, 1, ends, [[mx, my, mz, zero], [ox, oy, oz, zero]]);
     }
 
     #[inline(always)]

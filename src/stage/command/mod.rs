@@ -109,10 +109,7 @@ impl Stage for Command {
         if self.shell && self.run.len() > 1 {
             found.push(Complaint::new("run", "with `shell` the command is one text").hint("run = [\"a | b\"]"));
         }
-        if let Some(name) = self.material.as_ref().filter(|name| !context.materials.contains_key(*name)) {
-            let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
-            found.push(Complaint::new("material", format!("there is no [material.{name}]")).hint(known.join(", ")));
-        }
+        found.extend(rows::check_material(self.material.as_ref(), context));
         for name in self.files.keys().chain(self.templates.keys()).filter(|name| !folder::is_plain(name)) {
             let message = format!("`{name}` must be a plain name inside the run's folder");
             found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`"));
@@ -145,14 +142,7 @@ impl Stage for Command {
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
-        let base = self.material.as_ref().and_then(|name| known.context.materials.get(name));
-        let base = base.into_iter().flatten().map(|(path, parameter)| (path.clone(), parameter.value)).collect();
-        let mut values = match self.material {
-            Some(_) => rows::apply(&base, point, known.context)?,
-            None => BTreeMap::new(),
-        };
-        let set = |name: &&String| known.context.factors.get(*name).is_none_or(|factor| !factor.sets.is_empty());
-        values.extend(point.iter().filter(|(name, _)| set(name)).map(|(name, value)| (name.clone(), *value)));
+        let values = rows::values(self.material.as_ref(), point, known.context)?;
         let params = Params {
             run: self.run.clone(),
             shell: self.shell,

@@ -1,6 +1,7 @@
 //! Which terms an analysis of variance has, and which columns belong to each.
 
 use super::{Column, Interactions, Matrix, Part, Sample, Settings, Usable};
+use crate::stats::sample::Factor;
 use crate::stats::triangle::Triangle;
 use std::ops::Range;
 
@@ -80,7 +81,7 @@ impl Layout {
 /// Main effects and interactions as the settings ask, and the interactions that cannot be estimated.
 pub(super) fn chosen_terms(sample: &Sample, usable: &Usable, settings: &Settings) -> (Layout, Vec<String>) {
     let names: Vec<String> = sample.factors.iter().map(|f| f.name.clone()).collect();
-    let levels: Vec<Vec<f64>> = sample.factors.iter().map(|f| f.known_levels(&usable.rows)).collect();
+    let levels: Vec<Vec<f64>> = sample.factors.iter().map(Factor::all_levels).collect();
     let mains: Vec<usize> = (0..names.len()).filter(|&f| !settings.as_error.contains(&names[f])).collect();
     let mut terms: Vec<Vec<usize>> = mains.iter().map(|&f| vec![f]).collect();
     match &settings.interactions {

@@ -1,8 +1,6 @@
-//! The mechanics of one, two and a few bodies against closed forms.
+//! Two balls: rebound, and bonds that break at their closed-form strength.
 
-use crate::dem::*;
-
-const GRAIN: Group = Group(0);
+use super::*;
 
 fn pair(bond: Bond, linear: Linear) -> Engine<D2> {
     let particles =

@@ -1,0 +1,217 @@
+//! `flow diff`: two campaigns side by side: settings that differ, results that differ.
+//!
+//! Each side is a workflow file (`c30.toml`), a profile of one (`c30.toml@quick`), or a recorded run (`run 3` is `#3`).
+
+use super::Exit;
+use super::common::{Campaign, system};
+use super::progress::Silent;
+use crate::artifact::{Artifact, ContentHash, Table, Values};
+use crate::run::{Settings, StageStatus, run};
+use crate::store::Store;
+use clap::Args;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+/// Compare two campaigns: what was set otherwise, what came out otherwise.
+#[derive(Args)]
+pub(super) struct Diff {
+    /// A workflow file, `FILE@PROFILE`, or a recorded run `#N`.
+    a: String,
+    /// The same for the other side.
+    b: String,
+    /// The folder that keeps results.
+    #[arg(long, value_name = "FOLDER", default_value = "store")]
+    store: PathBuf,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A stage of one side.
+struct Side {
+    settings: BTreeMap<String, String>,
+    object: Option<ContentHash>,
+}
+
+type Sides = BTreeMap<String, Side>;
+
+impl Diff {
+    pub(super) fn go(self) -> Exit {
+        self.print().unwrap_or_else(|exit| exit)
+    }
+
+    fn print(&self) -> Result<Exit, Exit> {
+        let store = Store::open(&self.store).map_err(|e| system(&e))?;
+        let (a, b) = (self.side(&self.a, &store)?, self.side(&self.b, &store)?);
+        let mut names: Vec<&String> = a.keys().chain(b.keys()).collect();
+        names.sort_unstable();
+        names.dedup();
+        let mut document = serde_json::Map::new();
+        for name in names {
+            let settings = settings(a.get(name), b.get(name));
+            let results = results(a.get(name), b.get(name), &store)?;
+            if settings.is_empty() && results.is_empty() {
+                continue;
+            }
+            if !self.json {
+                println!("{name}");
+                settings.iter().for_each(|(path, old, new)| println!("  {path}: {old} → {new}"));
+                results.iter().for_each(|line| println!("  {line}"));
+            }
+            let settings: Vec<Value> =
+                settings.into_iter().map(|(path, a, b)| json!({ "path": path, "a": a, "b": b })).collect();
+            document.insert(name.clone(), json!({ "settings": settings, "results": results }));
+        }
+        match (self.json, document.is_empty()) {
+            (true, _) => println!("{}", Value::from(document)),
+            (false, true) => println!("no difference"),
+            (false, false) => {}
+        }
+        Ok(Exit::Done)
+    }
+
+    fn side(&self, text: &str, store: &Store) -> Result<Sides, Exit> {
+        match text.strip_prefix('#') {
+            Some(number) => recorded(number, store),
+            None => self.planned(text, store),
+        }
+    }
+
+    fn planned(&self, text: &str, store: &Store) -> Result<Sides, Exit> {
+        let (file, profile) = match text.rsplit_once('@') {
+            Some((file, profile)) => (file, Some(profile.to_owned())),
+            None => (text, None),
+        };
+        let campaign = Campaign { workflow: PathBuf::from(file), profile, sets: Vec::new(), store: self.store.clone() };
+        let workflow = campaign.load(&[])?;
+        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
+        let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));
+        let mut sides = Sides::new();
+        for (node, stage) in workflow.stages.iter().zip(&report.stages) {
+            let object = match stage.status {
+                StageStatus::Done(content) => Some(content),
+                StageStatus::Open | StageStatus::Failed(_) | StageStatus::Skipped(_) => None,
+            };
+            let settings = flat(node.kind, &node.stage.settings());
+            sides.insert(node.name.clone(), Side { settings, object });
+        }
+        Ok(sides)
+    }
+}
+
+fn recorded(number: &str, store: &Store) -> Result<Sides, Exit> {
+    let known = store.campaigns().map_err(|e| system(&e))?;
+    let found = match number.parse() {
+        Ok(number) => store.campaign(number).map_err(|e| system(&e))?,
+        Err(_) => None,
+    };
+    let Some(campaign) = found else {
+        let known: Vec<String> = known.iter().map(|n| format!("#{n}")).collect();
+        eprintln!("error: there is no recorded run #{number}; the store has {}", known.join(", "));
+        return Err(Exit::BadInput);
+    };
+    let side = |stage: crate::store::StageRun| {
+        let object = stage.object.as_deref().and_then(ContentHash::from_hex);
+        (stage.name, Side { settings: flat(&stage.kind, &stage.settings), object })
+    };
+    Ok(campaign.stages.into_iter().map(side).collect())
+}
+
+/// Settings by path.
+fn flat(kind: &str, settings: &Value) -> BTreeMap<String, String> {
+    fn walk(path: &str, value: &Value, found: &mut BTreeMap<String, String>) {
+        let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+        match value {
+            Value::Object(map) => map.iter().for_each(|(key, value)| walk(&below(key), value, found)),
+            Value::Null => {}
+            Value::Array(_) | Value::Bool(_) | Value::Number(_) | Value::String(_) => {
+                found.insert(path.to_owned(), value.to_string());
+            }
+        }
+    }
+    let mut found = BTreeMap::from([("kind".to_owned(), kind.to_owned())]);
+    walk("", settings, &mut found);
+    found
+}
+
+/// Path, value on one side, value on the other, where they differ.
+fn settings(a: Option<&Side>, b: Option<&Side>) -> Vec<(String, String, String)> {
+    let (Some(a), Some(b)) = (a, b) else {
+        let there = |side: Option<&Side>| if side.is_some() { "there" } else { "not there" }.to_owned();
+        return vec![("the stage".to_owned(), there(a), there(b))];
+    };
+    let mut paths: Vec<&String> = a.settings.keys().chain(b.settings.keys()).collect();
+    paths.sort_unstable();
+    paths.dedup();
+    let value = |side: &Side, path: &String| side.settings.get(path).cloned().unwrap_or_else(|| "–".to_owned());
+    let differ = paths.into_iter().filter(|path| a.settings.get(*path) != b.settings.get(*path));
+    differ.map(|path| (path.clone(), value(a, path), value(b, path))).collect()
+}
+
+/// One line per difference of results.
+fn results(a: Option<&Side>, b: Option<&Side>, store: &Store) -> Result<Vec<String>, Exit> {
+    let (Some(a), Some(b)) = (a, b) else { return Ok(Vec::new()) };
+    let (a, b) = match (a.object, b.object) {
+        (a, b) if a == b => return Ok(Vec::new()),
+        (Some(a), Some(b)) => (a, b),
+        (None, _) => return Ok(vec!["no result on the first side".to_owned()]),
+        (_, None) => return Ok(vec!["no result on the second side".to_owned()]),
+    };
+    let load = |content: &ContentHash| store.get(content).map_err(|e| system(&e));
+    Ok(compare(&*load(&a)?, &*load(&b)?))
+}
+
+fn compare(a: &Artifact, b: &Artifact) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (name, old) in a.tables() {
+        match b.table(&name) {
+            None => lines.push(format!("{name}: only on the first side")),
+            Some(new) => lines.extend(compare_tables(&name, old, new)),
+        }
+    }
+    if lines.is_empty() {
+        lines.push("the results differ outside their tables".to_owned());
+    }
+    lines
+}
+
+fn compare_tables(name: &str, a: &Table, b: &Table) -> Vec<String> {
+    if a.rows() != b.rows() {
+        return vec![format!("{name}: {} rows → {} rows", a.rows(), b.rows())];
+    }
+    let mut lines = Vec::new();
+    for old in &a.columns {
+        let Some(new) = b.column(&old.name) else {
+            lines.push(format!("{name}.{}: only on the first side", old.name));
+            continue;
+        };
+        match (&old.values, &new.values) {
+            (old, new) if old == new => {}
+            (Values::Reals(x), Values::Reals(y)) => lines.push(format!("{name}.{}: {}", old.name, largest(x, y))),
+            (_, _) => lines.push(format!("{name}.{}: other values", old.name)),
+        }
+    }
+    lines
+}
+
+/// How many values differ, and the largest relative change.
+fn largest(a: &[f64], b: &[f64]) -> String {
+    let differ: Vec<(usize, f64)> = (0..a.len())
+        .filter(|&i| a[i].to_bits() != b[i].to_bits())
+        .map(|i| (i, ((b[i] - a[i]) / a[i].abs().max(b[i].abs())).abs()))
+        .collect();
+    let most = differ.iter().max_by(|x, y| x.1.total_cmp(&y.1));
+    most.map_or_else(String::new, |&(i, change)| {
+        format!(
+            "{} of {} values differ, most in row {}: {} → {} ({:.2} %)",
+            differ.len(),
+            a.len(),
+            i + 1,
+            a[i],
+            b[i],
+            100.0 * change
+        )
+    })
+}

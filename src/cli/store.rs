@@ -1,0 +1,166 @@
+//! `flow store`: what the store holds, whether it is sound, what it takes, and what may go.
+
+use super::Exit;
+use super::common::{Campaign, system};
+use super::progress::{Silent, duration};
+use crate::artifact::Key;
+use crate::run::{Settings, run};
+use crate::store::{Amount, Store};
+use clap::{Args, Subcommand};
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+/// Look after the store.
+#[derive(Args)]
+pub(super) struct StoreCommand {
+    /// The folder that keeps results.
+    #[arg(long, value_name = "FOLDER", default_value = "store", global = true)]
+    store: PathBuf,
+    #[command(subcommand)]
+    command: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    /// List the results: task, size, duration.
+    Ls,
+    /// Read every result and compare it with its record; set aside what is damaged.
+    Verify,
+    /// Sizes.
+    Du,
+    /// Remove results that none of the named workflows can reach; says what would go, unless told --yes.
+    Gc(Gc),
+}
+
+#[derive(Args)]
+struct Gc {
+    /// Workflows whose results stay. `FILE` alone keeps those of the file as it stands and of all its profiles.
+    #[arg(required = true)]
+    workflows: Vec<PathBuf>,
+    /// Really remove.
+    #[arg(long)]
+    yes: bool,
+}
+
+impl StoreCommand {
+    pub(super) fn go(self) -> Exit {
+        let done = match &self.command {
+            What::Ls => self.list(),
+            What::Verify => self.verify(),
+            What::Du => self.usage(),
+            What::Gc(gc) => self.collect(gc),
+        };
+        done.unwrap_or_else(|exit| exit)
+    }
+
+    fn open(&self) -> Result<Store, Exit> {
+        Store::open(&self.store).map_err(|e| system(&e))
+    }
+
+    fn list(&self) -> Result<Exit, Exit> {
+        let store = self.open()?;
+        let mut records = store.records().map_err(|e| system(&e))?;
+        records.sort_by_key(|record| (record.started, record.key));
+        for record in records {
+            let text = store.task_text(&record).unwrap_or_default();
+            let work = text.lines().nth(1).and_then(|line| line.strip_prefix("work ")).unwrap_or("unreadable");
+            let (took, size) = (duration(record.seconds), bytes(record.bytes()));
+            println!(
+                "{:.16}  {work:16} {took:>8} {size:>9}  {}",
+                record.content.to_string(),
+                store.path(&record.object()).display()
+            );
+        }
+        Ok(Exit::Done)
+    }
+
+    fn verify(&self) -> Result<Exit, Exit> {
+        let verdict = self.open()?.verify().map_err(|e| system(&e))?;
+        println!("{} results are sound ({})", verdict.sound.files, bytes(verdict.sound.bytes));
+        for damage in &verdict.damages {
+            println!("damaged: {damage}");
+        }
+        for key in &verdict.missing {
+            println!("missing: the result of task {key}; the next run computes it again");
+        }
+        for key in &verdict.adopted {
+            println!("adopted: the result of task {key} had lost its record");
+        }
+        for (key, first, second) in &verdict.contradictions {
+            println!("contradiction: task {key} gave {first} and {second}; it depends on something outside its key");
+        }
+        if verdict.lost_records > 0 {
+            println!(
+                "{} records of the journal cannot be read; their results were adopted again",
+                verdict.lost_records
+            );
+        }
+        let sound = verdict.damages.is_empty() && verdict.contradictions.is_empty();
+        Ok(if sound { Exit::Done } else { Exit::System })
+    }
+
+    fn usage(&self) -> Result<Exit, Exit> {
+        let usage = self.open()?.usage().map_err(|e| system(&e))?;
+        let rows: [(&str, Amount); 6] = [
+            ("results", usage.objects),
+            ("journal", usage.journal),
+            ("memos", usage.memos),
+            ("records of runs", usage.runs),
+            ("damaged, set aside", usage.aside),
+            ("leftovers", usage.temporary),
+        ];
+        for (name, amount) in rows {
+            println!("{name:20} {:>7} files {:>10}", amount.files, bytes(amount.bytes));
+        }
+        Ok(Exit::Done)
+    }
+
+    fn collect(&self, gc: &Gc) -> Result<Exit, Exit> {
+        let store = self.open()?;
+        let mut reachable = HashSet::new();
+        for path in &gc.workflows {
+            reach(path, &self.store, &store, &mut reachable)?;
+        }
+        let swept = store.sweep(&reachable, gc.yes).map_err(|e| system(&e))?;
+        let verb = if gc.yes { "removed" } else { "would remove" };
+        let (removed, rubbish) = (swept.removed, swept.rubbish);
+        println!("{verb} {} results ({}) that no named workflow reaches", removed.files, bytes(removed.bytes));
+        println!("{verb} {} damaged or left-over files ({})", rubbish.files, bytes(rubbish.bytes));
+        println!("kept {} results ({})", swept.kept.files, bytes(swept.kept.bytes));
+        if !gc.yes {
+            println!("nothing was removed; say --yes to do it");
+        }
+        Ok(Exit::Done)
+    }
+}
+
+/// Adds all that a workflow can reach, as it stands and with each of its profiles.
+fn reach(path: &std::path::Path, folder: &std::path::Path, store: &Store, keys: &mut HashSet<Key>) -> Result<(), Exit> {
+    let campaign =
+        |profile| Campaign { workflow: path.to_owned(), profile, sets: Vec::new(), store: folder.to_owned() };
+    let plain = campaign(None).load(&[])?;
+    let profiles = plain.profiles.iter().cloned().map(Some);
+    let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: false };
+    for profile in std::iter::once(None).chain(profiles) {
+        let workflow = campaign(profile).load(&[])?;
+        let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));
+        keys.extend(report.objects.iter().map(|object| object.key));
+    }
+    Ok(())
+}
+
+/// A size in words.
+fn bytes(n: u64) -> String {
+    let units = ["B", "kB", "MB", "GB", "TB"];
+    let (mut value, mut unit) = (n as f64, 0);
+    while value >= 999.5 && unit + 1 < units.len() {
+        value /= 1000.0;
+        unit += 1;
+    }
+    if unit == 0 || value >= 99.5 {
+        format!("{value:.0} {}", units[unit])
+    } else {
+        format!("{value:.1} {}", units[unit])
+    }
+}

@@ -1,0 +1,150 @@
+//! Many steps: marches between renewals of the contact list, and what can end a run.
+
+use super::march::{March, Notes, Orders, Outcome};
+use super::{Ended, Engine, Watch};
+use crate::dem::body::velocity;
+use crate::dem::contact::{Break, Key, Other};
+use crate::dem::error::Failure;
+use crate::dem::measure::{Crack, Mode};
+use crate::dem::simd::{Board, dispatch, exchange};
+use crate::dem::space::{Space, Tuple, Vector};
+
+/// Smallest radii that a body may move in one step; further, and it could pass through another.
+const STRIDE: f64 = 2.0;
+
+impl<S: Space> Engine<S> {
+    /// Makes `steps` steps; every `every` steps (and at the end) `watch` looks at the engine and may stop it.
+    ///
+    /// # Errors
+    /// Why the run failed.
+    pub fn run(&mut self, steps: u64, every: u64, mut watch: impl FnMut(&Self) -> Watch) -> Result<Ended, Failure> {
+        let mut left = steps;
+        while left > 0 {
+            let now = left.min(every.max(1));
+            self.advance(now)?;
+            left -= now;
+            if watch(self) == Watch::Stop {
+                return Ok(Ended::Stopped);
+            }
+        }
+        Ok(Ended::Finished)
+    }
+
+    /// Makes `steps` steps.
+    ///
+    /// # Errors
+    /// Why the run failed.
+    pub fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        let end = self.step + steps;
+        while self.step < end {
+            if self.stale {
+                self.check()?;
+                self.relist_when_old();
+                self.derive_step();
+            }
+            let outcome = self.march(end - self.step);
+            self.take_in(outcome)?;
+        }
+        self.check()
+    }
+
+    /// Makes up to `steps` steps on all threads, until the contact list may miss something.
+    fn march(&mut self, steps: u64) -> Outcome<S> {
+        let notes = Notes::new(self);
+        let mut domains = std::mem::take(&mut self.domains);
+        let mut records = std::mem::take(&mut self.records);
+        let mut clumps = std::mem::take(&mut self.clumps);
+        let orders = Orders {
+            classes: &self.classes,
+            inverse: &self.inverse,
+            inverse_mass: &self.inverse_mass,
+            weights: &self.weights,
+            damping: self.settings.damping,
+            dt: self.dt,
+            first_step: self.step,
+            steps,
+            travelled: self.travelled,
+            reach: self.margin,
+            stride: STRIDE * self.smallest_radius,
+            notes: &notes,
+        };
+        let ranges: Vec<_> =
+            domains.iter().map(|d| d.particles.start * S::RECORD..d.particles.end * S::RECORD).collect();
+        let mut rest = clumps.as_mut_slice();
+        let mut tasks = Vec::with_capacity(domains.len());
+        for (index, domain) in domains.iter_mut().enumerate() {
+            let (own, others) = rest.split_at_mut(domain.clumps.len());
+            rest = others;
+            let (orders, walls, width) = (&orders, self.walls.clone(), self.width);
+            tasks.push(move |board: Board<'_>| {
+                dispatch(width, March { orders, index, domain, clumps: own, walls, board })
+            });
+        }
+        let mut outcomes = exchange(&mut records, &mut self.spare, &ranges, tasks);
+        (self.domains, self.records, self.clumps) = (domains, records, clumps);
+        outcomes.swap_remove(0)
+    }
+
+    /// Takes over what a march left, and judges it.
+    fn take_in(&mut self, outcome: Outcome<S>) -> Result<(), Failure> {
+        self.walls = outcome.walls;
+        self.note_cracks();
+        self.step += outcome.steps;
+        self.travelled = outcome.travelled;
+        if let Some(travel) = outcome.unstable {
+            return Err(self.unstable(travel));
+        }
+        if outcome.stale {
+            // The bound adds up the fastest body of each step; what truly moved is often less.
+            self.travelled = self.true_travel();
+            self.stale = 2.0 * self.travelled > self.margin;
+        }
+        Ok(())
+    }
+
+    fn unstable(&self, travel: f64) -> Failure {
+        let speed = |p: usize| velocity::<S>(&self.records, p).norm();
+        let fastest = (0..self.caller.len()).fold(0, |best, p| if speed(p) > speed(best) { p } else { best });
+        let limit = STRIDE * self.smallest_radius;
+        Failure::Instability { particle: self.caller[fastest] as usize, step: self.step, travel, limit }
+    }
+
+    /// Finite and inside the bounds.
+    fn check(&self) -> Result<(), Failure> {
+        for p in 0..self.caller.len() {
+            let particle = self.caller[p] as usize;
+            let (x, v) = (self.position_of(p), velocity::<S>(&self.records, p));
+            if !(x.norm() + v.norm()).is_finite() {
+                return Err(Failure::NotFinite { particle, step: self.step });
+            }
+            let outside =
+                |[low, high]: [Vector<S>; 2]| (0..S::DIMENSION).any(|k| x.at(k) < low.at(k) || x.at(k) > high.at(k));
+            if self.settings.bounds.is_some_and(outside) {
+                return Err(Failure::Escape { particle, step: self.step });
+            }
+        }
+        Ok(())
+    }
+
+    /// Turns the breaks of the last march into cracks, in the order of (step, wall or not, class, ends).
+    fn note_cracks(&mut self) {
+        let mut breaks: Vec<(u64, Break)> = self.domains.iter_mut().flat_map(|d| d.breaks.drain(..)).collect();
+        breaks.sort_unstable_by_key(|(step, b)| (*step, b.at_wall, b.class, b.i, b.j));
+        for (step, b) in breaks {
+            let key = Key { i: b.i, at_wall: b.at_wall, j: b.j };
+            let (i, j) = (b.i as usize, b.j as usize);
+            let [first, second] = self.contact_radii(key);
+            self.cracks.push(Crack {
+                step,
+                time: self.epoch.0 + (step - self.epoch.1) as f64 * self.dt,
+                mode: if b.tensile { Mode::Tension } else { Mode::Shear },
+                particle: self.caller[i] as usize,
+                other: if b.at_wall { Other::Wall(j) } else { Other::Particle(self.caller[j] as usize) },
+                position: Vector::<S>::build(|k| b.point[k]),
+                normal: Vector::<S>::build(|k| b.normal[k]),
+                size: 2.0 * self.classes[b.class].constants.multiplier * first.min(second),
+                gap: b.gap,
+            });
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Targets against what the calibrated parameters gave over several seeds: each run, mean ± standard deviation.
+
+use super::axis::{Axis, extent, fixed};
+use super::column::Column;
+use super::legend::{self, Entry, Swatch};
+use super::palette::{BLUE, Marker, SOFT, VERMILION};
+use super::panel::{Margins, Panel, draw_marker, marker};
+use super::scene::{Anchor, Path, Rect, Scene, Stroke};
+use super::text::Line;
+use super::{Figure, Quantity, Style};
+
+/// One response over all target sets.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Check {
+    /// The response.
+    pub response: Quantity,
+    /// Target of each set.
+    pub target: Vec<f64>,
+    /// Values of the runs of each set.
+    pub runs: Vec<Vec<f64>>,
+}
+
+/// Verification of a calibration.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Verification {
+    /// Names of the target sets.
+    pub sets: Vec<String>,
+    /// Responses.
+    pub checks: Vec<Check>,
+}
+
+const BETWEEN: f64 = 3.0;
+
+impl Figure for Verification {
+    fn scene(&self, style: &Style) -> Scene {
+        let n = self.checks.len().max(1);
+        let columns = n.min(((style.width / 45.0) as usize).max(1));
+        let rows = n.div_ceil(columns);
+        let entries = entries();
+        let top = legend::height(&entries, style.width - 12.0, style);
+        let height = 52.0;
+        let mut scene = Scene::new(style.width, rows as f64 * height + top + 1.6);
+        scene.title = "Verification of the calibrated parameters".into();
+        scene.description = self.describe();
+        let axes: Vec<(Axis, Axis)> = self.checks.iter().map(|c| self.axes(c)).collect();
+        let none = Margins { left: 0.0, top: 0.0, right: 0.0, bottom: 0.0 };
+        let margins = axes.iter().fold(none, |m, (x, y)| m.max(Margins::of(x, y, style)));
+        let margins = Margins { top: 1.3 * style.size(), ..margins };
+        legend::draw(&mut scene, &entries, Rect::new(0.8 + margins.left, 0.8, style.width - 12.0, 0.0), style);
+        let pitch = (style.width - 1.6 + BETWEEN) / columns as f64;
+        for (i, (check, (x, y))) in self.checks.iter().zip(axes).enumerate() {
+            let corner = [0.8 + (i % columns) as f64 * pitch, 0.8 + top + (i / columns) as f64 * height];
+            let outer = Rect::new(corner[0], corner[1], pitch - BETWEEN, height - 0.6);
+            let left = Margins::of(&x, &y, style).left;
+            let panel = Panel { left, ..Panel::with_margins(outer, margins, x, y) };
+            draw_check(&mut scene, &panel, check, style);
+        }
+        scene
+    }
+
+    fn data(&self) -> Vec<Column> {
+        let mut words: [Vec<String>; 3] = Default::default();
+        let (mut target, mut run, mut value) = (Vec::new(), Vec::new(), Vec::new());
+        for check in &self.checks {
+            for (k, runs) in check.runs.iter().enumerate() {
+                for (j, &v) in runs.iter().enumerate() {
+                    words[0].push(check.response.name.clone());
+                    words[1].push(check.response.unit.clone());
+                    words[2].push(self.sets.get(k).cloned().unwrap_or_default());
+                    target.push(check.target.get(k).copied().unwrap_or(f64::NAN));
+                    run.push(j as i64 + 1);
+                    value.push(v);
+                }
+            }
+        }
+        let [response, unit, set] = words;
+        vec![
+            Column::words("response", response),
+            Column::words("unit", unit),
+            Column::words("set", set),
+            Column::whole("run", run),
+            Column::reals("target", target),
+            Column::reals("value", value),
+        ]
+    }
+}
+
+impl Verification {
+    fn describe(&self) -> String {
+        let tell = |c: &Check| {
+            let errors = c.runs.iter().zip(&c.target).map(|(r, t)| (moments(r).0 / t - 1.0).abs());
+            format!("{}: largest relative error of a mean {} %.", c.response.name, fixed(100.0 * extent(errors).1, 2))
+        };
+        self.checks.iter().map(tell).collect::<Vec<_>>().join(" ")
+    }
+
+    fn axes(&self, check: &Check) -> (Axis, Axis) {
+        let values = check.runs.iter().flatten().chain(&check.target).copied();
+        let (low, high) = extent(values);
+        let margin = 0.12 * (high - low);
+        let y = Axis::between(check.response.title(), super::axis::Scale::Linear, low - margin, high + margin, 5);
+        (Axis::categories("Target set", &self.sets), y)
+    }
+}
+
+/// Mean and standard deviation of a sample.
+fn moments(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let square: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+    (mean, if n > 1.0 { (square / (n - 1.0)).sqrt() } else { 0.0 })
+}
+
+fn entries() -> Vec<Entry> {
+    vec![
+        Entry::new("target", Swatch::Line(Stroke::new(VERMILION, 0.6), None)),
+        Entry::new("mean ± standard deviation", Swatch::Point(Marker::Disc, BLUE)),
+        Entry::new("single run", Swatch::Hollow(Marker::Disc)),
+    ]
+}
+
+fn draw_check(scene: &mut Scene, panel: &Panel, check: &Check, style: &Style) {
+    panel.draw_grid(scene);
+    let first = scene.items.len();
+    let step = panel.area.width() / check.runs.len().max(1) as f64;
+    let half = (0.34 * step).min(4.0);
+    for (k, runs) in check.runs.iter().enumerate() {
+        let (mean, deviation) = moments(runs);
+        let x = panel.place_x(k as f64);
+        if let Some(&target) = check.target.get(k) {
+            let y = panel.place_y(target);
+            scene.stroke(Path::polyline(&[[x - half, y], [x + half, y]]), Stroke::new(VERMILION, 0.6));
+        }
+        for (j, &v) in runs.iter().enumerate() {
+            let spread = (j as f64 + 0.5) / runs.len() as f64 - 0.5;
+            let at = [x + half * (0.55 + 0.5 * spread), panel.place_y(v)];
+            scene.shape(marker(Marker::Disc, at, 1.0), super::palette::PAPER, Stroke::new(SOFT, 0.2));
+        }
+        let (x, low, high) = (x - 0.25 * half, panel.place_y(mean - deviation), panel.place_y(mean + deviation));
+        let mut bar = Path::polyline(&[[x, low], [x, high]]);
+        for y in [low, high] {
+            bar.add_polyline(&[[x - 0.7, y], [x + 0.7, y]]);
+        }
+        scene.stroke(bar, Stroke::new(BLUE, 0.3));
+        draw_marker(scene, Marker::Disc, [x, panel.place_y(mean)], 1.9, BLUE);
+    }
+    scene.group_from(first, Some(panel.area), panel.facts());
+    panel.draw_axes(scene, style);
+    for (k, (runs, target)) in check.runs.iter().zip(&check.target).enumerate() {
+        let error = 100.0 * (moments(runs).0 / target - 1.0);
+        let sign = if error > 0.0 { "+" } else { "" };
+        let line = Line::new(&format!("{sign}{} %", fixed(error, 1)), 0.8 * style.size());
+        let at = [panel.place_x(k as f64), panel.area.top - 0.35 * style.size()];
+        if line.width < 1.02 * step {
+            scene.text(line, at, Anchor::Middle, 0.0, SOFT);
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Recognising an unchanged stage at once.
+//!
+//! `next` is a pure function of the stage's settings, what the workflow shares, its inputs, the files it looks at, and
+//! the program. Their hash is the key of a [`Memo`] that says what the stage came to and which objects that rests on.
+//! When the memo is there, the files are as they were and the objects are in the store, the stage is done without a look
+//! at its tasks: ten thousand of them cost one listing of folders. A memo is only a short cut: without it the tasks' own
+//! keys give the same answer, later.
+
+use super::board::{Board, NodeId, TaskCount};
+use super::library::path_of;
+use crate::artifact::{ContentHash, Key};
+use crate::plan::Workflow;
+use crate::store::{Memo, ObjectId, Store};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+use std::time::UNIX_EPOCH;
+
+/// What a stage came to.
+pub(super) struct Known {
+    pub(super) content: ContentHash,
+    pub(super) count: TaskCount,
+    pub(super) objects: Vec<ObjectId>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Note {
+    content: String,
+    tasks: usize,
+    /// Files that the stage looked at, with their digests.
+    files: Vec<(String, String)>,
+    /// Design row of each object; −1 for none.
+    rows: Vec<i64>,
+}
+
+/// Hash of what all stages of a workflow share, and of the program: any rebuild voids all memos.
+pub(super) fn base(workflow: &Workflow) -> Key {
+    let program = std::env::current_exe().and_then(std::fs::metadata).ok().map(|meta| {
+        let changed = meta.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+        (meta.len(), changed.map(|since| since.as_nanos()))
+    });
+    Key::of(&format!("flow stages 1\nprogram {program:?}\ncontext {:?}\n", workflow.context))
+}
+
+/// Key of a stage whose inputs are there: `inputs` holds their stage keys and contents.
+pub(super) fn key(workflow: &Workflow, index: usize, base: &Key, inputs: &[(Key, ContentHash)]) -> Key {
+    let node = &workflow.stages[index];
+    let mut text = format!("{base}\nkind {}\nsettings {}\n", node.kind, node.stage.settings());
+    for ((port, _), (stage, content)) in node.inputs.iter().zip(inputs) {
+        // A String takes any text.
+        let _ = writeln!(text, "input {port} {stage} {content}");
+    }
+    Key::of(&text)
+}
+
+/// What the memo of a stage says, when all it rests on is still so.
+pub(super) fn recall(workflow: &Workflow, store: &Store, key: &Key) -> Option<Known> {
+    let memo = store.memo(key).ok()??;
+    let note: Note = serde_json::from_str(&memo.note).ok()?;
+    let unchanged = |(path, digest): &(String, String)| {
+        let bytes = std::fs::read(path_of(workflow, path)).ok();
+        bytes.is_some_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
+    };
+    if !note.files.iter().all(unchanged) || !store.has_all(&memo.objects).ok()? {
+        return None;
+    }
+    let count = TaskCount { total: note.tasks, cached: note.tasks, ..TaskCount::default() };
+    Some(Known { content: ContentHash::from_hex(&note.content)?, count, objects: memo.objects })
+}
+
+/// The tasks that the memo of a stage rests on: design row and key of each. For the reasons of a rerun.
+pub fn remembered(store: &Store, key: &Key) -> Option<Vec<(Option<usize>, Key)>> {
+    let memo = store.memo(key).ok()??;
+    let note: Note = serde_json::from_str(&memo.note).ok()?;
+    let rows = note.rows.into_iter().map(|row| usize::try_from(row).ok());
+    Some(rows.zip(memo.objects.into_iter().map(|object| object.key)).collect())
+}
+
+/// Keeps what a stage came to: `nodes` are all the tasks it rests on, `own` how many of them are its own.
+pub(super) fn keep(
+    store: &Store,
+    key: &Key,
+    content: ContentHash,
+    board: &Board,
+    (nodes, own): (&[NodeId], usize),
+    files: Vec<(String, String)>,
+) {
+    let objects: Vec<ObjectId> = nodes.iter().filter_map(|&node| board.object(node)).collect();
+    let rows = nodes.iter().map(|&node| board.task(node).row.map_or(-1, |row| row as i64)).collect();
+    let note = Note { content: content.to_string(), tasks: own, files, rows };
+    let note = serde_json::to_string(&note).unwrap_or_else(|e| panic!("BUG: the note of a memo: {e}"));
+    // A memo that cannot be written costs time only; the store says what is wrong when it matters.
+    let _ = store.keep_memo(key, &Memo { note, objects });
+}

@@ -1,0 +1,119 @@
+//! The record that each campaign leaves, and what earlier ones tell: reasons of reruns and durations.
+
+use super::{Report, StageReport, StageStatus, TaskReport, remembered};
+use crate::plan::Workflow;
+use crate::plan::why::{Reason, why};
+use crate::store::{Campaign, StageRun, Store, StoreError};
+use std::collections::HashMap;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Writes what became of a campaign into the store.
+///
+/// # Errors
+/// The store cannot be written.
+pub fn record(
+    workflow: &Workflow,
+    sets: &[String],
+    report: &Report,
+    started: SystemTime,
+    store: &Store,
+) -> Result<u64, StoreError> {
+    let since = started.duration_since(UNIX_EPOCH).unwrap_or_default();
+    let campaign = Campaign {
+        workflow: workflow.path.display().to_string(),
+        profile: workflow.profile.clone().unwrap_or_default(),
+        set: sets.to_vec(),
+        started: since.as_millis() as i64,
+        seconds: started.elapsed().unwrap_or_default().as_secs_f64(),
+        origin: store.origin().clone(),
+        stages: report.stages.iter().map(|stage| stage_run(workflow, stage)).collect(),
+        ..Campaign::default()
+    };
+    store.record_campaign(&campaign)
+}
+
+fn stage_run(workflow: &Workflow, report: &StageReport) -> StageRun {
+    let Some(index) = workflow.position(&report.name) else { panic!("BUG: a report of no stage") };
+    let node = &workflow.stages[index];
+    let object = match &report.status {
+        StageStatus::Done(content) => Some(content.to_string()),
+        StageStatus::Open | StageStatus::Failed(_) | StageStatus::Skipped(_) => None,
+    };
+    StageRun {
+        name: report.name.clone(),
+        kind: report.kind.to_owned(),
+        settings: node.stage.settings(),
+        inputs: node.inputs.iter().map(|&(_, input)| workflow.stages[input].name.clone()).collect(),
+        state: report.status.word().to_owned(),
+        tasks: report.tasks.total as u64,
+        ran: report.tasks.ran as u64,
+        cached: report.tasks.cached as u64,
+        failed: report.tasks.failed as u64,
+        seconds: report.seconds,
+        object,
+        memo: report.memo.map(|key| key.to_string()),
+    }
+}
+
+/// What the last campaigns of the same workflow tell about each stage.
+pub struct Past<'a> {
+    store: &'a Store,
+    /// By stage: key of the last memo.
+    memos: HashMap<String, crate::artifact::Key>,
+}
+
+impl<'a> Past<'a> {
+    /// Looks through the last recorded runs of this workflow file.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn of(workflow: &Workflow, store: &'a Store) -> Result<Self, StoreError> {
+        let path = workflow.path.display().to_string();
+        let mut memos = HashMap::new();
+        for number in store.campaigns()?.into_iter().rev().take(LOOK_BACK) {
+            let Some(campaign) = store.campaign(number)?.filter(|campaign| campaign.workflow == path) else { continue };
+            for stage in campaign.stages.iter().filter(|stage| stage.object.is_some()) {
+                let key = stage.memo.as_deref().and_then(crate::artifact::Key::from_hex);
+                if let Some(key) = key {
+                    memos.entry(stage.name.clone()).or_insert(key);
+                }
+            }
+        }
+        Ok(Self { store, memos })
+    }
+
+    /// Why the open tasks of a stage have no result: each with how many tasks it concerns.
+    pub fn reasons(&self, stage: &str, tasks: &[&TaskReport]) -> Vec<(Reason, usize)> {
+        let old = self.memos.get(stage).and_then(|key| remembered(self.store, key)).unwrap_or_default();
+        let mut found: Vec<(Reason, usize)> = Vec::new();
+        for text in tasks.iter().filter_map(|task| Some((task.row, task.text.as_deref()?))) {
+            for reason in self.why(&old, text) {
+                match found.iter_mut().find(|(known, _)| *known == reason) {
+                    Some((_, count)) => *count += 1,
+                    None => found.push((reason, 1)),
+                }
+            }
+        }
+        found
+    }
+
+    /// Compares with the earlier task of the same row and work that is most like it.
+    fn why(&self, old: &[(Option<usize>, crate::artifact::Key)], (row, new): (Option<usize>, &str)) -> Vec<Reason> {
+        let same_row = old.iter().filter(|(r, _)| *r == row).take(LOOK_BACK);
+        let texts = same_row.filter_map(|(_, key)| self.store.task_text(&self.store.find(key).ok()??).ok());
+        let work = |text: &str| text.lines().nth(1).and_then(|line| line.split(' ').nth(1)).map(str::to_owned);
+        let like = texts.filter(|text| work(text) == work(new)).map(|text| why(&text, new));
+        like.min_by_key(Vec::len).unwrap_or_else(|| vec![Reason::New])
+    }
+
+    /// Mean duration of a task of a stage, seconds, from what was recorded.
+    pub fn seconds(&self, stage: &str) -> Option<f64> {
+        let old = remembered(self.store, self.memos.get(stage)?)?;
+        let records = old.iter().filter_map(|(_, key)| self.store.find(key).ok()?);
+        let (sum, count) = records.fold((0.0, 0_u32), |(sum, count), record| (sum + record.seconds, count + 1));
+        (count > 0).then(|| sum / f64::from(count))
+    }
+}
+
+/// So many earlier runs, or tasks of one row, are looked at.
+const LOOK_BACK: usize = 20;

@@ -1,0 +1,274 @@
+//! `kind = "anova"`: analysis of variance of every response.
+//!
+//! The result has the tables `anova` (`response,source,df,ss,ms,f,p,significance,eta2,omega2`; sources are the factors,
+//! then interactions, `residual`, `total`), `fit`, and `residuals`, in which runs that the model cannot explain are
+//! flagged. With `published` the printed F values stand beside the computed ones.
+
+use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
+use super::fitted::{fit_table, residual_table};
+use super::published::{Computed, beside, prints};
+use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, Group, Node, Table};
+use crate::stats::anova::{Anova as Analysis, Error, Interactions, Line, Settings, Squares, anova};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Settings of an `anova` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Anova {
+    /// The stage whose runs are analysed.
+    pub table: String,
+    /// Factors of the table that are looked at; all when not given.
+    #[serde(default)]
+    pub factors: Vec<String>,
+    /// Responses to analyse; all that the table has when not given.
+    #[serde(default)]
+    pub responses: Vec<String>,
+    /// Factors that are counted as error: empty columns, weak factors.
+    #[serde(default)]
+    pub as_error: Vec<String>,
+    /// Terms whose p exceeds this are pooled into the error.
+    pub pool_above: Option<f64>,
+    /// Two-way interactions: `"none"`, `"estimable"`, or a list of pairs.
+    #[serde(default)]
+    pub interactions: Pairs,
+    /// Sums of squares of type I, II or III.
+    #[serde(default, rename = "type")]
+    pub squares: Squares,
+    /// What F divides by: `"residual"`, or `"pure-error"` of replicated runs.
+    #[serde(default)]
+    pub error: Error,
+    /// A p up to this is significant.
+    #[serde(default = "alpha")]
+    pub alpha: f64,
+    /// A p up to this, and up to `alpha`, is highly significant.
+    #[serde(default = "alpha_high")]
+    pub alpha_high: f64,
+    /// Words for significant and highly significant.
+    #[serde(default = "words")]
+    pub words: [String; 2],
+    /// Level of the outlier test on the studentized residuals, over all rows together.
+    #[serde(default = "alpha")]
+    pub outlier_alpha: f64,
+    /// Column with the number of replicates that each row is the mean of.
+    pub weights: Option<String>,
+    /// Step to which a response of the table is rounded; adds what that does to F.
+    #[serde(default)]
+    pub rounding: BTreeMap<String, f64>,
+    /// CSV beside the workflow with printed F values: `response,source,f`, perhaps `note`.
+    pub published: Option<String>,
+}
+
+/// Which interactions are in the model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Pairs {
+    /// None, or all that can be estimated.
+    Word(PairWord),
+    /// Named pairs of factors.
+    List(Vec<(String, String)>),
+}
+
+/// A word for a choice of interactions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PairWord {
+    /// Main effects alone.
+    None,
+    /// Every pair that the runs can tell from the terms before it.
+    Estimable,
+}
+
+impl Default for Pairs {
+    fn default() -> Self {
+        Self::Word(PairWord::None)
+    }
+}
+
+fn alpha() -> f64 {
+    0.05
+}
+
+fn alpha_high() -> f64 {
+    0.01
+}
+
+fn words() -> [String; 2] {
+    ["Significant".to_owned(), "Highly significant".to_owned()]
+}
+
+#[derive(Serialize, Deserialize)]
+struct Params {
+    columns: Columns,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    as_error: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pool_above: Option<f64>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    interactions: Pairs,
+    #[serde(default, skip_serializing_if = "is_default")]
+    squares: Squares,
+    #[serde(default, skip_serializing_if = "is_default")]
+    error: Error,
+    alpha: f64,
+    alpha_high: f64,
+    words: [String; 2],
+    outlier_alpha: f64,
+    #[serde(default, skip_serializing_if = "is_default")]
+    rounding: BTreeMap<String, f64>,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+impl Anova {
+    fn params(&self, columns: Columns) -> Params {
+        Params {
+            columns,
+            as_error: self.as_error.clone(),
+            pool_above: self.pool_above,
+            interactions: self.interactions.clone(),
+            squares: self.squares,
+            error: self.error,
+            alpha: self.alpha,
+            alpha_high: self.alpha_high,
+            words: self.words.clone(),
+            outlier_alpha: self.outlier_alpha,
+            rounding: self.rounding.clone(),
+        }
+    }
+}
+
+impl Stage for Anova {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+    }
+
+    fn gives(&self) -> &'static str {
+        "anova"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = check_names(context, &self.factors, &self.responses);
+        let rounded: Vec<String> = self.rounding.keys().cloned().collect();
+        let retitled = |key: &'static str| move |c: Complaint| Complaint { path: vec![key.to_owned()], ..c };
+        found.extend(check_names(context, &self.as_error, &[]).into_iter().map(retitled("as_error")));
+        found.extend(check_names(context, &[], &rounded).into_iter().map(retitled("rounding")));
+        if let Pairs::List(pairs) = &self.interactions {
+            let names: Vec<String> = pairs.iter().flat_map(|(a, b)| [a.clone(), b.clone()]).collect();
+            found.extend(check_names(context, &names, &[]).into_iter().map(retitled("interactions")));
+        }
+        let levels = [("alpha", self.alpha), ("alpha_high", self.alpha_high), ("outlier_alpha", self.outlier_alpha)];
+        let levels = levels.into_iter().chain(self.pool_above.map(|p| ("pool_above", p)));
+        found.extend(levels.filter_map(|(key, value)| check_probability(key, value)));
+        found
+    }
+
+    fn settings(&self) -> Value {
+        let names = json!({ "factors": self.factors, "responses": self.responses, "weights": self.weights });
+        let none = Columns::none();
+        json!({ "columns": names, "analysis": self.params(none), "published": self.published })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let input = known.one("table")?;
+        let artifact = known.load(input)?;
+        let wanted = Wanted {
+            factors: &self.factors,
+            responses: &self.responses,
+            weights: self.weights.as_deref(),
+            levels: true,
+        };
+        let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
+        let mut task = Task::new("anova", json!(self.params(columns))).input("table", input.content);
+        if let Some(path) = &self.published {
+            task.files.push(known.library.file("published", path)?);
+        }
+        Ok(Step::Finish(task))
+    }
+}
+
+impl Kind for Anova {
+    const NAME: &'static str = "anova";
+    const ABOUT: &'static str = "analysis of variance: sums of squares, F, p and contribution of every factor";
+    const WORKS: &'static [Work] = &[Work { name: "anova", version: 1, run: analyse }];
+}
+
+fn settings(params: &Params) -> Settings {
+    let [significant, highly] = params.words.clone();
+    Settings {
+        squares: params.squares,
+        error: params.error,
+        interactions: match &params.interactions {
+            Pairs::Word(PairWord::None) => Interactions::None,
+            Pairs::Word(PairWord::Estimable) => Interactions::Estimable,
+            Pairs::List(pairs) => Interactions::Named(pairs.clone()),
+        },
+        as_error: params.as_error.clone(),
+        pool_above: params.pool_above,
+        significance: vec![(params.alpha_high.min(params.alpha), highly), (params.alpha, significant)],
+        outlier_alpha: params.outlier_alpha,
+    }
+}
+
+fn analyse(job: &Job) -> Result<Artifact, Failure> {
+    let params: Params = job.params()?;
+    let sample = params.columns.sample(runs(job.input("table")?)?)?;
+    let analyses = anova(&sample, &settings(&params)).map_err(refused)?;
+    let lines: Vec<(&Analysis, &Line)> = analyses.iter().flat_map(|a| a.lines.iter().map(move |l| (a, l))).collect();
+    let rounding = |(a, line): &(&Analysis, &Line)| a.f_rounding(line, *params.rounding.get(&a.response)?);
+    let mut table = variance_table(&lines);
+    if !params.rounding.is_empty() {
+        let about = "standard deviation of F when the responses are rounded";
+        table = table.reals_column("f_rounding", "", about, Rows(&lines).reals(rounding));
+    }
+    if let Some(prints) = prints(job, "source", "f")? {
+        let computed = |(a, line): &(&Analysis, &Line)| (a.response.clone(), line.source.clone());
+        let names: Vec<(String, String)> = lines.iter().map(computed).collect();
+        let computed: Vec<Computed> = lines
+            .iter()
+            .zip(&names)
+            .map(|(own, (response, line))| Computed {
+                response,
+                line,
+                value: own.1.f,
+                rounding: rounding(own).unwrap_or(0.0),
+            })
+            .collect();
+        table = beside(table, &prints, &computed);
+    }
+    let residuals = analyses.iter().map(|a| (a.response.as_str(), a.residuals.as_slice()));
+    let fits: Vec<_> = analyses.iter().map(|a| &a.fit).collect();
+    let about = Rows(&analyses);
+    let fit = fit_table(&fits)
+        .texts_column("pooled", "terms pooled into the error", about.texts(|a| a.pooled.join(" ")))
+        .texts_column(
+            "not_estimable",
+            "interactions that the runs cannot tell apart",
+            about.texts(|a| a.not_estimable.join(" ")),
+        );
+    let root = Group::new()
+        .with("anova", Node::Table(table))
+        .with("fit", Node::Table(fit))
+        .with("residuals", Node::Table(residual_table(residuals)));
+    Ok(Artifact::new("anova", 1, root))
+}
+
+fn variance_table(lines: &[(&Analysis, &Line)]) -> Table {
+    let rows = Rows(lines);
+    Table { about: "analysis of variance".to_owned(), columns: Vec::new() }
+        .texts_column("response", "", rows.texts(|(a, _)| a.response.as_str()))
+        .texts_column("source", "", rows.texts(|(_, l)| l.source.as_str()))
+        .ints_column("df", "degrees of freedom", rows.ints(|(_, l)| l.df))
+        .reals_column("ss", "", "sum of squares, squared unit of the response", rows.reals(|(_, l)| Some(l.ss)))
+        .reals_column("ms", "", "mean square", rows.reals(|(_, l)| l.ms))
+        .reals_column("f", "", "ratio to the mean square of the error", rows.reals(|(_, l)| l.f))
+        .reals_column("p", "", "probability of such an F by chance", rows.reals(|(_, l)| l.p))
+        .texts_column("significance", "", rows.texts(|(_, l)| l.significance.as_str()))
+        .reals_column("eta2", "", "share of the total sum of squares", rows.reals(|(_, l)| l.eta2))
+        .reals_column("omega2", "", "the same without what chance alone gives", rows.reals(|(_, l)| l.omega2))
+}

@@ -1,0 +1,508 @@
+//! `kind = "figure"`: a picture of the results of other stages, as SVG, PDF and PNG, with its numbers as a table.
+//!
+//! `show` names the figure, `from` the stages it takes its data from, and `compare` the stages with values to set
+//! beside them (published ones, as a rule). What each figure reads:
+//!
+//! | `show` | `from` | tables read |
+//! |---|---|---|
+//! | `stress-strain` | runs | `curve`, `cracks` |
+//! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces` |
+//! | `specimen` | a specimen | its arrays |
+//! | `main-effects`, `range` | results (`compare`: results) | `runs`: factors and `response` |
+//! | `points` | a design or results | `design` or `runs`: two or three factors |
+//! | `agreement` | results (`compare`: as many results) | `runs`; rows are matched by their factors |
+//! | `contour`, `surface` | surfaces | `coefficients` (`response`, `term`, `estimate`) |
+//! | `residuals`, `observed-predicted` | anova, regression, surfaces | `residuals` |
+//! | `pareto`, `half-normal` | a screening | `effects` |
+//! | `convergence`, `solutions` | solutions | `history`, `solution_set` |
+//! | `verification` | verifications | `runs`, `targets` |
+//!
+//! A picture depends on the numbers it draws, on its labels (symbols and units of the factors and responses it draws)
+//! and on its style: on nothing else, so it is drawn anew when, and only when, one of these changed.
+
+mod design;
+mod model;
+mod run;
+mod solution;
+mod source;
+
+use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, Group, Node, Table};
+use crate::figure::palette::Map;
+use crate::figure::{self, DOUBLE, Figure as Picture, SINGLE, Style, column, text};
+use crate::unit::Length;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Settings of a `figure` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Figure {
+    /// What is drawn.
+    pub show: Show,
+    /// The stages it is drawn from.
+    pub from: Names,
+    /// Stages with values to set beside them.
+    #[serde(default)]
+    pub compare: Names,
+    /// The response that is drawn, or several where the figure has a panel for each.
+    #[serde(default)]
+    pub response: Names,
+    /// The factors that are drawn; all of them when not given.
+    #[serde(default)]
+    pub factors: Vec<String>,
+    /// Values of the factors that are held constant, in their units; the middle of the range when not given.
+    #[serde(default)]
+    pub at: BTreeMap<String, f64>,
+    /// Words for what has a symbol only: `{ UCS = "Peak strength" }`; for series, names in the legend by stage.
+    #[serde(default)]
+    pub names: BTreeMap<String, String>,
+    /// Half width of the band around the line of equality, as a share of the value.
+    pub band: Option<f64>,
+    /// `single` (90 mm), `double` (190 mm) or a length.
+    #[serde(default)]
+    pub width: Width,
+    /// Size of the text in points; 8 when not given.
+    pub points: Option<f64>,
+    /// Colours of surfaces.
+    #[serde(default)]
+    pub colors: Map,
+}
+
+/// One name or several.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Names {
+    /// None.
+    #[default]
+    #[serde(skip)]
+    None,
+    /// One.
+    One(String),
+    /// Several.
+    Many(Vec<String>),
+}
+
+impl Names {
+    pub(super) fn list(&self) -> Vec<String> {
+        match self {
+            Names::None => Vec::new(),
+            Names::One(name) => vec![name.clone()],
+            Names::Many(names) => names.clone(),
+        }
+    }
+}
+
+/// Width of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// One column of a journal: 90 mm.
+    #[default]
+    Single,
+    /// Two columns: 190 mm.
+    Double,
+}
+
+/// A named width or a length.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Width {
+    /// By name.
+    Preset(Preset),
+    /// By length.
+    Length(Length),
+}
+
+impl Default for Width {
+    fn default() -> Self {
+        Width::Preset(Preset::Single)
+    }
+}
+
+impl Width {
+    fn millimetres(self) -> f64 {
+        match self {
+            Width::Preset(Preset::Single) => SINGLE,
+            Width::Preset(Preset::Double) => DOUBLE,
+            Width::Length(length) => length.get() * 1e3,
+        }
+    }
+}
+
+/// The figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Show {
+    /// Stress–strain curves with crack counts.
+    StressStrain,
+    /// Crack patterns by mode at several moments.
+    Cracks,
+    /// Orientation of the cracks.
+    CrackRose,
+    /// Force chains.
+    ForceChains,
+    /// Particles by group, with the aggregate.
+    Specimen,
+    /// Mean response per level of each factor.
+    MainEffects,
+    /// Ranked ranges of a range analysis.
+    Range,
+    /// Points of a design in two or three factors.
+    Points,
+    /// Computed against compared values, matched by their factors.
+    Agreement,
+    /// A response surface as filled contours.
+    Contour,
+    /// A response surface in space.
+    Surface,
+    /// Four views of the residuals of a model.
+    Residuals,
+    /// Observed values against those of the model.
+    ObservedPredicted,
+    /// Ranked standardized effects.
+    Pareto,
+    /// Half-normal plot of effects.
+    HalfNormal,
+    /// Misfit against effort of a calibration.
+    Convergence,
+    /// Parameter sets over parallel axes.
+    Solutions,
+    /// Targets against verified values.
+    Verification,
+}
+
+/// What one kind of figure takes.
+struct Needs {
+    from: &'static [&'static str],
+    compare: &'static [&'static str],
+    /// Least and greatest number of responses.
+    responses: [usize; 2],
+    /// Least and greatest number of factors named; factors are drawn when the second is not 0.
+    factors: [usize; 2],
+}
+
+const MANY: usize = usize::MAX;
+
+impl Show {
+    fn needs(self) -> Needs {
+        let needs = |from, compare, responses, factors| Needs { from, compare, responses, factors };
+        const RESULTS: &[&str] = &["results"];
+        const MODELS: &[&str] = &["anova", "regression", "surfaces"];
+        match self {
+            Show::StressStrain => needs(&["run"], &[], [0, 0], [0, 0]),
+            Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&["run"], &["specimen"], [0, 0], [0, 0]),
+            Show::Specimen => needs(&["specimen"], &[], [0, 0], [0, 0]),
+            Show::MainEffects | Show::Range => needs(RESULTS, RESULTS, [1, 1], [0, MANY]),
+            Show::Points => needs(&["design", "results"], &[], [0, 0], [2, 3]),
+            Show::Agreement => needs(RESULTS, RESULTS, [1, MANY], [0, MANY]),
+            Show::Contour | Show::Surface => needs(&["surfaces"], &[], [1, 1], [2, 2]),
+            Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
+            Show::ObservedPredicted => needs(MODELS, &[], [1, MANY], [0, 0]),
+            Show::Pareto | Show::HalfNormal => needs(&["anova", "screening", "regression"], &[], [1, 1], [0, 0]),
+            Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),
+            Show::Solutions => needs(&["solution"], &[], [0, 0], [0, MANY]),
+            Show::Verification => needs(&["verification"], &[], [0, MANY], [0, 0]),
+        }
+    }
+
+    fn name(self) -> String {
+        json!(self).as_str().unwrap_or_default().to_owned()
+    }
+}
+
+/// A factor or response as it is drawn.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Label {
+    key: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    name: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    symbol: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    unit: String,
+    /// What it belongs to: the first part of the parameter it sets.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    group: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    range: Option<[f64; 2]>,
+}
+
+impl Label {
+    fn quantity(&self) -> figure::Quantity {
+        let name = if self.name.is_empty() && self.symbol.is_empty() { &self.key } else { &self.name };
+        figure::Quantity::new(name, &self.symbol, &self.unit)
+    }
+}
+
+/// Everything that decides a picture besides the data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Params {
+    show: Show,
+    /// Millimetres.
+    width: f64,
+    points: f64,
+    colors: Map,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    responses: Vec<Label>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    factors: Vec<Label>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    at: BTreeMap<String, f64>,
+    /// Names of the inputs in the legend, when there are several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    series: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    band: Option<f64>,
+}
+
+impl Stage for Figure {
+    fn inputs(&self) -> Vec<Port> {
+        let needs = self.show.needs();
+        let mut ports = vec![Port { key: "from", stages: self.from.list(), accepts: needs.from }];
+        if !self.compare.list().is_empty() {
+            ports.push(Port { key: "compare", stages: self.compare.list(), accepts: needs.compare });
+        }
+        ports
+    }
+
+    fn gives(&self) -> &'static str {
+        "picture"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = self.check_counts();
+        for name in self.response.list().iter().filter(|name| !context.responses.contains_key(*name)) {
+            let known: Vec<&str> = context.responses.keys().map(String::as_str).collect();
+            let message = format!("there is no [response.{name}]");
+            found.push(Complaint::new("response", message).hint(format!("known: {}", known.join(", "))));
+        }
+        let factors = self.factors.iter().map(|f| ("factors", f)).chain(self.at.keys().map(|f| ("at", f)));
+        for (key, name) in factors.filter(|(_, name)| !context.factors.contains_key(*name)) {
+            let known: Vec<&str> = context.factors.keys().map(String::as_str).collect();
+            let message = format!("there is no [factor.{name}]");
+            found.push(Complaint::new(key, message).hint(format!("known: {}", known.join(", "))));
+        }
+        let symbols = context.factors.values().map(|f| &f.symbol).chain(context.responses.values().map(|r| &r.symbol));
+        for label in symbols.map(|symbol| format!("${symbol}$")).chain(self.names.values().cloned()) {
+            if let Err(fault) = text::check(&label) {
+                found.push(Complaint::new("", fault.to_string()));
+            }
+        }
+        let (width, points) = (self.width.millimetres(), self.points.unwrap_or(8.0));
+        if !(40.0..=1000.0).contains(&width) {
+            found.push(Complaint::new("width", format!("{width} mm is no width of a figure")).hint("40 mm to 1000 mm"));
+        }
+        if !(4.0..=30.0).contains(&points) {
+            found.push(Complaint::new("points", format!("{points} points is no size of text")).hint("4 to 30"));
+        }
+        if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
+            found.push(self.without_effect("band"));
+        }
+        found
+    }
+
+    fn settings(&self) -> Value {
+        json!({
+            "show": self.show, "from": self.from.list(), "compare": self.compare.list(),
+            "response": self.response.list(), "factors": self.factors, "at": self.at, "names": self.names,
+            "band": self.band, "width": self.width.millimetres(), "points": self.points, "colors": self.colors,
+        })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let params = Params {
+            show: self.show,
+            width: self.width.millimetres(),
+            points: self.points.unwrap_or(8.0),
+            colors: self.colors,
+            responses: self.response_labels(known.context),
+            factors: self.factor_labels(known)?,
+            at: self.at.clone(),
+            series: self.series(),
+            band: self.band,
+        };
+        let mut task = Task::new(Self::WORKS[0].name, json!(params));
+        for port in ["from", "compare"] {
+            for input in known.port(port) {
+                task = task.input(port, input.content);
+            }
+        }
+        Ok(Step::Finish(task))
+    }
+}
+
+impl Figure {
+    fn without_effect(&self, key: &str) -> Complaint {
+        Complaint::new(key, format!("`{key}` has no effect on a figure that shows `{}`", self.show.name()))
+            .hint(format!("leave out `{key}`"))
+    }
+
+    /// Settings without effect, and too few or too many names.
+    fn check_counts(&self) -> Vec<Complaint> {
+        let needs = self.show.needs();
+        let mut found = Vec::new();
+        if self.from.list().is_empty() {
+            found.push(Complaint::new("from", "no stage is named"));
+        }
+        if needs.compare.is_empty() && !self.compare.list().is_empty() {
+            found.push(self.without_effect("compare"));
+        }
+        let (from, compare) = (self.from.list().len(), self.compare.list().len());
+        if self.show == Show::Agreement && from != compare {
+            let message = format!("`from` names {from} stages and `compare` {compare}; they are compared in pairs");
+            found.push(Complaint::new("compare", message));
+        }
+        if !self.at.is_empty() && !matches!(self.show, Show::Contour | Show::Surface) {
+            found.push(self.without_effect("at"));
+        }
+        for (key, count, [least, most]) in
+            [("response", self.response.list().len(), needs.responses), ("factors", self.factors.len(), needs.factors)]
+        {
+            if most == 0 && count > 0 {
+                found.push(self.without_effect(key));
+            } else if count < least || count > most {
+                let wanted = if least == most { format!("{least}") } else { format!("at least {least}") };
+                let message = format!("`{key}` names {count}, but `{}` shows {wanted}", self.show.name());
+                found.push(Complaint::new(key, message));
+            }
+        }
+        found
+    }
+
+    fn response_labels(&self, context: &Context) -> Vec<Label> {
+        let label = |key: &String| {
+            let response = context.responses.get(key).cloned().unwrap_or_default();
+            let name = self.names.get(key).cloned().unwrap_or_default();
+            Label { key: key.clone(), name, symbol: response.symbol, unit: response.unit, ..Label::default() }
+        };
+        let named = self.response.list();
+        let all = named.is_empty() && self.show.needs().responses[1] > 0;
+        if all { context.responses.keys().map(label).collect() } else { named.iter().map(label).collect() }
+    }
+
+    /// The factors that are named, or all that the first input holds.
+    fn factor_labels(&self, known: &Known) -> Result<Vec<Label>, StageError> {
+        if self.show.needs().factors[1] == 0 {
+            return Ok(Vec::new());
+        }
+        let mut keys = self.factors.clone();
+        keys.extend(self.at.keys().cloned());
+        if matches!(self.show, Show::Contour | Show::Surface) {
+            keys.extend(known.context.factors.keys().filter(|key| !keys.contains(key)).cloned().collect::<Vec<_>>());
+        } else if keys.is_empty() {
+            let artifact = known.load(known.one("from")?)?;
+            let tables = artifact.tables();
+            let columns = tables.iter().flat_map(|(_, table)| &table.columns).map(|column| &column.name);
+            for name in columns.filter(|name| known.context.factors.contains_key(*name)) {
+                if !keys.contains(name) {
+                    keys.push(name.clone());
+                }
+            }
+        }
+        if self.show == Show::Agreement {
+            // Rows are matched by them; their labels are not drawn.
+            return Ok(keys.into_iter().map(|key| Label { key, ..Label::default() }).collect());
+        }
+        let label = |key: &String| {
+            let factor = known.context.factors.get(key).cloned().unwrap_or_default();
+            let (low, high) = figure::axis::extent(factor.levels.iter().copied());
+            let range = factor.range.or((!factor.levels.is_empty()).then_some([low, high]));
+            let group = factor.sets.split_once('.').map(|(group, _)| group.to_owned()).unwrap_or_default();
+            let name = self.names.get(key).cloned().unwrap_or_default();
+            Label { key: key.clone(), name, symbol: factor.symbol, unit: factor.unit, group, range }
+        };
+        Ok(keys.iter().map(label).collect())
+    }
+
+    /// Names in the legend: given ones, or those of the stages, where several are drawn together.
+    fn series(&self) -> Vec<String> {
+        let stages = self.from.list();
+        if stages.len() < 2 {
+            return Vec::new();
+        }
+        stages.iter().map(|stage| self.names.get(stage).cloned().unwrap_or(stage.replace('_', " "))).collect()
+    }
+}
+
+impl Kind for Figure {
+    const NAME: &'static str = "figure";
+    const ABOUT: &'static str = "a picture of the results of other stages";
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 1, run: draw }];
+}
+
+fn draw(job: &Job) -> Result<Artifact, Failure> {
+    let params: Params = job.params()?;
+    let sources = source::Sources::new(job);
+    let picture: Box<dyn Picture> = match params.show {
+        Show::StressStrain => Box::new(run::stress_strain(&params, &sources)?),
+        Show::Cracks => Box::new(run::cracks(&sources)?),
+        Show::CrackRose => Box::new(run::rose(&sources)?),
+        Show::ForceChains => Box::new(run::chains(&sources)?),
+        Show::Specimen => Box::new(run::specimen(&sources)?),
+        Show::MainEffects => Box::new(design::main_effects(&params, &sources)?),
+        Show::Range => Box::new(design::range(&params, &sources)?),
+        Show::Points => Box::new(design::points(&params, &sources)?),
+        Show::Agreement => Box::new(design::agreement(&params, &sources)?),
+        Show::Contour => Box::new(model::contour(&params, &sources)?),
+        Show::Surface => Box::new(model::surface(&params, &sources)?),
+        Show::Residuals => Box::new(model::residuals(&params, &sources)?),
+        Show::ObservedPredicted => Box::new(model::observed(&params, &sources)?),
+        Show::Pareto => Box::new(model::pareto(&params, &sources)?),
+        Show::HalfNormal => Box::new(model::half_normal(&params, &sources)?),
+        Show::Convergence => Box::new(solution::convergence(&params, &sources)?),
+        Show::Solutions => Box::new(solution::solutions(&params, &sources)?),
+        Show::Verification => Box::new(solution::verification(&params, &sources)?),
+    };
+    let style = Style { points: params.points, map: params.colors, ..Style::wide(params.width) };
+    picture_artifact(&*picture, &style)
+}
+
+/// Resolution of the PNG in dots per inch.
+const DPI: f64 = 300.0;
+
+/// A picture as it is stored: the three files, the words for those who cannot see it, and its numbers.
+fn picture_artifact(picture: &dyn Picture, style: &Style) -> Result<Artifact, Failure> {
+    let scene = picture.scene(style);
+    let png = figure::png::png(&scene, DPI).map_err(|e| StageError::new(e.to_string()))?;
+    let root = Group::new()
+        .with("title", Node::Text(scene.title.clone()))
+        .with("description", Node::Text(scene.description.clone()))
+        .with("svg", Node::Text(figure::svg::svg(&scene)))
+        .with("pdf", Node::Bytes(figure::pdf::pdf(&scene)))
+        .with("png", Node::Bytes(png))
+        .with("data", Node::Table(stored(picture.data())));
+    Ok(Artifact::new("picture", 1, root))
+}
+
+/// Columns of a figure as a table of the store; a second column of the same name gets a number.
+pub(super) fn stored(columns: Vec<column::Column>) -> Table {
+    let rows = columns.iter().map(column::Column::len).max().unwrap_or(0);
+    let mut table = Table::default();
+    for c in columns {
+        let mut name = c.key.clone();
+        let mut number = 2;
+        while name.is_empty() || table.column(&name).is_some() {
+            name = format!("{}_{number}", c.key);
+            number += 1;
+        }
+        table = match c.values {
+            column::Values::Reals(mut values) => {
+                values.resize(rows, f64::NAN);
+                table.reals_column(&name, &c.unit, "", values)
+            }
+            column::Values::Whole(values) => {
+                let mut values: Vec<f64> = values.into_iter().map(|v| v as f64).collect();
+                values.resize(rows, f64::NAN);
+                table.reals_column(&name, &c.unit, "", values)
+            }
+            column::Values::Words(mut values) => {
+                values.resize(rows, String::new());
+                table.texts_column(&name, "", values)
+            }
+        };
+    }
+    table
+}

@@ -1,0 +1,238 @@
+//! Figures of fitted models: surfaces, residuals, effects.
+
+use super::super::StageError;
+use super::source::{Rows, Sources, pick};
+use super::{Label, Params};
+use crate::figure::Quantity;
+use crate::figure::agreement::{Agreement, Cloud, Pair};
+use crate::figure::axis::{fixed, significant};
+use crate::figure::bars::{Bar, RankedBars};
+use crate::figure::contour::Contour;
+use crate::figure::half_normal::{Effect, HalfNormal};
+use crate::figure::residuals::Residuals;
+use crate::figure::surface::Surface;
+use crate::math::distribution::normal_quantile;
+use crate::stats::terms::Term;
+
+fn one_response(params: &Params) -> Result<&Label, StageError> {
+    params.responses.first().ok_or_else(|| StageError::new("no response is named"))
+}
+
+/// Nodes along one side of a drawn surface.
+const NODES: usize = 61;
+
+/// A polynomial in natural units: terms with their coefficients.
+struct Polynomial(Vec<(Term, f64)>);
+
+impl Polynomial {
+    fn read(rows: Rows<'_>, response: &str) -> Result<Self, StageError> {
+        let which = rows.where_is("response", response)?;
+        let terms = pick(&rows.texts("term")?, &which);
+        let values = pick(&rows.reals("estimate")?, &which);
+        let parsed = terms.iter().map(|t| Term::parse(t).map_err(|e| StageError::new(e.to_string())));
+        Ok(Self(parsed.collect::<Result<Vec<_>, _>>()?.into_iter().zip(values).collect()))
+    }
+
+    fn factors(&self) -> Vec<String> {
+        let mut found: Vec<String> = Vec::new();
+        for name in self.0.iter().flat_map(|(term, _)| term.factors()) {
+            if !found.iter().any(|f| f == name) {
+                found.push(name.to_owned());
+            }
+        }
+        found
+    }
+
+    fn value(&self, point: &dyn Fn(&str) -> f64) -> f64 {
+        let one = |(term, c): &(Term, f64)| {
+            term.factors().fold(*c, |product, f| product * (0..term.power_of(f)).fold(1.0, |p, _| p * point(f)))
+        };
+        self.0.iter().map(one).sum()
+    }
+}
+
+pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, StageError> {
+    let response = one_response(params)?;
+    let source = sources.first()?;
+    let model = Polynomial::read(source.rows(&["coefficients"])?, &response.key)?;
+    let [x, y] = params.factors.first_chunk::<2>().ok_or_else(|| StageError::new("two factors must be named"))?;
+    let used = model.factors();
+    for label in [x, y] {
+        if !used.contains(&label.key) {
+            let message = format!("the surface of `{}` does not depend on `{}`", response.key, label.key);
+            return Err(StageError::new(message).hint(format!("it depends on {}", used.join(", "))));
+        }
+    }
+    let range = |label: &Label| {
+        label.range.ok_or_else(|| StageError::new(format!("[factor.{}] has neither levels nor range", label.key)))
+    };
+    let nodes = |[low, high]: [f64; 2]| {
+        (0..NODES).map(|i| low + (high - low) * i as f64 / (NODES - 1) as f64).collect::<Vec<_>>()
+    };
+    let (xs, ys) = (nodes(range(x)?), nodes(range(y)?));
+    let mut held: Vec<(&Label, f64)> = Vec::new();
+    for key in used.iter().filter(|key| **key != x.key && **key != y.key) {
+        let label = params.factors.iter().find(|l| l.key == *key);
+        let label =
+            label.ok_or_else(|| StageError::new(format!("the surface depends on `{key}`, which is no factor")))?;
+        let value = match params.at.get(key) {
+            Some(value) => *value,
+            None => range(label).map(|[low, high]| (low + high) / 2.0)?,
+        };
+        held.push((label, value));
+    }
+    let at = |key: &str, u: f64, v: f64| match key {
+        key if key == x.key => u,
+        key if key == y.key => v,
+        key => held.iter().find(|(l, _)| l.key == key).map_or(0.0, |(_, value)| *value),
+    };
+    let values = ys.iter().flat_map(|&v| xs.iter().map(move |&u| (u, v)));
+    let values = values.map(|(u, v)| model.value(&|key| at(key, u, v))).collect();
+    let note = held.iter().map(|(l, v)| {
+        let unit =
+            if l.unit.is_empty() { String::new() } else { format!(" {}", crate::figure::text::unit_markup(&l.unit)) };
+        format!("{} = {}{unit}", l.quantity().sign(), short(*v))
+    });
+    let note = note.collect::<Vec<_>>().join(", ");
+    Ok(Contour { x: x.quantity(), y: y.quantity(), z: response.quantity(), xs, ys, values, points: Vec::new(), note })
+}
+
+/// As few decimals as tell the number.
+fn short(v: f64) -> String {
+    let exact = |d: &usize| (format!("{v:.d$}").parse::<f64>().unwrap_or(f64::NAN) - v).abs() <= 1e-9 * v.abs();
+    (0..6).find(exact).map_or_else(|| significant(v, 4), |d| fixed(v, d))
+}
+
+pub(super) fn surface(params: &Params, sources: &Sources) -> Result<Surface, StageError> {
+    Ok(Surface { field: contour(params, sources)?, azimuth: -60.0, elevation: 28.0 })
+}
+
+pub(super) fn residuals(params: &Params, sources: &Sources) -> Result<Residuals, StageError> {
+    let response = one_response(params)?;
+    let source = sources.first()?;
+    let rows = source.rows(&["residuals"])?;
+    let which = rows.where_is("response", &response.key)?;
+    let column = |name: &str| rows.reals(name).map(|v| pick(&v, &which));
+    let studentized = column("studentized")?;
+    let leverage = column("leverage")?;
+    let runs = if rows.has("row") {
+        pick(&rows.texts("row")?, &which)
+    } else {
+        (1..=which.len()).map(|i| i.to_string()).collect()
+    };
+    // The trace of the hat matrix is the number of coefficients.
+    let coefficients = leverage.iter().filter(|h| h.is_finite()).sum::<f64>().round() as usize;
+    Ok(Residuals {
+        response: response.quantity(),
+        runs,
+        fitted: column("fitted")?,
+        quantiles: normal_scores(&studentized),
+        studentized,
+        leverage,
+        coefficients,
+        limit: 3.0,
+    })
+}
+
+/// The normal quantile of (rank − 3/8)/(n + 1/4) (Blom 1958) of each value.
+fn normal_scores(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let n = order.len() as f64;
+    let mut scores = vec![f64::NAN; values.len()];
+    for (rank, i) in order.into_iter().enumerate() {
+        scores[i] = normal_quantile((rank as f64 + 0.625) / (n + 0.25));
+    }
+    scores
+}
+
+pub(super) fn observed(params: &Params, sources: &Sources) -> Result<Agreement, StageError> {
+    let rows = sources.first()?.rows(&["residuals"])?;
+    let mut pairs = Vec::new();
+    for response in &params.responses {
+        let Ok(which) = rows.where_is("response", &response.key) else { continue };
+        let (x, y) = (pick(&rows.reals("observed")?, &which), pick(&rows.reals("fitted")?, &which));
+        let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
+        let total: f64 = x.iter().map(|v| (v - mean) * (v - mean)).sum();
+        let left: f64 = x.iter().zip(&y).map(|(a, b)| (a - b) * (a - b)).sum();
+        let note = format!("$R^2$ = {}", fixed(1.0 - left / total, 4));
+        let names = (1..=x.len()).map(|i| i.to_string()).collect();
+        pairs.push(Pair {
+            quantity: response.quantity(),
+            clouds: vec![Cloud { name: String::new(), x, y, rows: names }],
+            note,
+        });
+    }
+    if pairs.is_empty() {
+        return Err(StageError::new("the model holds none of the responses that are named"));
+    }
+    Ok(Agreement { x_word: "Observed".into(), y_word: "Predicted".into(), pairs, band: params.band })
+}
+
+/// Absolute effects of one response with what marks the active ones.
+struct Effects {
+    names: Vec<String>,
+    sizes: Vec<f64>,
+    quantiles: Vec<f64>,
+    active: Vec<bool>,
+    error: f64,
+    margin: Option<f64>,
+    simultaneous: Option<f64>,
+}
+
+fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
+    let response = one_response(params)?;
+    let source = sources.first()?;
+    let rows = source.rows(&["effects"])?;
+    let which = rows.where_is("response", &response.key)?;
+    let sizes: Vec<f64> = pick(&rows.reals("effect")?, &which).iter().map(|e| e.abs()).collect();
+    let limits = source.rows(&["limits", "fit"])?;
+    let mine = limits.where_is("response", &response.key)?;
+    let limit = |name: &str| -> Option<f64> {
+        limits.reals(name).ok().and_then(|v| pick(&v, &mine).first().copied()).filter(|v| v.is_finite())
+    };
+    let margin = limit("margin");
+    Ok(Effects {
+        names: pick(&rows.texts("term")?, &which).iter().map(|t| t.replace('*', "·")).collect(),
+        quantiles: pick(&rows.reals("half_normal")?, &which),
+        active: sizes.iter().map(|s| margin.is_some_and(|m| *s > m)).collect(),
+        sizes,
+        error: limit("pse").unwrap_or(f64::NAN),
+        margin,
+        simultaneous: limit("simultaneous"),
+    })
+}
+
+pub(super) fn half_normal(params: &Params, sources: &Sources) -> Result<HalfNormal, StageError> {
+    let found = effects(params, sources)?;
+    let list = (0..found.sizes.len()).map(|i| Effect {
+        name: found.names[i].clone(),
+        size: found.sizes[i],
+        quantile: found.quantiles[i],
+        active: found.active[i],
+    });
+    Ok(HalfNormal {
+        response: one_response(params)?.quantity(),
+        effects: list.collect(),
+        error: found.error,
+        margin: found.margin.map(|m| ("margin of error".to_owned(), m)),
+    })
+}
+
+pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, StageError> {
+    let response = one_response(params)?;
+    let found = effects(params, sources)?;
+    let bar = |i: usize| Bar {
+        factor: Quantity::new(&found.names[i], "", ""),
+        group: String::new(),
+        value: found.sizes[i],
+        published: None,
+    };
+    let limits = [("margin of error", found.margin), ("simultaneous margin", found.simultaneous)];
+    Ok(RankedBars {
+        title: format!("Effects on {}", response.key),
+        quantity: Quantity { name: "Absolute effect on".into(), ..response.quantity() },
+        bars: (0..found.sizes.len()).map(bar).collect(),
+        references: limits.into_iter().filter_map(|(name, v)| v.map(|v| (name.to_owned(), v))).collect(),
+    })
+}

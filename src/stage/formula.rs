@@ -1,0 +1,188 @@
+//! `kind = "formula"`: a stand-in simulator whose responses are formulas of the factors, with or without scatter.
+//!
+//! It costs microseconds, so a campaign's design, analysis and calibration can be tried before a simulation is paid for,
+//! and methods can be compared on known truths. A formula names factors (in their units) and parameters of the material by
+//! path with `_` for the dot (`mortar_Ec`, SI); it knows `+ - * / ^`, `abs sqrt exp ln log10 sin cos tan atan tanh min max`.
+//! Scatter is relative, normal, and a function of seed, point and replicate.
+
+use super::rows::{self, GATHER};
+use super::{Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, Group, Node};
+use crate::math::elementary as math;
+use crate::math::random::Stream;
+use crate::unit::Unit;
+use exmex::{BinOp, Express, FlatEx, MakeOperators, Operator};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Settings of a `formula` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Formula {
+    /// The design whose rows are run; once, at the material, when not given.
+    pub design: Option<String>,
+    /// The `[material.NAME]` that rows vary.
+    pub material: Option<String>,
+    /// Responses by name.
+    pub responses: BTreeMap<String, Response>,
+}
+
+/// One response.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Response {
+    /// The formula, such as `1.083*sigma_c + 0.919*tau_c`.
+    value: String,
+    /// Unit of its value; none for a pure number.
+    #[serde(default)]
+    unit: String,
+    /// Standard deviation of the relative scatter, such as 0.04.
+    #[serde(default)]
+    scatter: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Params {
+    responses: BTreeMap<String, Response>,
+    values: BTreeMap<String, f64>,
+    replicate: u64,
+}
+
+/// Operators whose results have the same bits everywhere.
+#[derive(Clone, Debug)]
+struct Operators;
+
+impl MakeOperators<f64> for Operators {
+    fn make<'a>() -> Vec<Operator<'a, f64>> {
+        let binary = |apply: fn(f64, f64) -> f64, prio, is_commutative| BinOp { apply, prio, is_commutative };
+        vec![
+            Operator::make_bin("^", binary(math::pow, 4, false)),
+            Operator::make_bin("*", binary(|a, b| a * b, 2, true)),
+            Operator::make_bin("/", binary(|a, b| a / b, 3, false)),
+            Operator::make_bin_unary("+", binary(|a, b| a + b, 0, true), |a| a),
+            Operator::make_bin_unary("-", binary(|a, b| a - b, 1, false), |a| -a),
+            Operator::make_bin("min", binary(f64::min, 0, true)),
+            Operator::make_bin("max", binary(f64::max, 0, true)),
+            Operator::make_unary("abs", f64::abs),
+            Operator::make_unary("sqrt", f64::sqrt),
+            Operator::make_unary("exp", math::exp),
+            Operator::make_unary("ln", math::ln),
+            Operator::make_unary("log10", math::log10),
+            Operator::make_unary("sin", math::sin),
+            Operator::make_unary("cos", math::cos),
+            Operator::make_unary("tan", math::tan),
+            Operator::make_unary("atan", math::atan),
+            Operator::make_unary("tanh", math::tanh),
+        ]
+    }
+}
+
+fn parse(text: &str) -> Result<FlatEx<f64, Operators>, String> {
+    FlatEx::parse(text).map_err(|e| format!("`{text}` is not a formula: {e}"))
+}
+
+impl Stage for Formula {
+    fn inputs(&self) -> Vec<Port> {
+        let design = |name: &String| Port { key: "design", stages: vec![name.clone()], accepts: &["design"] };
+        self.design.iter().map(design).collect()
+    }
+
+    fn gives(&self) -> &'static str {
+        if self.design.is_some() { "results" } else { "run" }
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = rows::check_units(context);
+        found.extend(rows::check_material(self.material.as_ref(), context));
+        let names = self.known_names(context);
+        for (name, response) in &self.responses {
+            let at = |key: &str| format!("responses.{name}.{key}");
+            match parse(&response.value) {
+                Err(why) => found.push(Complaint::new(&at("value"), why)),
+                Ok(formula) => {
+                    for unknown in formula.var_names().iter().filter(|var| !names.contains(var)) {
+                        let hint = format!("known are {}", names.join(", "));
+                        found.push(Complaint::new(&at("value"), format!("`{unknown}` is not a value")).hint(hint));
+                    }
+                }
+            }
+            if let Err(e) = Unit::parse(&response.unit) {
+                found.push(Complaint::new(&at("unit"), e.to_string()));
+            }
+            if !(response.scatter >= 0.0) {
+                found.push(Complaint::new(&at("scatter"), "the scatter must be 0 or more"));
+            }
+        }
+        found
+    }
+
+    fn settings(&self) -> Value {
+        json!({ "design": self.design, "material": self.material, "responses": self.responses })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        if self.design.is_none() {
+            return Ok(Step::Finish(self.sample(known, &Point::new(), 1)?));
+        }
+        let design = known.one("design")?;
+        let runs = rows::rows(&*known.load(design)?, known.context)?
+            .into_iter()
+            .map(|row| Ok(Arc::new(self.sample(known, &row.point, row.replicate)?.row(row.index))))
+            .collect::<Result<Vec<_>, StageError>>()?;
+        Ok(Step::Finish(rows::gather(known, design, runs)?))
+    }
+
+    fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
+        let values = rows::values(self.material.as_ref(), point, known.context)?;
+        let values = values.into_iter().map(|(path, value)| (path.replace('.', "_"), value)).collect();
+        let params = Params { responses: self.responses.clone(), values, replicate: number };
+        Ok(Task::new("formula", json!(params)).seed(known.context.seed))
+    }
+}
+
+impl Formula {
+    /// Every name that a formula may use.
+    fn known_names(&self, context: &Context) -> Vec<String> {
+        let material = self.material.as_ref().and_then(|name| context.materials.get(name));
+        let paths = material.into_iter().flat_map(|material| material.keys().map(|path| path.replace('.', "_")));
+        context.factors.keys().cloned().chain(paths).collect()
+    }
+}
+
+impl Kind for Formula {
+    const NAME: &'static str = "formula";
+    const ABOUT: &'static str = "a stand-in simulator given by formulas of the factors";
+    const WORKS: &'static [Work] = &[Work { name: "formula", version: 1, run: evaluate }, GATHER];
+}
+
+fn evaluate(job: &Job) -> Result<Artifact, Failure> {
+    let params: Params = job.params()?;
+    let mut stream = Stream::new(job.seed.unwrap_or(0), &point_text(&params), params.replicate);
+    let mut responses = Vec::new();
+    for (name, response) in &params.responses {
+        let formula = parse(&response.value).map_err(StageError::new)?;
+        let values = formula.var_names().iter().map(|var| {
+            params.values.get(var).copied().ok_or_else(|| {
+                StageError::new(format!("response `{name}` needs `{var}`, which this point does not set"))
+                    .hint("name it as a factor of the design, or give a material that holds it")
+            })
+        });
+        let value =
+            formula.eval(&values.collect::<Result<Vec<_>, _>>()?).map_err(|e| StageError::new(e.to_string()))?;
+        responses.push((name.as_str(), value * (1.0 + response.scatter * stream.normal()), response.unit.as_str()));
+    }
+    let undefined = responses.iter().find(|(_, value, _)| !value.is_finite());
+    let failure = undefined.map_or_else(String::new, |(name, value, _)| format!("`{name}` is {value}"));
+    let root = Group::new()
+        .with("failure", Node::Text(failure))
+        .with("responses", Node::Table(rows::response_table(&responses)));
+    Ok(Artifact::new("run", 1, root))
+}
+
+/// The point as text: what the scatter of a run depends on, besides seed and replicate.
+fn point_text(params: &Params) -> String {
+    params.values.iter().map(|(name, value)| format!("{name}={value};")).collect()
+}

@@ -1,0 +1,120 @@
+//! Printed values beside computed ones: what a paper says, how far off it is, and whether that is explained.
+//!
+//! The file is a CSV with a column `response`, a column that names the line (`source` or `term`), the printed value as
+//! it was printed (its decimals count), and an optional `note` that says what is known about a print that differs.
+
+use super::{Failure, Job, StageError};
+use crate::artifact::Table;
+
+/// One printed value.
+pub(super) struct Print {
+    response: String,
+    line: String,
+    /// As printed: its decimals say how it was rounded.
+    text: String,
+    value: f64,
+    note: String,
+}
+
+/// The printed values of a job, when it has any.
+pub(super) fn prints(job: &Job, line: &str, value: &str) -> Result<Option<Vec<Print>>, Failure> {
+    if job.files.iter().any(|file| file.name == "published") {
+        Ok(Some(parse(&job.file("published")?, line, value)?))
+    } else {
+        Ok(None)
+    }
+}
+
+fn parse(bytes: &[u8], line: &str, value: &str) -> Result<Vec<Print>, StageError> {
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
+    let fail = |e: csv::Error| StageError::new(format!("published values: {e}"));
+    let heads = reader.headers().map_err(fail)?.clone();
+    let place = |name: &str| heads.iter().position(|head| head == name);
+    let needed = |name: &str| {
+        place(name).ok_or_else(|| {
+            StageError::new(format!("published values: no column `{name}`"))
+                .hint(format!("the file has columns `response`, `{line}`, `{value}` and perhaps `note`"))
+        })
+    };
+    let (response, name, print, note) = (needed("response")?, needed(line)?, needed(value)?, place("note"));
+    let mut found = Vec::new();
+    for (i, record) in reader.records().enumerate() {
+        let record = record.map_err(fail)?;
+        let cell = |at: usize| record.get(at).unwrap_or("").to_owned();
+        let text = cell(print);
+        let value = text
+            .parse()
+            .map_err(|_| StageError::new(format!("published values, row {}: `{text}` is no number", i + 1)))?;
+        let note = note.map(cell).unwrap_or_default();
+        found.push(Print { response: cell(response), line: cell(name), value, text, note });
+    }
+    Ok(found)
+}
+
+/// One computed value, and how far rounding of the data may move it.
+pub(super) struct Computed<'a> {
+    pub response: &'a str,
+    pub line: &'a str,
+    pub value: Option<f64>,
+    /// Standard deviation of the value under rounding of the responses; 0 when they are taken as they stand.
+    pub rounding: f64,
+}
+
+/// Adds `published`, `deviation` (computed minus published) and `remark` to a table of the computed values.
+///
+/// A print is met within half a unit of its last decimal, or, where the data are rounded, within that and two standard
+/// deviations of what rounding them does.
+pub(super) fn beside(table: Table, prints: &[Print], computed: &[Computed]) -> Table {
+    let own = |c: &Computed| prints.iter().find(|p| p.response == c.response && p.line == c.line);
+    let published = computed.iter().map(|c| own(c).map_or(f64::NAN, |p| p.value)).collect();
+    let off = |c: &Computed| Some(c.value? - own(c)?.value);
+    let deviation = computed.iter().map(|c| off(c).unwrap_or(f64::NAN)).collect();
+    let remark = |c: &Computed| match (own(c), off(c)) {
+        (Some(print), Some(off)) => judge(print, off.abs(), c.rounding),
+        (Some(_) | None, _) => String::new(),
+    };
+    table
+        .reals_column("published", "", "as printed", published)
+        .reals_column("deviation", "", "computed minus published", deviation)
+        .texts_column("remark", "how the two compare", computed.iter().map(remark).collect())
+}
+
+fn judge(print: &Print, off: f64, rounding: f64) -> String {
+    let decimals = print.text.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let half_unit = format!("0.5e-{decimals}").parse().unwrap_or(0.5) * (1.0 + 1e-9);
+    if off <= half_unit {
+        "as printed".to_owned()
+    } else if off <= half_unit + 2.0 * rounding {
+        "within the rounding of the printed responses".to_owned()
+    } else if print.note.is_empty() {
+        "differs from print".to_owned()
+    } else {
+        format!("differs from print: {}", print.note)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_print_is_judged_by_its_own_decimals() {
+        let prints = parse(b"response,term,estimate,note\nE,a,0.30,\nE,b,-1.5,sign\n", "term", "estimate").unwrap();
+        let computed = |line, value, rounding| Computed { response: "E", line, value: Some(value), rounding };
+        let all =
+            [computed("a", 0.3049, 0.0), computed("a", 0.31, 0.0), computed("a", 0.31, 0.003), computed("b", 1.5, 0.0)];
+        let table = beside(Table::default(), &prints, &all);
+        let crate::artifact::Values::Texts(remarks) = &table.column("remark").unwrap().values else { panic!() };
+        assert_eq!(remarks[..2], ["as printed", "differs from print"]);
+        assert_eq!(remarks[2], "within the rounding of the printed responses");
+        assert_eq!(remarks[3], "differs from print: sign");
+        assert!((table.reals("deviation").unwrap()[3] - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn faults_name_column_and_row() {
+        let message = |text: &[u8]| parse(text, "term", "estimate").err().unwrap().message;
+        assert!(message(b"response,source,f\n").contains("`term`"));
+        assert!(message(b"response,term,estimate\nE,a,x\n").contains("row 1"));
+    }
+}

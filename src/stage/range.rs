@@ -1,0 +1,107 @@
+//! `kind = "range"`: range analysis of an orthogonal table, per factor and response.
+//!
+//! The result has the table `range` (`response,factor,level_1,…,range,rank`: mean response at each level, in the unit of
+//! the response) and the table `levels` (the values that level 1, 2, … stand for).
+
+use super::columns::{Columns, Rows, Wanted, check_names, refused, runs};
+use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, Group, Node, Table};
+use crate::stats::range::{Range as Line, range_analysis};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+/// Settings of a `range` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// The stage whose runs are analysed.
+    pub table: String,
+    /// Factors to analyse; all that the table has when not given.
+    #[serde(default)]
+    pub factors: Vec<String>,
+    /// Responses to analyse; all that the table has when not given.
+    #[serde(default)]
+    pub responses: Vec<String>,
+    /// Column with the number of replicates that each row is the mean of.
+    pub weights: Option<String>,
+}
+
+impl Stage for Range {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+    }
+
+    fn gives(&self) -> &'static str {
+        "range"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        check_names(context, &self.factors, &self.responses)
+    }
+
+    fn settings(&self) -> Value {
+        json!({ "factors": self.factors, "responses": self.responses, "weights": self.weights })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let input = known.one("table")?;
+        let artifact = known.load(input)?;
+        let wanted = Wanted {
+            factors: &self.factors,
+            responses: &self.responses,
+            weights: self.weights.as_deref(),
+            levels: true,
+        };
+        let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
+        Ok(Step::Finish(Task::new("range", json!(columns)).input("table", input.content)))
+    }
+}
+
+impl Kind for Range {
+    const NAME: &'static str = "range";
+    const ABOUT: &'static str = "range analysis: mean response per level, range and rank of every factor";
+    const WORKS: &'static [Work] = &[Work { name: "range", version: 1, run: analyse }];
+}
+
+fn analyse(job: &Job) -> Result<Artifact, Failure> {
+    let columns: Columns = job.params()?;
+    let sample = columns.sample(runs(job.input("table")?)?)?;
+    let lines = range_analysis(&sample).map_err(refused)?;
+    let most = lines.iter().map(|line| line.levels.len()).max().unwrap_or(0);
+    let rows = Rows(&lines);
+    let mut range = Table { about: "mean response at each level".to_owned(), columns: Vec::new() }
+        .texts_column("response", "", rows.texts(|l| l.response.as_str()))
+        .texts_column("factor", "", rows.texts(|l| l.factor.as_str()));
+    for level in 0..most {
+        let about = format!("mean response at level {}, in its unit", level + 1);
+        range = range.reals_column(
+            &format!("level_{}", level + 1),
+            "",
+            &about,
+            rows.reals(|l| l.means.get(level).copied()),
+        );
+    }
+    range = range
+        .reals_column("range", "", "greatest mean minus least", rows.reals(|l| Some(l.range)))
+        .ints_column("rank", "1 has the largest range", rows.ints(|l| l.rank))
+        .ints_column("missing", "runs without a value", rows.ints(|l| l.missing));
+    let root =
+        Group::new().with("range", Node::Table(range)).with("levels", Node::Table(levels(&columns, &lines, most)));
+    Ok(Artifact::new("range", 1, root))
+}
+
+/// What level 1, 2, … of each factor stand for.
+fn levels(columns: &Columns, lines: &[Line], most: usize) -> Table {
+    let first = lines.first().map(|line| line.response.clone());
+    let own: Vec<&Line> = lines.iter().filter(|line| Some(&line.response) == first.as_ref()).collect();
+    let rows = Rows(&own);
+    let mut table = Table { about: "values of the levels".to_owned(), columns: Vec::new() }
+        .texts_column("factor", "", rows.texts(|l| l.factor.as_str()))
+        .texts_column("unit", "", rows.texts(|l| columns.unit_of(&l.factor)));
+    for level in 0..most {
+        let values = rows.reals(|l| l.levels.get(level).copied());
+        table = table.reals_column(&format!("level_{}", level + 1), "", "in the factor's unit", values);
+    }
+    table
+}

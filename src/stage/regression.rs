@@ -1,0 +1,130 @@
+//! `kind = "regression"`: linear models of one table, one per response.
+//!
+//! The result is an artifact `surfaces`: tables `coefficients` (natural units), `coded`, `fit`, `residuals`,
+//! `stationary`, `axes`, `domain`, `selection`, and the models that prediction needs.
+
+use super::columns::{Columns, Wanted, check_names, check_probability, runs};
+use super::fitted::{self, Fitting, Params, fit};
+use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::stats::selection::Direction;
+use crate::stats::terms::Term;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Settings of a `regression` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Regression {
+    /// The stage whose runs are fitted.
+    pub table: String,
+    /// Terms per response, such as `UCS = ["sigma_c", "tau_c"]` or `["Ec", "Ec^2", "Ec*mu"]`; the constant is in
+    /// every model. Without this table: every response of the runs on all their factors, first order.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Vec<String>>")]
+    pub terms: BTreeMap<String, Vec<Term>>,
+    /// Choose terms by significance, hierarchy kept.
+    pub select: Option<Direction>,
+    /// Level of the selection, 0.05 when not given.
+    pub select_alpha: Option<f64>,
+    /// Level of the outlier test on the studentized residuals, over all rows together.
+    #[serde(default = "outlier_alpha")]
+    pub outlier_alpha: f64,
+    /// Column with the number of replicates that each row is the mean of.
+    pub weights: Option<String>,
+    /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
+    /// compared with the fit.
+    pub published: Option<String>,
+}
+
+pub(super) fn outlier_alpha() -> f64 {
+    0.05
+}
+
+/// Complaints about the levels of selection and outlier test.
+pub(super) fn check_levels(select: Option<Direction>, select_alpha: Option<f64>, outlier: f64) -> Vec<Complaint> {
+    let without = select.is_none() && select_alpha.is_some();
+    let idle = without.then(|| {
+        Complaint::new("select_alpha", "`select_alpha` has no effect without `select`").hint("select = \"backward\"")
+    });
+    let level = select_alpha.and_then(|alpha| check_probability("select_alpha", alpha));
+    idle.into_iter().chain(level).chain(check_probability("outlier_alpha", outlier)).collect()
+}
+
+/// The factors that a list of terms names, each once.
+pub(super) fn factors_of(terms: &[Term]) -> Vec<String> {
+    let mut names: Vec<String> = terms.iter().flat_map(Term::factors).map(str::to_owned).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// The terms with the constant in front.
+pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
+    let rest = terms.iter().filter(|t| t.degree() > 0).cloned();
+    std::iter::once(Term::constant()).chain(rest).collect()
+}
+
+impl Stage for Regression {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+    }
+
+    fn gives(&self) -> &'static str {
+        "surfaces"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = Vec::new();
+        for (response, terms) in &self.terms {
+            let own = check_names(context, &factors_of(terms), std::slice::from_ref(response));
+            found.extend(own.into_iter().map(|c| Complaint { path: vec!["terms".into(), response.clone()], ..c }));
+        }
+        found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
+        found
+    }
+
+    fn settings(&self) -> Value {
+        let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
+        json!({ "terms": self.terms, "select": select, "weights": self.weights, "published": self.published })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let input = known.one("table")?;
+        let artifact = known.load(input)?;
+        let table = runs(&artifact)?;
+        let one = |response: &str, terms: Option<&Vec<Term>>| {
+            let factors = terms.map(|terms| factors_of(terms)).unwrap_or_default();
+            let responses = [response.to_owned()];
+            let weights = self.weights.as_deref();
+            let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false };
+            let columns = Columns::of(table, known.context, wanted)?;
+            let terms = terms.map_or_else(|| Term::first_order(&columns.factor_names()), |terms| with_constant(terms));
+            Ok(Fitting { response: response.to_owned(), input: "table".to_owned(), columns, terms })
+        };
+        let fittings: Result<Vec<Fitting>, StageError> = if self.terms.is_empty() {
+            let all = Columns::of(table, known.context, Wanted::default())?;
+            all.response_names().iter().map(|response| one(response, None)).collect()
+        } else {
+            self.terms.iter().map(|(response, terms)| one(response, Some(terms))).collect()
+        };
+        let params = Params {
+            fittings: fittings?,
+            select: self.select,
+            select_alpha: self.select.map(|_| self.select_alpha.unwrap_or(fitted::SELECT_ALPHA)),
+            outlier_alpha: self.outlier_alpha,
+        };
+        let mut task = Task::new("fit", json!(params)).input("table", input.content);
+        if let Some(path) = &self.published {
+            task.files.push(known.library.file("published", path)?);
+        }
+        Ok(Step::Finish(task))
+    }
+}
+
+impl Kind for Regression {
+    const NAME: &'static str = "regression";
+    const ABOUT: &'static str = "linear regression of responses on factors, from one table";
+    const WORKS: &'static [Work] = &[Work { name: "fit", version: 1, run: fit }];
+}

@@ -1,0 +1,141 @@
+//! `kind = "rsm"`: second-order response surfaces, each response from its own table or all from one.
+//!
+//! The result is an artifact `surfaces`, as [`super::regression`] gives it.
+
+use super::columns::{Columns, Wanted, check_names, runs};
+use super::fitted::{self, Fitting, Params};
+use super::regression::{check_levels, factors_of, outlier_alpha, with_constant};
+use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::stats::selection::Direction;
+use crate::stats::terms::Term;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Settings of an `rsm` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rsm {
+    /// The stages whose runs are fitted: one per response, in the same order, or one for all.
+    pub tables: Vec<String>,
+    /// The responses.
+    pub responses: Vec<String>,
+    /// Terms of a response; without an entry the full second order in the factors that its table varies.
+    #[serde(default)]
+    #[schemars(with = "BTreeMap<String, Vec<String>>")]
+    pub terms: BTreeMap<String, Vec<Term>>,
+    /// Choose terms by significance, hierarchy kept.
+    pub select: Option<Direction>,
+    /// Level of the selection, 0.05 when not given.
+    pub select_alpha: Option<f64>,
+    /// Level of the outlier test on the studentized residuals, over all rows together.
+    #[serde(default = "outlier_alpha")]
+    pub outlier_alpha: f64,
+    /// Column with the number of replicates that each row is the mean of.
+    pub weights: Option<String>,
+    /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
+    /// compared with the fit.
+    pub published: Option<String>,
+}
+
+impl Stage for Rsm {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port { key: "tables", stages: self.tables.clone(), accepts: &["results"] }]
+    }
+
+    fn gives(&self) -> &'static str {
+        "surfaces"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = check_names(context, &[], &self.responses);
+        if self.responses.is_empty() {
+            found.push(Complaint::new("responses", "no response is named").hint("responses = [\"UCS\"]"));
+        }
+        if self.tables.len() != 1 && self.tables.len() != self.responses.len() {
+            let message = format!("{} tables for {} responses", self.tables.len(), self.responses.len());
+            found.push(
+                Complaint::new("tables", message).hint("one table per response in the same order, or one for all"),
+            );
+        }
+        for (i, response) in self.responses.iter().enumerate() {
+            if self.responses[..i].contains(response) {
+                found.push(Complaint::new("responses", format!("`{response}` is listed twice")));
+            }
+        }
+        for (response, terms) in &self.terms {
+            let path = vec!["terms".to_owned(), response.clone()];
+            let own = check_names(context, &factors_of(terms), &[]);
+            found.extend(own.into_iter().map(|c| Complaint { path: path.clone(), ..c }));
+            if !self.responses.contains(response) {
+                let message = format!("`{response}` is none of the stage's responses, so its terms have no effect");
+                found.push(Complaint { path, message, hint: None });
+            }
+        }
+        found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
+        found
+    }
+
+    fn settings(&self) -> Value {
+        let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
+        let what = json!({ "responses": self.responses, "terms": self.terms });
+        json!({ "fit": what, "select": select, "weights": self.weights, "published": self.published })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let inputs: Vec<_> = known.port("tables").collect();
+        let mut fittings = Vec::new();
+        let mut task = Task::new("fit", Value::Null);
+        for (i, response) in self.responses.iter().enumerate() {
+            let input = inputs.get(i.min(inputs.len().saturating_sub(1)));
+            let input = input.ok_or_else(|| StageError::new("`tables` names no stage"))?;
+            let artifact = known.load(input)?;
+            fittings.push(self.fitting(response, runs(&artifact)?, known.context)?);
+            task = task.input(response, input.content);
+        }
+        let params = Params {
+            fittings,
+            select: self.select,
+            select_alpha: self.select.map(|_| self.select_alpha.unwrap_or(fitted::SELECT_ALPHA)),
+            outlier_alpha: self.outlier_alpha,
+        };
+        task.params = json!(params);
+        if let Some(path) = &self.published {
+            task.files.push(known.library.file("published", path)?);
+        }
+        Ok(Step::Finish(task))
+    }
+}
+
+impl Rsm {
+    /// The model of one response: its own terms, or second order in what its table varies.
+    fn fitting(
+        &self,
+        response: &str,
+        table: &crate::artifact::Table,
+        context: &Context,
+    ) -> Result<Fitting, StageError> {
+        let own = self.terms.get(response);
+        let factors = own.map(|terms| factors_of(terms)).unwrap_or_default();
+        let responses = [response.to_owned()];
+        let weights = self.weights.as_deref();
+        let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false };
+        let columns = Columns::of(table, context, wanted)?;
+        let varied = |name: &String| {
+            let values = table.reals(name).unwrap_or_default();
+            values.iter().any(|v| *v != values[0])
+        };
+        let terms = match own {
+            Some(terms) => with_constant(terms),
+            None => Term::second_order(&columns.factor_names().into_iter().filter(varied).collect::<Vec<_>>()),
+        };
+        Ok(Fitting { response: response.to_owned(), input: response.to_owned(), columns, terms })
+    }
+}
+
+impl Kind for Rsm {
+    const NAME: &'static str = "rsm";
+    const ABOUT: &'static str = "second-order response surfaces with canonical analysis";
+    const WORKS: &'static [Work] = &[];
+}

@@ -1,0 +1,132 @@
+//! `kind = "screening"`: effects of a two-level design, judged by Lenth's limits where nothing else estimates the noise.
+//!
+//! The result has the tables `effects` (one row per response and term, with the coordinates of normal, half-normal and
+//! Pareto plots), `limits` (pseudo standard error and margins), `fit` and `residuals`.
+
+use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
+use super::fitted::{fit_table, residual_table};
+use super::regression::factors_of;
+use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, Group, Node, Table};
+use crate::stats::screening::{Effect, Screening as Found, screen};
+use crate::stats::terms::Term;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+/// Settings of a `screening` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Screening {
+    /// The stage whose runs are analysed.
+    pub table: String,
+    /// Responses to analyse; all that the table has when not given.
+    #[serde(default)]
+    pub responses: Vec<String>,
+    /// Terms whose effects are estimated, such as `["A", "B", "A*B"]`; the main effects when not given.
+    #[serde(default)]
+    #[schemars(with = "Vec<String>")]
+    pub terms: Vec<Term>,
+    /// Level of the margins of error.
+    #[serde(default = "alpha")]
+    pub alpha: f64,
+}
+
+fn alpha() -> f64 {
+    0.05
+}
+
+#[derive(Serialize, Deserialize)]
+struct Params {
+    columns: Columns,
+    terms: Vec<Term>,
+    alpha: f64,
+}
+
+impl Stage for Screening {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+    }
+
+    fn gives(&self) -> &'static str {
+        "screening"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = check_names(context, &[], &self.responses);
+        let terms = check_names(context, &factors_of(&self.terms), &[]);
+        found.extend(terms.into_iter().map(|c| Complaint { path: vec!["terms".to_owned()], ..c }));
+        found.extend(check_probability("alpha", self.alpha));
+        found
+    }
+
+    fn settings(&self) -> Value {
+        json!({ "responses": self.responses, "terms": self.terms, "alpha": self.alpha })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let input = known.one("table")?;
+        let artifact = known.load(input)?;
+        let factors = factors_of(&self.terms);
+        let wanted = Wanted { factors: &factors, responses: &self.responses, weights: None, levels: false };
+        let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
+        let terms = if self.terms.is_empty() { Term::first_order(&columns.factor_names()) } else { self.terms.clone() };
+        let params = Params { columns, terms, alpha: self.alpha };
+        Ok(Step::Finish(Task::new("screening", json!(params)).input("table", input.content)))
+    }
+}
+
+impl Kind for Screening {
+    const NAME: &'static str = "screening";
+    const ABOUT: &'static str = "effects of a two-level design with Lenth's limits";
+    const WORKS: &'static [Work] = &[Work { name: "screening", version: 1, run: analyse }];
+}
+
+fn analyse(job: &Job) -> Result<Artifact, Failure> {
+    let params: Params = job.params()?;
+    let sample = params.columns.sample(runs(job.input("table")?)?)?;
+    let responses = params.columns.response_names();
+    let one = |response: &String| screen(&sample, response, &params.terms, params.alpha).map_err(refused);
+    let found = responses.iter().map(one).collect::<Result<Vec<Found>, StageError>>()?;
+    let residuals = found.iter().map(|s| (s.response.as_str(), s.regression.residuals.as_slice()));
+    let fits: Vec<_> = found.iter().map(|s| &s.regression.fit).collect();
+    let root = Group::new()
+        .with("effects", Node::Table(effect_table(&found)))
+        .with("limits", Node::Table(limit_table(&found)))
+        .with("fit", Node::Table(fit_table(&fits)))
+        .with("residuals", Node::Table(residual_table(residuals)));
+    Ok(Artifact::new("screening", 1, root))
+}
+
+fn effect_table(found: &[Found]) -> Table {
+    let all: Vec<(&str, &Effect)> =
+        found.iter().flat_map(|s| s.effects.iter().map(|e| (s.response.as_str(), e))).collect();
+    let rows = Rows(&all);
+    let verdict = |(_, e): &(&str, &Effect)| match (e.beyond_margin, e.beyond_simultaneous) {
+        (true, true) => "beyond both margins",
+        (true, false) => "beyond the margin of error",
+        (false, _) => "",
+    };
+    Table { about: "effects: mean at the high level minus mean at the low one".to_owned(), columns: Vec::new() }
+        .texts_column("response", "", rows.texts(|(response, _)| *response))
+        .texts_column("term", "", rows.texts(|(_, e)| e.term.as_str()))
+        .reals_column("effect", "", "in the unit of the response", rows.reals(|(_, e)| Some(e.effect)))
+        .reals_column("std_error", "", "where the design leaves degrees of freedom", rows.reals(|(_, e)| e.std_error))
+        .reals_column("p", "", "with that standard error", rows.reals(|(_, e)| e.p))
+        .reals_column("lenth_t", "", "effect over the pseudo standard error", rows.reals(|(_, e)| e.lenth_t))
+        .ints_column("rank", "1 is the largest in size", rows.ints(|(_, e)| e.rank))
+        .reals_column("share", "", "of the sum of squared effects", rows.reals(|(_, e)| Some(e.share)))
+        .reals_column("cumulative", "", "share of this and all larger effects", rows.reals(|(_, e)| Some(e.cumulative)))
+        .reals_column("normal", "", "abscissa of the normal plot", rows.reals(|(_, e)| Some(e.normal)))
+        .reals_column("half_normal", "", "abscissa of the half-normal plot", rows.reals(|(_, e)| Some(e.half_normal)))
+        .texts_column("verdict", "against Lenth's margins", rows.texts(verdict))
+}
+
+fn limit_table(found: &[Found]) -> Table {
+    let rows = Rows(found);
+    Table { about: "Lenth's limits".to_owned(), columns: Vec::new() }
+        .texts_column("response", "", rows.texts(|s| s.response.as_str()))
+        .reals_column("pse", "", "pseudo standard error", rows.reals(|s| s.pse))
+        .reals_column("margin", "", "margin of error", rows.reals(|s| s.margin))
+        .reals_column("simultaneous", "", "simultaneous margin of error", rows.reals(|s| s.simultaneous))
+}

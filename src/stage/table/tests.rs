@@ -1,0 +1,82 @@
+use super::*;
+use crate::artifact::Table as Data;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+fn anova(kind: &str, f: [f64; 3]) -> Arc<Artifact> {
+    let words = |w: [&str; 3]| w.map(String::from).to_vec();
+    let table = Data::default()
+        .texts_column("response", "", words(["UCS", "UCS", "E"]))
+        .texts_column("source", "", words(["Ec", "error", "Ec"]))
+        .ints_column("df", "", vec![2, 36, 2])
+        .reals_column("F", "", "", f.to_vec());
+    Arc::new(Artifact::new(kind, 1, Group::new().with("anova", Node::Table(table))))
+}
+
+fn run(params: Value, inputs: &[(&str, Arc<Artifact>)]) -> Result<Artifact, Failure> {
+    let inputs: Vec<(String, Arc<Artifact>)> = inputs.iter().map(|(n, a)| ((*n).to_owned(), a.clone())).collect();
+    let (stop, say) = (AtomicBool::new(false), |_: crate::stage::Progress| ());
+    let job = Job {
+        params: &params,
+        seed: None,
+        inputs: &inputs,
+        files: &[],
+        threads: 1,
+        time_limit: None,
+        say: &say,
+        stop: &stop,
+    };
+    print(&job)
+}
+
+fn text(artifact: &Artifact, name: &str) -> String {
+    match artifact.root.get(name) {
+        Some(Node::Text(text)) => text.clone(),
+        _ => panic!("no text {name}"),
+    }
+}
+
+#[test]
+fn rows_and_columns_are_chosen_and_heads_have_symbols() {
+    let params = json!({
+        "columns": ["source", "F"], "only": { "response": "UCS" }, "digits": 3, "symbols": { "F": "F_{2,36}" },
+    });
+    let made = run(params, &[("from", anova("anova", [3003.4242, f64::NAN, 1.0]))]).unwrap();
+    assert_eq!(text(&made, "csv"), "source,F\nEc,3003.4242\nerror,\n");
+    assert_eq!(text(&made, "markdown"), "| source | $F_{2,36}$ |\n| :-- | --: |\n| Ec | 3003 |\n| error | – |\n");
+    assert!(text(&made, "latex").contains("source & $F_{2,36}$ \\\\\n\\midrule\nEc & 3003 \\\\\nerror & -- \\\\"));
+    assert_eq!(made.table("table").unwrap().reals("F").unwrap()[0], 3003.4242);
+}
+
+#[test]
+fn published_values_stand_beside_ours_with_the_deviation() {
+    let params = json!({ "by": ["response", "source"], "digits": 4 });
+    let ours = anova("anova", [110.0, 2.0, 50.0]);
+    let made = run(params, &[("from", ours), ("compare", anova("results", [100.0, f64::NAN, 50.0]))]).unwrap();
+    let table = made.table("table").unwrap();
+    assert_eq!(table.reals("F published").unwrap()[..1], [100.0]);
+    let deviation = table.reals("F deviation").unwrap();
+    assert!((deviation[0] - 10.0).abs() < 1e-9 && deviation[1].is_nan() && deviation[2] == 0.0);
+    assert!(text(&made, "markdown").contains("| UCS | Ec | 2 | 110 | 100 | 10.0 |"));
+}
+
+#[test]
+fn several_stages_are_stacked() {
+    let params = json!({ "columns": ["source"], "digits": 4, "stages": ["a", "b"] });
+    let one = anova("anova", [1.0; 3]);
+    let made = run(params, &[("from", one.clone()), ("from", one)]).unwrap();
+    assert_eq!(text(&made, "csv").lines().nth(4), Some("b,Ec"));
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let said = |params: Value| match run(params, &[("from", anova("anova", [1.0; 3]))]) {
+        Err(Failure::Failed(error)) => format!("{} ({})", error.message, error.hint.unwrap_or_default()),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(
+        said(json!({ "columns": ["f"], "digits": 4 })),
+        "the table has no column `f` (it has response, source, df, F)"
+    );
+    assert_eq!(said(json!({ "table": "x", "digits": 4 })), "the artifact `anova` holds no table `x` (it holds anova)");
+}

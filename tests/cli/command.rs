@@ -1,0 +1,90 @@
+//! External programs as a stage: what they need, what they leave, and every way they go wrong.
+
+use crate::space::{Space, told};
+
+/// A workflow with one external program, given by its lines of shell.
+fn space(script: &str, more: &str) -> Space {
+    let space = Space::new();
+    space.write("engine.sh", script);
+    space.write(
+        "w.toml",
+        &format!(
+            r#"
+[workflow]
+seed = 7
+[material.base]
+mortar = {{ Ec = "20 GPa", mu = 0.5 }}
+[response]
+UCS = {{ unit = "MPa" }}
+[stage.trial]
+kind = "command"
+run = ["sh", "engine.sh"]
+material = "base"
+templates = {{ "engine.sh" = "engine.sh" }}
+{more}
+read.UCS = {{ file = "out.csv", column = "UCS", unit = "Pa" }}
+"#
+        ),
+    );
+    space
+}
+
+#[test]
+fn a_program_gets_its_parameters_and_its_table_is_read() {
+    let space = space("printf 'UCS\\n{{mortar.Ec}}\\n' > out.csv", "");
+    space.run(&[]).expect(&[("trial", 1)]);
+    let table = space.stdout(&["show", "w.toml", "trial", "--csv", "--table", "responses"]);
+    assert_eq!(table, "response,value,unit\nUCS,20000000000,Pa\n");
+    space.run(&[]).expect(&[]);
+}
+
+#[test]
+fn a_changed_template_parameter_or_command_runs_again_and_a_changed_limit_does_not() {
+    let space = space("printf 'UCS\\n{{mortar.Ec}}\\n' > out.csv", "time_limit = \"20 s\"");
+    space.run(&[]).expect(&[("trial", 1)]);
+    space.run(&["--set", "stage.trial.time_limit=30 s"]).expect(&[]);
+    space.run(&["--set", "material.base.mortar.Ec=21 GPa"]).expect(&[("trial", 1)]);
+    space.run(&["--set", "stage.trial.environment.LEVEL=2"]).expect(&[("trial", 1)]);
+    space.write("engine.sh", "printf 'UCS\\n1\\n' > out.csv # {{seed}}");
+    space.run(&[]).expect(&[("trial", 1)]);
+}
+
+#[test]
+fn each_way_to_fail_is_told_and_not_kept() {
+    for (script, more, message) in [
+        ("echo broken beam >&2; exit 3", "", "exit status: 3"),
+        ("exit 3", "", "it said nothing"),
+        ("sleep 60", "time_limit = \"0.2 s\"", "longer than its limit of 0.2 s"),
+        ("echo nothing", "", "the program left no file `out.csv`"),
+        ("echo '{' > out.csv", "", "no column `UCS`"),
+        ("printf 'UCS\\nmany\\n' > out.csv", "", "`many` is not a number"),
+        ("printf 'UCS\\nNaN\\n' > out.csv", "", "not a finite number"),
+        ("echo {{mortar.E}}", "", "`mortar.E` is not a value of this run"),
+        ("head -c 100 /dev/urandom > out.csv", "", "out.csv"),
+    ] {
+        let space = space(script, more);
+        let output = space.flow(&["run", "w.toml"]);
+        assert_eq!(output.status.code(), Some(1), "{script}: {}", told(&output));
+        assert!(told(&output).contains(message), "{script}: wanted `{message}` in {}", told(&output));
+        assert!(told(&output).contains("again: flow run w.toml trial"), "{}", told(&output));
+        assert!(space.objects().is_empty(), "{script}: a failed run was kept");
+    }
+}
+
+#[test]
+fn a_recorded_failure_is_a_result_with_its_reason() {
+    let space = space("exit 3", "on_failure = \"record\"");
+    space.run(&[]).expect(&[("trial", 1)]);
+    space.run(&[]).expect(&[]);
+    let shown = space.stdout(&["show", "w.toml", "trial"]);
+    assert!(shown.contains("exit status: 3"), "{shown}");
+}
+
+#[test]
+fn what_the_program_started_ends_with_it() {
+    let space = space("sleep 300 & echo $! > pid; sleep 300", "time_limit = \"0.3 s\"");
+    let started = std::time::Instant::now();
+    let output = space.flow(&["run", "w.toml"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(started.elapsed().as_secs() < 60, "the run waited for what its program left behind");
+}

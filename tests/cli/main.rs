@@ -1,0 +1,6 @@
+//! The binary in a temporary folder: write a file, run a command, read what it says.
+
+mod command;
+mod faults;
+mod reruns;
+mod space;
