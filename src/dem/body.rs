@@ -31,15 +31,15 @@ pub(crate) struct Rigid<S: Space> {
     /// Inertia and its inverse in the clump's frame.
     pub(crate) inertia: [[f64; 3]; 3],
     pub(crate) inverse: [[f64; 3]; 3],
-    /// Weight, N.
-    pub(crate) weight: Vector<S>,
+    /// Weight and applied load: force, N, and moment, N·m.
+    pub(crate) weight: (Vector<S>, Spin<S>),
 }
 
 impl<S: Space> Rigid<S> {
     /// Resultant of the pebbles' loads in the order of the pebbles; the loads are cleared.
     #[inline(always)]
     pub(crate) fn collect(&self, rows: &impl Rows, loads: &mut [Quad]) -> (Vector<S>, Spin<S>) {
-        let (mut force, mut moment) = (self.weight, Spin::<S>::zero());
+        let (mut force, mut moment) = self.weight;
         for p in self.pebbles.clone() {
             let load = &mut loads[p * S::LOADS..(p + 1) * S::LOADS];
             let (f, m) = split::<S>(load);
@@ -52,8 +52,8 @@ impl<S: Space> Rigid<S> {
         (force, moment)
     }
 
-    /// One step under a resultant.
-    pub(crate) fn advance(&mut self, force: Vector<S>, moment: Spin<S>, damping: f64, dt: f64) {
+    /// One step under a resultant; returns the work of local damping, J.
+    pub(crate) fn advance(&mut self, force: Vector<S>, moment: Spin<S>, damping: f64, dt: f64) -> f64 {
         let velocity = self.velocity;
         let push = Vector::<S>::build(|k| damped(force.at(k), velocity.at(k), damping));
         self.velocity = velocity.plus(push.times(1.0 / self.mass).times(dt));
@@ -65,6 +65,9 @@ impl<S: Space> Rigid<S> {
         let middle = S::turn_on(self.turn, early.times(0.5 * dt));
         self.spin = S::spin_of(middle, &self.inverse, self.momentum);
         self.turn = S::turn_on(self.turn, self.spin.times(dt));
+        let shift = force.minus(push).dot(velocity.plus(self.velocity));
+        let turn = moment.minus(twist).dot(spin.plus(self.spin));
+        0.5 * dt * (shift + turn)
     }
 
     /// Writes the pebbles' records; returns the largest speed components.
@@ -140,7 +143,7 @@ pub(crate) fn set_kinematics<S: Space>(record: &mut [Quad], x: Vector<S>, v: Vec
         record[0].0[k] = x.at(k);
         record[1].0[k] = v.at(k);
     }
-    for k in 0..(if S::DIMENSION == 2 { 1 } else { 3 }) {
+    for k in 0..S::Spin::<f64>::LENGTH {
         record[1 + row].0[first + k] = w.at(k);
     }
 }

@@ -54,6 +54,9 @@
 //! The normal of a contact points from its first end outwards; forces of a [`Contact`] act on the first end; a wall's force
 //! is what the balls do to it; stress and pressure of walls are positive in compression; gaps are positive when open.
 
+// Loops over axes and tensor components read better with their index.
+#![allow(clippy::needless_range_loop)]
+
 mod body;
 pub mod boundary;
 mod contact;

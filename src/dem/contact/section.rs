@@ -3,7 +3,7 @@
 //! The order of contacts (class, wall, i, j) decides the order of every sum, so it depends on nothing but the contacts.
 
 use crate::dem::interaction::Bond;
-use crate::dem::law::{KN, REFERENCE, Rows};
+use crate::dem::law::{KN, LEDGER, REFERENCE, Rows};
 use crate::dem::simd::{Row, WIDEST};
 use crate::dem::space::Space;
 use std::ops::Range;
@@ -54,6 +54,8 @@ pub(crate) struct Section {
     pub(crate) rows: Vec<Row>,
     /// Force on the wall, `DIMENSION` rows a block; empty between particles.
     pub(crate) reactions: Vec<Row>,
+    /// What the contacts have spent, `LEDGER` rows a block; empty unless a run keeps the books.
+    pub(crate) ledger: Vec<Row>,
 }
 
 impl Section {
@@ -67,7 +69,16 @@ impl Section {
             block[Rows::<S>::COHESION] = Row([f64::INFINITY; WIDEST]);
         }
         let reactions = if wall.is_some() { vec![Row::default(); blocks * S::DIMENSION] } else { Vec::new() };
-        Self { class, wall, count: contacts, own_from: 0, ends: vec![dummy; blocks], rows, reactions }
+        Self {
+            class,
+            wall,
+            count: contacts,
+            own_from: 0,
+            ends: vec![dummy; blocks],
+            rows,
+            reactions,
+            ledger: Vec::new(),
+        }
     }
 
     /// Its place in the order of sections.
@@ -105,6 +116,18 @@ impl Section {
         self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
     }
 
+    /// Opens the books.
+    pub(crate) fn open_ledger(&mut self) {
+        self.ledger = vec![Row::default(); self.ends.len() * LEDGER];
+    }
+
+    /// Adds one row of the ledger of some contacts to `sum`, one by one: the order of the list decides the bits.
+    pub(crate) fn add_spent(&self, row: usize, contacts: Range<usize>, sum: &mut f64) {
+        for c in contacts {
+            *sum += self.ledger.get(c / WIDEST * LEDGER + row).map_or(0.0, |r| r.0[c % WIDEST]);
+        }
+    }
+
     /// Copies contact `c` out.
     pub(crate) fn pack<S: Space>(&self, c: usize, into: &mut Packed) {
         into.keys.push((self.key(c), self.class as u32));
@@ -122,6 +145,12 @@ pub(crate) struct Packed {
 }
 
 impl Packed {
+    /// Empty, with room for `contacts`.
+    pub(crate) fn with_capacity<S: Space>(contacts: usize) -> Self {
+        let (keys, values) = (Vec::with_capacity(contacts), Vec::with_capacity(contacts * Rows::<S>::COUNT));
+        Self { keys, values }
+    }
+
     /// Adds a fresh, unbonded contact.
     pub(crate) fn push_new<S: Space>(&mut self, key: Key, class: u32, kn: f64) {
         self.keys.push((key, class));

@@ -1,7 +1,9 @@
 //! The one contact loop: geometry, law, loads, for every block of a section.
 
 use super::section::{LawKind, Section};
-use crate::dem::law::{Constants, ContactBondLaw, KN, Law, LinearLaw, ParallelBondLaw, Rows, Viscous};
+use crate::dem::law::{
+    BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Rows, Viscous,
+};
 use crate::dem::simd::{Lane, Quad, Row, WIDEST};
 use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
 
@@ -111,10 +113,14 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
                 Some(face) => wall_touch(&i, face, dt),
             };
             let drag = viscous.then(|| drag(constants, task, first, face.is_none().then_some(second), rows, at));
-            let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at);
+            let mut ledger = Ledger(section.ledger.get_mut(b * LEDGER..(b + 1) * LEDGER));
+            let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at, &mut ledger);
             match face {
                 None => S::push_both(loads, [first, second], &touch, &load),
-                Some(_) => {
+                Some(face) => {
+                    if ledger.open() {
+                        ledger.charge(BOUNDARY, at, wall_work(face, task.dt, &touch, &load));
+                    }
                     S::push_one(loads, first, &touch, &load);
                     react(&mut section.reactions[b * S::DIMENSION..], at, &touch, &load);
                 }
@@ -151,6 +157,13 @@ fn drag<L: Lane>(
         normal: L::splat(2.0 * constants.dashpot[0] / task.dt) * critical,
         shear: L::splat(2.0 * constants.dashpot[1] / task.dt) * shear,
     }
+}
+
+/// Work of a moving wall on the ball, J.
+#[inline(always)]
+fn wall_work<S: Space, L: Lane>(face: &Face<S>, dt: f64, touch: &Touch<S, L>, load: &Load<S, L>) -> L {
+    let way = face.velocity.times(dt);
+    S::force(touch, load).dot(S::Vector::<L>::build(|k| L::splat(way.at(k))))
 }
 
 /// Keeps the force on the wall.

@@ -1,6 +1,6 @@
 //! One contact as a caller sees it.
 
-use crate::dem::space::{Space, Spin, Vector};
+use crate::dem::space::{Space, Spin, Tuple, Vector};
 
 /// The other end of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,20 +32,42 @@ pub struct Contact<S: Space> {
     pub bonded: bool,
     /// Whether it can carry force now: bonded, or the spring is compressed.
     pub active: bool,
-    /// Normal stiffness of the linear spring, N/m.
-    pub kn: f64,
+    /// Normal and shear stiffness of the linear spring, N/m.
+    pub stiffness: [f64; 2],
+    /// Normal and shear stiffness of the bond, N/m; 0 without a parallel bond.
+    pub bond_stiffness: [f64; 2],
+    /// I/A of the bond's section, m².
+    pub gyration: f64,
     /// Force of the linear spring, N.
     pub spring: Vector<S>,
     /// Force of the bond, N.
     pub cement: Vector<S>,
     /// Moment of the bond, N·m.
     pub moment: Spin<S>,
+    /// Its part about the normal (solid only), N·m.
+    pub twist: f64,
 }
 
 impl<S: Space> Contact<S> {
     /// Whole force on the first end, N.
     pub fn force(&self) -> Vector<S> {
-        use crate::dem::space::Tuple;
         self.spring.plus(self.cement)
+    }
+
+    /// Strain energy of the spring and of the bond, J.
+    pub fn strain_energy(&self) -> [f64; 2] {
+        let half = |square: f64, stiffness: f64| if stiffness > 0.0 { 0.5 * square / stiffness } else { 0.0 };
+        let parts = |force: Vector<S>| {
+            let normal = force.dot(self.normal);
+            (normal * normal, (force.dot(force) - normal * normal).max(0.0))
+        };
+        let ([kn, ks], [bn, bs]) = (self.stiffness, self.bond_stiffness);
+        let (normal, shear) = parts(self.spring);
+        let spring = half(normal, kn) + half(shear, ks);
+        let (normal, shear) = parts(self.cement);
+        let twist = self.twist * self.twist;
+        let bend = (self.moment.dot(self.moment) - twist).max(0.0);
+        let turning = half(bend, bn * self.gyration) + half(twist, 2.0 * bs * self.gyration);
+        [spring, half(normal, bn) + half(shear, bs) + turning]
     }
 }

@@ -64,7 +64,12 @@ impl<S: Space> Engine<S> {
         self.groups[self.place[particle] as usize]
     }
 
-    /// Mass of a particle that belongs to no clump, as it moves, kg.
+    /// Mass and inertia that move a ball: its own, or those of [`super::Masses::EqualStep`].
+    pub fn moving_mass(&self, particle: usize) -> [f64; 2] {
+        self.moving[self.place[particle] as usize]
+    }
+
+    /// Mass of a particle that belongs to no clump, kg.
     pub fn mass(&self, particle: usize) -> f64 {
         self.masses[self.place[particle] as usize]
     }
@@ -100,6 +105,12 @@ impl<S: Space> Engine<S> {
             mass: rigid.mass,
             inertia: S::turned_inertia(rigid.turn, &rigid.inertia),
         }
+    }
+
+    /// The constant force that [`apply`](Engine::apply) put on the body of a particle, N.
+    pub fn applied_force(&self, particle: usize) -> Vector<S> {
+        let p = self.place[particle] as usize;
+        self.applied.get(&p).map_or(Vector::<S>::zero(), |load| load.0)
     }
 
     /// Centre of mass of a clump, m.
@@ -188,6 +199,9 @@ impl<S: Space> Engine<S> {
         };
         let spring = Load::<S, f64> { normal: -push, shear: shear(SHEAR), ..cement };
         let touch = Touch::<S, f64>::still(normal, gap);
+        let constants = &self.classes[section.class].constants;
+        let [first, second] = self.contact_radii(key);
+        let bond_radius = constants.multiplier * first.min(second);
         Contact {
             particle: self.caller[i] as usize,
             other: if key.at_wall { Other::Wall(j) } else { Other::Particle(self.caller[j] as usize) },
@@ -198,10 +212,13 @@ impl<S: Space> Engine<S> {
             reference: value(REFERENCE),
             bonded,
             active: bonded || overlap > 0.0,
-            kn: value(KN),
+            stiffness: [value(KN), value(KN) * constants.shear_share],
+            bond_stiffness: [value(Rows::<S>::BOND), value(Rows::<S>::BOND) * constants.bond_share],
+            gyration: S::GYRATION * bond_radius * bond_radius,
             spring: S::force(&touch, &spring),
             cement: S::force(&touch, &cement),
             moment: S::bond_moment(&touch, &cement),
+            twist: cement.twist,
         }
     }
 }

@@ -14,7 +14,8 @@ impl<S: Space> Engine<S> {
     /// spring's shear force is dropped with its overlap. Strengths are drawn per contact from N(mean, deviation),
     /// negative ones again, from the stream "bond strength" of `seed`, contacts in the caller's order.
     pub fn install_bonds(&mut self, gap: f64, seed: u64) -> usize {
-        self.margin = self.margin.max(1.01 * gap);
+        // Bonded bodies move little: begin with a narrow list.
+        self.margin = (0.02 * self.smallest_radius).max(1.01 * gap);
         self.relist();
         let mut listed = self.packed();
         let near = |k: &usize| {

@@ -1,7 +1,7 @@
 //! From a model to an engine.
 
 use super::{Class, Engine, Model, MovingWall};
-use crate::dem::body::{Rigid, set_kinematics};
+use crate::dem::body::{Rigid, set_kinematics, spin_place};
 use crate::dem::boundary::{Motion, Wall};
 use crate::dem::contact::{Face, LawKind};
 use crate::dem::error::Faults;
@@ -10,7 +10,8 @@ use crate::dem::law::Constants;
 use crate::dem::neighbour::morton_order;
 use crate::dem::particle::Clump;
 use crate::dem::simd::{Quad, Same, Table, Width};
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::dem::space::{Space, Spin, Tuple, Vector};
+use std::collections::BTreeMap;
 
 /// A body of its own, in `bodies`.
 const NO_CLUMP: u32 = u32::MAX;
@@ -64,6 +65,7 @@ impl<S: Space> Engine<S> {
             inertias: Vec::with_capacity(n),
             moving: Vec::with_capacity(n),
             fixed: vec![[false; 2]; n],
+            applied: BTreeMap::new(),
             records: Table::new((n + 2) * S::RECORD),
             spare: Table::default(),
             inverse: Table::new(n * S::LOADS),
@@ -86,6 +88,7 @@ impl<S: Space> Engine<S> {
             dt: 0.0,
             step: 0,
             epoch: (0.0, 0),
+            books: None,
         }
     }
 
@@ -131,7 +134,7 @@ impl<S: Space> Engine<S> {
                 mass: clump.mass,
                 inertia: clump.inertia,
                 inverse: S::inverse_inertia(&clump.inertia).unwrap_or_default(),
-                weight: Vector::<S>::zero(),
+                weight: (Vector::<S>::zero(), Spin::<S>::zero()),
             };
             rigid.set_motion(clump.velocity, clump.spin);
             rigid.place(&mut Same(&mut self.records));
@@ -139,14 +142,11 @@ impl<S: Space> Engine<S> {
         }
     }
 
-    /// Inverse masses and weights, from masses, fixed components and gravity.
+    /// Inverse masses from the moving masses and the fixed components, and the weights.
     pub(super) fn set_inverse_masses(&mut self) {
-        let n = self.caller.len();
-        let heavy = self.settings.gravity.norm() > 0.0;
-        self.weights = if heavy { vec![Quad::default(); n * S::LOADS] } else { Vec::new() };
-        let (row, first) = crate::dem::body::spin_place::<S>();
-        let spins = if S::DIMENSION == 2 { 1 } else { 3 };
-        for p in 0..n {
+        let (row, first) = spin_place::<S>();
+        let spins = first..first + S::Spin::<f64>::LENGTH;
+        for p in 0..self.caller.len() {
             let inverse = &mut self.inverse[p * S::LOADS..(p + 1) * S::LOADS];
             inverse.fill(Quad::default());
             self.inverse_mass[p] = 0.0;
@@ -157,20 +157,44 @@ impl<S: Space> Engine<S> {
             }
             if !self.fixed[p][0] {
                 self.inverse_mass[p] = 1.0 / self.moving[p][0];
-                inverse[0].0[..S::DIMENSION].fill(1.0 / self.moving[p][0]);
+                inverse[0].0[..S::DIMENSION].fill(self.inverse_mass[p]);
             }
             if !self.fixed[p][1] {
-                inverse[row].0[first..first + spins].fill(1.0 / self.moving[p][1]);
-            }
-            if heavy {
-                for k in 0..S::DIMENSION {
-                    self.weights[p * S::LOADS].0[k] = self.masses[p] * self.settings.gravity.at(k);
-                }
+                inverse[row].0[spins.clone()].fill(1.0 / self.moving[p][1]);
             }
         }
+        self.set_weights();
+    }
+
+    /// Weights of the real masses, and the loads that the caller applies.
+    fn set_weights(&mut self) {
+        let (n, gravity) = (self.caller.len(), self.settings.gravity);
+        let any = gravity.norm() > 0.0 || !self.applied.is_empty();
+        self.weights = if any { vec![Quad::default(); n * S::LOADS] } else { Vec::new() };
         for clump in &mut self.clumps {
-            clump.weight = self.settings.gravity.times(clump.mass);
+            clump.weight = (gravity.times(clump.mass), Spin::<S>::zero());
         }
+        for p in (0..if any { n } else { 0 }).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
+            let weight = gravity.times(self.masses[p]);
+            add_load::<S>(&mut self.weights[p * S::LOADS..(p + 1) * S::LOADS], weight, Spin::<S>::zero());
+        }
+        for (&p, &(force, moment)) in &self.applied {
+            match self.clumps.get_mut(self.bodies[p] as usize) {
+                Some(clump) => clump.weight = (clump.weight.0.plus(force), clump.weight.1.plus(moment)),
+                None => add_load::<S>(&mut self.weights[p * S::LOADS..(p + 1) * S::LOADS], force, moment),
+            }
+        }
+    }
+}
+
+/// Adds to a load record.
+fn add_load<S: Space>(load: &mut [Quad], force: Vector<S>, moment: Spin<S>) {
+    let (row, first) = spin_place::<S>();
+    for k in 0..S::DIMENSION {
+        load[0].0[k] += force.at(k);
+    }
+    for k in 0..S::Spin::<f64>::LENGTH {
+        load[row].0[first + k] += moment.at(k);
     }
 }
 

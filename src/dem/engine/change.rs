@@ -51,6 +51,14 @@ impl<S: Space> Engine<S> {
         self.derive_step();
     }
 
+    /// Puts a constant force (and moment) on a ball, or at the centre of the clump it belongs to, instead of an earlier one.
+    pub fn apply(&mut self, particle: usize, force: Vector<S>, moment: Spin<S>) {
+        let p = self.place[particle] as usize;
+        let body = self.clumps.get(self.bodies[p] as usize).map_or(p, |clump| clump.pebbles.start);
+        self.applied.insert(body, (force, moment));
+        self.set_inverse_masses();
+    }
+
     /// Multiplies the radius of some balls; mass and inertia follow at constant density. Stiffnesses are derived anew.
     pub fn scale_radii(&mut self, factors: &[(usize, f64)]) {
         for &(particle, factor) in factors {
@@ -74,7 +82,7 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// All faults of the table.
     pub fn set_contacts(&mut self, table: &ContactTable) -> Result<(), Faults> {
-        super::validate::check_table::<S>(table, &self.meetings())?;
+        super::validate::check_table(table, &self.meetings())?;
         let mut all = self.packed();
         let before: Vec<LawKind> = self.classes.iter().map(|class| class.law).collect();
         self.table = table.clone();
@@ -103,7 +111,7 @@ impl<S: Space> Engine<S> {
     pub fn add_wall(&mut self, wall: &Wall<S>) -> Result<usize, Faults> {
         super::validate::check_wall(self.walls.len(), wall)?;
         self.walls.push(moving(wall));
-        if let Err(faults) = super::validate::check_table::<S>(&self.table, &self.meetings()) {
+        if let Err(faults) = super::validate::check_table(&self.table, &self.meetings()) {
             self.walls.pop();
             return Err(faults);
         }

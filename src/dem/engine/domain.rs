@@ -24,6 +24,19 @@ pub(crate) struct Domain {
     pub(crate) loads: Table,
     /// Bonds that broke, with the step; each is kept by the owner of its first particle.
     pub(crate) breaks: Vec<(u64, Break)>,
+    /// Work of local damping and of prescribed motion on each particle, J; empty unless a run keeps the books.
+    pub(crate) spent: Vec<[f64; 2]>,
+    /// The same for its clumps.
+    pub(crate) clump_spent: Vec<f64>,
+}
+
+impl Domain {
+    /// Begins to keep the books of energy.
+    fn open_books(&mut self) {
+        self.sections.iter_mut().for_each(Section::open_ledger);
+        self.spent = vec![[0.0; 2]; self.particles.len()];
+        self.clump_spent = vec![0.0; self.clumps.len()];
+    }
 }
 
 /// Fewer particles than this are not worth another thread.
@@ -45,14 +58,18 @@ impl<S: Space> Engine<S> {
                 loads.fill(crate::dem::simd::Quad::default());
                 let clumps = self.clumps.partition_point(|c| c.pebbles.start < cut[0])
                     ..self.clumps.partition_point(|c| c.pebbles.start < cut[1]);
-                Domain {
+                let mut domain = Domain {
                     singles: self.singles(&particles, &clumps),
                     sections: listed.sections::<S>(n, &particles),
                     particles,
                     clumps,
                     loads,
-                    breaks: Vec::new(),
+                    ..Domain::default()
+                };
+                if self.books.is_some() {
+                    domain.open_books();
                 }
+                domain
             })
             .collect();
     }

@@ -12,11 +12,12 @@ use crate::dem::neighbour::pairs;
 use crate::dem::space::{Space, Tuple, Vector};
 
 /// Limits of the margin over the smallest radius.
-const NARROW: f64 = 0.02;
+const NARROW: f64 = 0.01;
 const WIDE: f64 = 0.5;
-/// A list that lasts fewer (more) steps than this makes the margin wider (narrower).
-const SHORT: u64 = 200;
-const LONG: u64 = 4000;
+/// A list that lasts fewer (more) steps than this makes the margin wider (narrower): a wide margin costs idle contacts in
+/// every step, a narrow one a search, which takes as long as some thirty steps.
+const SHORT: u64 = 500;
+const LONG: u64 = 2000;
 
 impl<S: Space> Engine<S> {
     /// Searches contacts again, with a margin that follows how long the last list held.
@@ -35,9 +36,13 @@ impl<S: Space> Engine<S> {
 
     /// Searches contacts with the present margin.
     pub(super) fn relist(&mut self) {
+        self.close_ledgers();
         let old = self.packed();
+        // The blocks are written anew; two lists at a time are enough memory.
+        self.domains.iter_mut().for_each(|domain| domain.sections = Vec::new());
         let found = self.candidates();
         let listed = self.merge(&old, &found);
+        drop(old);
         self.adopt(&listed);
     }
 
@@ -59,19 +64,16 @@ impl<S: Space> Engine<S> {
 
     /// All contacts, sorted by key.
     pub(super) fn packed(&self) -> Packed {
-        let mut all = Packed::default();
+        let mut places: Vec<_> = Vec::new();
         for (section, own) in self.stretches() {
-            for c in own {
-                section.pack::<S>(c, &mut all);
-            }
+            places.extend(own.map(|c| (section.key(c), section, c)));
         }
-        let mut order: Vec<usize> = (0..all.keys.len()).collect();
-        order.sort_unstable_by_key(|&k| all.keys[k].0);
-        let mut sorted = Packed::default();
-        for k in order {
-            sorted.push_old::<S>(&all, k);
+        places.sort_unstable_by_key(|place| place.0);
+        let mut packed = Packed::with_capacity::<S>(places.len());
+        for (_, section, c) in places {
+            section.pack::<S>(c, &mut packed);
         }
-        sorted
+        packed
     }
 
     /// Keys of everything nearer than the margin, sorted.
@@ -98,7 +100,7 @@ impl<S: Space> Engine<S> {
 
     /// The new list: what was found, with the state of the old contacts, and old ones that must not be forgotten.
     fn merge(&self, old: &Packed, found: &[Key]) -> Packed {
-        let mut listed = Packed::default();
+        let mut listed = Packed::with_capacity::<S>(found.len());
         let mut next = 0;
         for &key in found {
             while next < old.keys.len() && old.keys[next].0 < key {

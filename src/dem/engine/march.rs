@@ -192,9 +192,13 @@ impl<S: Space> Update<f64> for Integrate<'_, S> {
         let Orders { damping, dt, inverse, weights, .. } = *self.orders;
         let loads = &mut *self.domain.loads;
         let mut fastest = Quad::default();
-        for clump in self.clumps {
+        let books = !self.domain.spent.is_empty();
+        for (k, clump) in self.clumps.iter_mut().enumerate() {
             let (force, moment) = clump.collect(rows, loads);
-            clump.advance(force, moment, damping, dt);
+            let drag = clump.advance(force, moment, damping, dt);
+            if books {
+                self.domain.clump_spent[k] += drag;
+            }
             fastest = fastest.larger(clump.place(rows));
         }
         for p in self.domain.singles.iter().flat_map(|run| run.clone()) {
@@ -206,7 +210,12 @@ impl<S: Space> Update<f64> for Integrate<'_, S> {
                     load = load.plus(weights[place]);
                 }
                 loads[place] = Quad::default();
-                let velocity = accelerated(rows.read(p * S::RECORD + 1 + q), load, inverse[place], damping, dt);
+                let before = rows.read(p * S::RECORD + 1 + q);
+                let velocity = accelerated(before, load, inverse[place], damping, dt);
+                if books {
+                    let spent = &mut self.domain.spent[p - self.domain.particles.start];
+                    book(spent, load, inverse[place], [before, velocity], damping, dt);
+                }
                 rows.write(p * S::RECORD + 1 + q, velocity);
                 if q == 0 {
                     way = velocity;
@@ -232,4 +241,16 @@ fn accelerated(velocity: Quad, load: Quad, inverse: Quad, damping: f64, dt: f64)
         next.0[k] = velocity.0[k] + push * dt;
     }
     next
+}
+
+/// Work of local damping, and of whatever holds the prescribed components, with the mean of the old and new velocity.
+fn book(spent: &mut [f64; 2], load: Quad, inverse: Quad, [before, after]: [Quad; 2], damping: f64, dt: f64) {
+    for k in 0..4 {
+        let way = 0.5 * (before.0[k] + after.0[k]) * dt;
+        if inverse.0[k] == 0.0 {
+            spent[1] -= load.0[k] * way;
+        } else {
+            spent[0] += (load.0[k] - damped(load.0[k], before.0[k], damping)) * way;
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 mod access;
 mod bonding;
+mod books;
 mod build;
 mod change;
 mod domain;
@@ -17,12 +18,13 @@ use super::body::Rigid;
 use super::boundary::{Motion, Wall};
 use super::contact::{Face, LawKind};
 use super::interaction::ContactTable;
-use super::law::Constants;
+use super::law::{Constants, LEDGER};
 use super::particle::{Clump, Group, Particle};
 use super::simd::{Quad, Table, Width};
-use super::space::{Space, Vector};
+use super::space::{Space, Spin, Vector};
 use crate::dem::measure::Crack;
 use domain::Domain;
+use std::collections::BTreeMap;
 
 /// Numbers of a run that belong to no body.
 #[derive(Clone, Debug)]
@@ -123,6 +125,8 @@ pub struct Engine<S: Space> {
     /// Mass and inertia that move each ball: its own, or those of [`Masses::EqualStep`].
     moving: Vec<[f64; 2]>,
     fixed: Vec<[bool; 2]>,
+    /// Constant loads on bodies, by their first particle.
+    applied: BTreeMap<usize, (Vector<S>, Spin<S>)>,
     records: Table,
     spare: Table,
     inverse: Table,
@@ -149,6 +153,19 @@ pub struct Engine<S: Space> {
     step: u64,
     /// Time at the step from which `dt` holds, s, and that step.
     epoch: (f64, u64),
+    /// Energy spent up to the last renewal of the list, and the total at the start, if a run keeps the books.
+    books: Option<Books>,
+}
+
+/// The books of energy, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Books {
+    /// Rows of the contacts' ledgers.
+    pub(crate) contacts: [f64; LEDGER],
+    /// Local damping, prescribed motion.
+    pub(crate) bodies: [f64; 2],
+    /// Kinetic, strain and potential energy when the books were opened.
+    pub(crate) initial: f64,
 }
 
 /// What a watcher of a run wants next.

@@ -32,7 +32,7 @@ pub(super) fn check<S: Space>(model: &Model<S>) -> Result<(), Faults> {
     settings(model, &mut faults);
     let members = model.particles.iter().map(|p| p.group).zip(clump_of.iter().copied());
     let meetings = meetings(members, model.walls.iter().map(|w| w.group));
-    faults.extend(table_faults::<S>(&model.contacts, &meetings));
+    faults.extend(table_faults(&model.contacts, &meetings));
     if faults.is_empty() {
         overlaps(model, &clump_of, &mut faults);
     }
@@ -40,8 +40,8 @@ pub(super) fn check<S: Space>(model: &Model<S>) -> Result<(), Faults> {
 }
 
 /// Checks a table against the pairs of groups that can meet.
-pub(super) fn check_table<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> Result<(), Faults> {
-    ok(table_faults::<S>(table, meetings))
+pub(super) fn check_table(table: &ContactTable, meetings: &[(Group, Group)]) -> Result<(), Faults> {
+    ok(table_faults(table, meetings))
 }
 
 /// Checks one wall.
@@ -171,7 +171,7 @@ fn settings<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) {
     }
 }
 
-fn table_faults<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> Vec<Fault> {
+fn table_faults(table: &ContactTable, meetings: &[(Group, Group)]) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (a, b, interaction) in &table.entries {
         let mut check = |quantity, value: f64, good: bool, wanted| {

@@ -4,7 +4,10 @@
 //! (PFC 3), or drops its shear force (present PFC) when the class says so. No moment. The bond is in force where its
 //! tensile capacity is finite.
 
-use super::{Broken, Constants, KN, Law, REFERENCE, Rows, SHEAR, Viscous, load_shear, store_shear};
+use super::linear::slip_energy;
+use super::{
+    BROKEN, Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
+};
 use crate::dem::simd::{Lane, Row};
 use crate::dem::space::{Load, Space, Touch, Tuple};
 
@@ -19,6 +22,7 @@ impl<S: Space> Law<S> for ContactBondLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
+        ledger: &mut Ledger<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
         let (zero, infinite) = (L::splat(0.0), L::splat(f64::INFINITY));
         let kn = L::load(&rows[KN], at);
@@ -27,7 +31,8 @@ impl<S: Space> Law<S> for ContactBondLaw {
         let overlap = L::load(&rows[REFERENCE], at) - touch.gap;
         let elastic = kn * overlap;
         let old = S::turned(load_shear::<S, L>(rows, SHEAR, at), touch);
-        let trial = old.plus(touch.slide.times(kn * L::splat(constants.shear_share)));
+        let ks = kn * L::splat(constants.shear_share);
+        let trial = old.plus(touch.slide.times(ks));
         let tension = (-elastic).above(capacity[0]);
         let sheared = trial.norm().above(capacity[1]);
         let broken = L::or(tension, sheared);
@@ -40,6 +45,17 @@ impl<S: Space> Law<S> for ContactBondLaw {
             L::select(broken, after.at(k), whole)
         });
         store_shear::<S, L>(rows, SHEAR, at, shear);
+        if ledger.open() {
+            // A break spends the pull of the spring and the shear force that is not kept; a slip what friction takes.
+            let pull = (-elastic).max(zero);
+            let half = L::splat(0.5);
+            let floor = |x: L| x.max(L::splat(f64::MIN_POSITIVE));
+            let lost = half * (trial.dot(trial) - shear.dot(shear)) / floor(ks);
+            let broke = L::select(broken, half * pull * pull / floor(kn) + lost, zero);
+            let slip = slip_energy::<S, L>(old, trial, shear, ks);
+            ledger.charge(BROKEN, at, broke);
+            ledger.charge(SLIP, at, L::select(broken, zero, slip));
+        }
         let breaks = (L::bits(broken) != 0).then(|| {
             L::select(broken, infinite, capacity[0]).store(&mut rows[Rows::<S>::TENSION], at);
             L::select(broken, infinite, capacity[1]).store(&mut rows[Rows::<S>::COHESION], at);
@@ -50,8 +66,13 @@ impl<S: Space> Law<S> for ContactBondLaw {
             // Bonded surfaces hold, so both dashpots act; unbonded ones only while they touch.
             let closed = L::select(overlap.above(zero), L::splat(1.0), zero);
             let active = L::select(broken, closed, L::select(before, L::splat(1.0), closed));
-            load.normal = load.normal + active * viscous.normal * touch.opening;
-            load.shear = load.shear.plus(touch.slide.times(active * viscous.shear));
+            let normal = active * viscous.normal * touch.opening;
+            let shear = touch.slide.times(active * viscous.shear);
+            load.normal = load.normal + normal;
+            load.shear = load.shear.plus(shear);
+            if ledger.open() {
+                ledger.charge(DASHPOT, at, normal * touch.opening + shear.dot(touch.slide));
+            }
         }
         (load, breaks)
     }

@@ -5,8 +5,7 @@
 //! touch: 2 β √(m k) v in each direction, the shear one only while the contact does not slip. SI units; Δ_s is the
 //! displacement of j's surface relative to i's, F_s acts on i.
 
-use super::{Constants, KN, Law, REFERENCE, SHEAR, Viscous, load_shear, store_shear};
-use crate::dem::law::Broken;
+use super::{Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, SHEAR, SLIP, Viscous, load_shear, store_shear};
 use crate::dem::simd::{Lane, Row};
 use crate::dem::space::{Load, Space, Touch, Tuple};
 
@@ -21,6 +20,7 @@ pub(crate) fn spring<S: Space, L: Lane>(
     viscous: Option<Viscous<L>>,
     rows: &mut [Row],
     at: usize,
+    ledger: &mut Ledger<'_>,
 ) -> (L, S::Shear<L>) {
     let zero = L::splat(0.0);
     let kn = L::load(&rows[KN], at);
@@ -28,16 +28,32 @@ pub(crate) fn spring<S: Space, L: Lane>(
     let compression = kn * overlap.max(zero);
     let limit = L::splat(constants.friction) * compression;
     let old = S::turned(load_shear::<S, L>(rows, SHEAR, at), touch);
-    let trial = old.plus(touch.slide.times(kn * L::splat(constants.shear_share)));
+    let ks = kn * L::splat(constants.shear_share);
+    let trial = old.plus(touch.slide.times(ks));
     let shear = S::limited(trial, limit);
     store_shear::<S, L>(rows, SHEAR, at, shear);
+    if ledger.open() {
+        ledger.charge(SLIP, at, slip_energy::<S, L>(old, trial, shear, ks));
+    }
     let Some(viscous) = viscous else { return (compression, shear) };
     let touching = overlap.above(zero);
     let damped = compression - viscous.normal * touch.opening;
     let damped = if constants.tensile_dashpot { damped } else { damped.max(zero) };
     let slipping = trial.norm().above(limit);
     let drag = touch.slide.times(L::select(slipping, zero, L::select(touching, viscous.shear, zero)));
+    if ledger.open() {
+        let normal = (compression - L::select(touching, damped, zero)) * touch.opening;
+        ledger.charge(DASHPOT, at, normal + drag.dot(touch.slide));
+    }
     (L::select(touching, damped, zero), shear.plus(drag))
+}
+
+/// Friction work of a step, (F_old + F_new)/2 · (F_trial − F_new)/k_s: what the shear displacement did and the spring did
+/// not keep.
+#[inline(always)]
+pub(crate) fn slip_energy<S: Space, L: Lane>(old: S::Shear<L>, trial: S::Shear<L>, new: S::Shear<L>, ks: L) -> L {
+    let slip = trial.minus(new);
+    L::splat(0.5) * old.plus(new).dot(slip) / ks.max(L::splat(f64::MIN_POSITIVE))
 }
 
 impl<S: Space> Law<S> for LinearLaw {
@@ -48,8 +64,9 @@ impl<S: Space> Law<S> for LinearLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
+        ledger: &mut Ledger<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
-        let (compression, shear) = spring(constants, touch, viscous, rows, at);
+        let (compression, shear) = spring(constants, touch, viscous, rows, at, ledger);
         let zero = L::splat(0.0);
         (Load { normal: -compression, shear, twist: zero, bend: S::Shear::<L>::zero() }, None)
     }

@@ -108,6 +108,36 @@ pub(crate) struct Broken<L: Lane> {
     pub(crate) shear: L::Mask,
 }
 
+/// What contacts have spent, if a run keeps the books: rows of a block in J.
+pub(crate) struct Ledger<'a>(pub(crate) Option<&'a mut [Row]>);
+
+/// Rows of a block's ledger.
+pub(crate) const LEDGER: usize = 4;
+/// Friction.
+pub(crate) const SLIP: usize = 0;
+/// Dashpots.
+pub(crate) const DASHPOT: usize = 1;
+/// Strain energy that was lost when a bond broke.
+pub(crate) const BROKEN: usize = 2;
+/// Work of a moving wall.
+pub(crate) const BOUNDARY: usize = 3;
+
+impl Ledger<'_> {
+    /// Whether anybody keeps the books.
+    #[inline(always)]
+    pub(crate) fn open(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// Adds to a row.
+    #[inline(always)]
+    pub(crate) fn charge<L: Lane>(&mut self, row: usize, at: usize, energy: L) {
+        if let Some(rows) = &mut self.0 {
+            (L::load(&rows[row], at) + energy).store(&mut rows[row], at);
+        }
+    }
+}
+
 /// One law: how a contact answers a step, and what is left in its rows.
 pub(crate) trait Law<S: Space> {
     /// Load on i, and the breaks if there was any.
@@ -117,6 +147,7 @@ pub(crate) trait Law<S: Space> {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
+        ledger: &mut Ledger<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>);
 }
 

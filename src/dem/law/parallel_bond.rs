@@ -8,7 +8,7 @@
 //! (both sides multiplied by A). A broken bond vanishes at once; the linear contact stays.
 
 use super::linear::spring;
-use super::{Broken, Constants, Law, Rows, Viscous, load_shear, store_shear};
+use super::{BROKEN, Broken, Constants, Law, Ledger, Rows, Viscous, load_shear, store_shear};
 use crate::dem::simd::{Lane, Row};
 use crate::dem::space::{Load, Space, Touch, Tuple};
 
@@ -46,6 +46,16 @@ impl<S: Space, L: Lane> Cement<S, L> {
         }
     }
 
+    /// Strain energy, J.
+    #[inline(always)]
+    fn energy(&self, k: L, ks: L, gyration: L) -> L {
+        // Idle lanes have no stiffness and no forces.
+        let floor = |x: L| x.max(L::splat(f64::MIN_POSITIVE));
+        let normal = (self.normal * self.normal + self.bend.dot(self.bend) / gyration) / floor(k);
+        let shear = (self.shear.dot(self.shear) + self.twist * self.twist / (gyration + gyration)) / floor(ks);
+        L::splat(0.5) * (normal + shear)
+    }
+
     /// Zero where the mask holds.
     #[inline(always)]
     fn without(self, gone: L::Mask) -> Self {
@@ -67,8 +77,9 @@ impl<S: Space> Law<S> for ParallelBondLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
+        ledger: &mut Ledger<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
-        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at);
+        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, ledger);
         let radius = L::splat(constants.multiplier) * touch.radius;
         let k = L::load(&rows[Rows::<S>::BOND], at);
         let ks = k * L::splat(constants.bond_share);
@@ -91,6 +102,10 @@ impl<S: Space> Law<S> for ParallelBondLaw {
         let sheared = drag.above(capacity[1] - cement.normal * L::splat(constants.slope));
         let broken = L::or(tension, sheared);
         let breaks = (L::bits(broken) != 0).then(|| {
+            if ledger.open() {
+                let energy = cement.energy(k, ks, gyration);
+                ledger.charge(BROKEN, at, L::select(broken, energy, L::splat(0.0)));
+            }
             cement = cement.without(broken);
             L::select(broken, L::splat(0.0), k).store(&mut rows[Rows::<S>::BOND], at);
             for (row, value) in [Rows::<S>::TENSION, Rows::<S>::COHESION].into_iter().zip(capacity) {

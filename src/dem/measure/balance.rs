@@ -4,8 +4,8 @@ use crate::dem::contact::Other;
 use crate::dem::engine::Engine;
 use crate::dem::space::{Space, Tuple, Vector};
 
-/// Mean |unbalanced force| of the bodies over the mean sum of |contact forces| on them (PFC `aratio`), gravity included;
-/// 0 where nothing touches. Usual limits: 10⁻³ while packing, 10⁻⁵ before a test. Bodies that are held are left out.
+/// Mean |unbalanced force| of the bodies over the mean sum of |contact forces| on them (PFC `aratio`), gravity and
+/// applied forces included; 0 where nothing touches. Usual limits: 10⁻³ while packing, 10⁻⁵ before a test. Bodies that are held are left out.
 pub fn unbalanced_ratio<S: Space>(engine: &Engine<S>) -> f64 {
     let n = engine.particle_count();
     let clumps = engine.clump_count();
@@ -18,6 +18,10 @@ pub fn unbalanced_ratio<S: Space>(engine: &Engine<S>) -> f64 {
     }
     for particle in (0..n).filter(|&p| engine.clump_of(p).is_none()) {
         unbalanced[clumps + particle] = gravity.times(engine.mass(particle));
+    }
+    for particle in 0..n {
+        let body = body(particle);
+        unbalanced[body] = unbalanced[body].plus(engine.applied_force(particle));
     }
     for contact in engine.contacts().filter(|c| c.active) {
         let force = contact.force();

@@ -2,10 +2,13 @@
 
 mod balance;
 mod cracks;
+mod energy;
 mod fabric;
 mod stress;
 
 pub use balance::unbalanced_ratio;
 pub use cracks::{Crack, Mode};
+pub(crate) use energy::stored;
+pub use energy::{Energy, energy};
 pub use fabric::{Chain, Coordination, coordination, fabric, force_chains};
 pub use stress::{Region, stress};

@@ -237,7 +237,8 @@ mod tests {
     #[test]
     fn threads_see_the_whole_old_state_and_write_only_their_own() {
         for steps in [1, 2, 1001] {
-            let alone = after(&[0..14], steps);
+            let whole = 0..14;
+            let alone = after(std::slice::from_ref(&whole), steps);
             assert_eq!(alone[14..], [14.0, 15.0]);
             assert_eq!(after(&[0..5, 5..14], steps), alone);
             assert_eq!(after(&[0..1, 1..2, 2..9, 9..14], steps), alone);

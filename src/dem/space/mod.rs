@@ -17,6 +17,8 @@ pub use solid::D3;
 
 /// A few numbers of one kind: a vector, a spin, a shear force.
 pub trait Tuple<L: Lane>: Copy {
+    /// How many.
+    const LENGTH: usize;
     /// All zero.
     fn zero() -> Self;
     /// Sum.
@@ -37,6 +39,7 @@ pub trait Tuple<L: Lane>: Copy {
 
 // Plain loops: closures handed to the array functions are not always inlined, and then run without the wide registers.
 impl<L: Lane, const N: usize> Tuple<L> for [L; N] {
+    const LENGTH: usize = N;
     #[inline(always)]
     fn zero() -> Self {
         [L::splat(0.0); N]

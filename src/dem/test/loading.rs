@@ -4,12 +4,112 @@
 //! of the largest one so far, armed only after that has passed `seating_stress`; or at `strain_limit`, which is a
 //! failure ("no peak"), as is whatever the engine reports. Failures are data: the record up to that point is kept.
 
-use super::curve::{Sample, peak};
-use super::material::{AGGREGATE, MORTAR};
+use super::crack::{CrackEvent, note_cracks};
+use super::curve::{Macro, Sample, peak};
+use super::judgement::Judgement;
+use super::material::Material;
+use super::rig::Machine;
 use super::snapshot::{Ladder, Snapshot};
-use crate::dem::measure::Mode;
-use crate::dem::{D2, Engine, Failure, Other, Watch};
+use crate::dem::genesis::specimen::Specimen;
+use crate::dem::{D2, Engine, Failure, Faults, Watch};
 use serde::{Deserialize, Serialize};
+
+/// Kinds of test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestKind {
+    /// Compression of a rectangle between two platens.
+    Uniaxial,
+    /// Splitting of a disc between two platens.
+    Brazilian,
+    /// Direct tension of a rectangle by grips.
+    Tension,
+}
+
+/// Settings of a loading test.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Loading {
+    /// Which test.
+    pub kind: TestKind,
+    /// Speed of each platen or grip (m/s).
+    pub speed: f64,
+    /// Friction of the platens.
+    pub platen_friction: f64,
+    /// Damping, masses, time step.
+    pub machine: Machine,
+    /// Sampling and stopping.
+    pub rule: Rule,
+}
+
+impl Loading {
+    /// The published test: 0.02 m/s each, frictionless platens.
+    pub fn new(kind: TestKind) -> Self {
+        Self { kind, speed: 0.02, platen_friction: 0.0, machine: Machine::default(), rule: Rule::default() }
+    }
+
+    /// Mounts the specimen and runs the test to its end. `seed` draws bond strengths where they scatter; `watch` sees every
+    /// sample and may interrupt.
+    ///
+    /// # Errors
+    /// The specimen's outline does not fit the test, or what the engine finds wrong.
+    pub fn run(
+        &self,
+        specimen: &Specimen,
+        material: &Material,
+        seed: u64,
+        watch: &mut dyn FnMut(&Sample) -> Watch,
+    ) -> Result<TestRecord, TestError> {
+        match self.kind {
+            TestKind::Uniaxial => super::uniaxial::run(self, specimen, material, seed, watch),
+            TestKind::Brazilian => super::brazilian::run(self, specimen, material, seed, watch),
+            TestKind::Tension => super::tension::run(self, specimen, material, seed, watch),
+        }
+    }
+}
+
+/// A test that cannot begin.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TestError {
+    /// Wrong outline.
+    #[error("the {test} test needs a {wanted}; give the specimen {remedy}")]
+    Outline {
+        /// Which test.
+        test: &'static str,
+        /// Outline that it needs.
+        wanted: &'static str,
+        /// Settings that make it.
+        remedy: &'static str,
+    },
+    /// Faults that the engine finds.
+    #[error(transparent)]
+    Faults(#[from] Faults),
+}
+
+/// The record of a test.
+#[derive(Clone, Debug)]
+pub struct TestRecord {
+    /// Samples, cracks, snapshots, failure.
+    pub run: Run,
+    /// Peak, moduli, Poisson's ratios.
+    pub values: Macro,
+    /// Numbers by which the run is judged.
+    pub judgement: Judgement,
+    /// Whether the specimen failed as the test supposes.
+    pub checks: Vec<Check>,
+}
+
+/// A number that must stay within a bound for the test to be valid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Check {
+    /// What it is.
+    pub name: &'static str,
+    /// The number.
+    pub value: f64,
+    /// Its bound.
+    pub bound: f64,
+    /// Whether it is within.
+    pub met: bool,
+}
 
 /// When to sample and when to stop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,32 +131,6 @@ impl Default for Rule {
         let snapshots = vec![0.5, 0.8, 1.0];
         Self { sample_strain: 2e-6, stop_fraction: 0.75, seating_stress: 5e5, strain_limit: 0.02, snapshots }
     }
-}
-
-/// Contact group of a crack.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum CrackGroup {
-    /// Between mortar balls.
-    Mortar,
-    /// Between mortar and aggregate.
-    Interface,
-}
-
-/// A broken bond.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CrackEvent {
-    /// Axial strain of the specimen.
-    pub strain: f64,
-    /// Tension or shear.
-    pub mode: Mode,
-    /// Contact group.
-    pub group: CrackGroup,
-    /// Place (m).
-    pub position: [f64; 2],
-    /// Unit normal of the contact; the crack lies across it.
-    pub normal: [f64; 2],
-    /// Length of the crack, the bond's diameter (m).
-    pub size: f64,
 }
 
 /// Why a test has no complete result.
@@ -152,23 +226,4 @@ pub fn drive(
 /// Position and turn of every particle.
 fn state(engine: &Engine<D2>) -> Vec<[f64; 2]> {
     (0..engine.particle_count()).map(|i| engine.position(i)).collect()
-}
-
-/// Adds the cracks since (step, strain), their strains interpolated by step.
-fn note_cracks(engine: &Engine<D2>, cracks: &mut Vec<CrackEvent>, (step, strain): (u64, f64), now: f64) {
-    let steps = (engine.steps() - step).max(1) as f64;
-    for crack in &engine.cracks()[cracks.len()..] {
-        let share = (crack.step - step) as f64 / steps;
-        let touches_aggregate = |particle: usize| engine.group(particle) == AGGREGATE;
-        let other = matches!(crack.other, Other::Particle(j) if touches_aggregate(j));
-        debug_assert!([MORTAR, AGGREGATE].contains(&engine.group(crack.particle)));
-        cracks.push(CrackEvent {
-            strain: strain + share * (now - strain),
-            mode: crack.mode,
-            group: if other || touches_aggregate(crack.particle) { CrackGroup::Interface } else { CrackGroup::Mortar },
-            position: crack.position,
-            normal: crack.normal,
-            size: crack.size,
-        });
-    }
 }

@@ -1,10 +1,9 @@
 //! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
 
 use super::super::{Complaint, Context, StageError};
-use crate::dem::test::loading::Rule;
+use crate::dem::test::loading::{Loading, Rule, TestKind};
 use crate::dem::test::material::{BondKind, Bonded, Bonding, Material, Unbonded};
 use crate::dem::test::rig::Machine;
-use crate::dem::test::uniaxial::Compression;
 use crate::dem::{Convention, Masses};
 use crate::unit::{Angle, Dimension, Pressure, Velocity};
 use schemars::JsonSchema;
@@ -22,8 +21,8 @@ pub struct Simulate {
     /// The `[material.NAME]` with the microparameters that rows vary.
     pub material: String,
     /// The test.
-    pub test: TestName,
-    /// Speed of each platen.
+    pub test: TestKind,
+    /// Speed of each platen or grip.
     pub platen_speed: Velocity,
     /// Friction of the platens.
     #[serde(default)]
@@ -52,14 +51,6 @@ pub struct Simulate {
     /// How bonds form and act.
     #[serde(default)]
     pub bond: BondConfig,
-}
-
-/// The tests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum TestName {
-    /// Compression between two platens.
-    Uniaxial,
 }
 
 /// Whether different rows share packings.
@@ -140,7 +131,7 @@ fn damping() -> f64 {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Params {
     pub(super) material: Material,
-    pub(super) test: Compression,
+    pub(super) test: Loading,
 }
 
 const STRESS: Dimension = Dimension::new(-1, 1, -2);
@@ -167,19 +158,18 @@ const FASTEST: f64 = 1.0;
 
 impl Simulate {
     /// The test with all its settings.
-    pub(super) fn spec(&self) -> Compression {
-        match self.test {
-            TestName::Uniaxial => Compression {
-                platen_speed: self.platen_speed.get(),
-                platen_friction: self.platen_friction,
-                machine: Machine { damping: self.damping, masses: self.masses, ..Machine::default() },
-                rule: Rule {
-                    stop_fraction: self.stop_fraction,
-                    seating_stress: self.seating_stress.get(),
-                    strain_limit: self.strain_limit,
-                    snapshots: self.snapshots.clone(),
-                    ..Rule::default()
-                },
+    pub(super) fn spec(&self) -> Loading {
+        Loading {
+            kind: self.test,
+            speed: self.platen_speed.get(),
+            platen_friction: self.platen_friction,
+            machine: Machine { damping: self.damping, masses: self.masses, ..Machine::default() },
+            rule: Rule {
+                stop_fraction: self.stop_fraction,
+                seating_stress: self.seating_stress.get(),
+                strain_limit: self.strain_limit,
+                snapshots: self.snapshots.clone(),
+                ..Rule::default()
             },
         }
     }

@@ -7,13 +7,14 @@
 //! * `packing = "own"`: every row and replicate has a packing of its own, drawn from its content. All runs then scatter
 //!   alike, which is what pure error, lack of fit and the F-tests of an analysis of variance assume.
 //!
-//! The responses are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus at half of it; strain
-//! ratio there), in SI units; further ones are named in the record. What is computed and why: [`crate::dem::test`].
+//! The responses of `test = "uniaxial"` are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus
+//! around half of it; strain ratio there), of `"tension"` `sigma_t`, `E`, `nu`, of `"brazilian"` `sigma_t`; in SI units.
+//! Further ones are named in the record. What is computed and why: [`crate::dem::test`].
 
 mod config;
 mod record;
 
-pub use config::{BondConfig, PackingChoice, Simulate, TestName};
+pub use config::{BondConfig, PackingChoice, Simulate};
 
 use super::rows::{self, GATHER};
 use super::{
@@ -115,9 +116,9 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
     let record = params
         .test
         .run(&specimen, &params.material, seed, &mut watch)
-        .map_err(|faults| StageError::new(faults.to_string()))?;
+        .map_err(|fault| StageError::new(fault.to_string()))?;
     if record.run.interrupted {
         return Err(Failure::Stopped);
     }
-    Ok(record::artifact(&record, &specimen))
+    Ok(record::artifact(&record, &params.test))
 }

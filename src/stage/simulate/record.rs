@@ -2,47 +2,69 @@
 
 use super::super::rows::response_table;
 use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
-use crate::dem::genesis::specimen::Specimen;
 use crate::dem::measure::Mode;
-use crate::dem::test::curve::thinned;
-use crate::dem::test::loading::{CrackEvent, CrackGroup};
+use crate::dem::test::crack::{CrackEvent, CrackGroup};
+use crate::dem::test::curve::{Sample, thinned};
+use crate::dem::test::loading::{Loading, TestKind, TestRecord};
 use crate::dem::test::snapshot::Snapshot;
-use crate::dem::test::uniaxial::{CompressionRecord, rate_warnings};
 
 /// Points of the stored curve.
 const CURVE_POINTS: usize = 400;
 
 /// The storable form of a record.
-pub(super) fn artifact(record: &CompressionRecord, specimen: &Specimen) -> Artifact {
-    let values = &record.values;
-    let responses = [
-        ("UCS", values.strength, "Pa"),
-        ("E", values.modulus_tangent, "Pa"),
-        ("nu", values.poisson_secant, ""),
-        ("E_secant", values.modulus_secant, "Pa"),
-        ("nu_tangent", values.poisson_tangent, ""),
-        ("peak_strain", values.peak_strain, ""),
-        ("sigma_ci", values.crack_initiation, "Pa"),
-        ("sigma_cd", values.crack_damage, "Pa"),
-    ];
+pub(super) fn artifact(record: &TestRecord, test: &Loading) -> Artifact {
     let failure = record.run.failure.map_or_else(String::new, |failure| failure.to_string());
     let root = Group::new()
         .with("failure", Node::Text(failure))
-        .with("warnings", Node::Array(texts(warnings(record, specimen))))
-        .with("responses", Node::Table(response_table(&responses)))
+        .with("warnings", Node::Array(texts(warnings(record, test))))
+        .with("responses", Node::Table(response_table(&responses(record, test.kind))))
         .with("judgement", Node::Table(judgement(record)))
+        .with("checks", Node::Table(checks(record)))
         .with("curve", Node::Table(curve(record)))
         .with("cracks", Node::Table(cracks(&record.run.cracks)))
         .with("snapshots", Node::Group(snapshots(&record.run.snapshots)));
     Artifact::new("run", 1, root)
 }
 
-fn warnings(record: &CompressionRecord, specimen: &Specimen) -> Vec<String> {
-    let judgement = &record.judgement;
-    let height = specimen.region.extent()[1];
-    let speed = 0.5 * judgement.strain_rate * height;
-    let warnings = rate_warnings(speed, height, judgement.time_step, speed / judgement.speed_ratio);
-    warnings.iter().map(ToString::to_string).collect()
+fn responses(record: &TestRecord, kind: TestKind) -> Vec<(&'static str, f64, &'static str)> {
+    let values = &record.values;
+    let strength = match kind {
+        TestKind::Uniaxial => ("UCS", values.strength, "Pa"),
+        TestKind::Brazilian | TestKind::Tension => ("sigma_t", values.strength, "Pa"),
+    };
+    let mut responses =
+        vec![strength, ("peak_strain", values.peak_strain, ""), ("sigma_ci", values.crack_initiation, "Pa")];
+    if kind != TestKind::Brazilian {
+        responses.extend([
+            ("E", values.modulus_tangent, "Pa"),
+            ("nu", values.poisson_secant, ""),
+            ("E_secant", values.modulus_secant, "Pa"),
+            ("nu_tangent", values.poisson_tangent, ""),
+        ]);
+    }
+    if kind == TestKind::Uniaxial {
+        responses.push(("sigma_cd", values.crack_damage, "Pa"));
+    }
+    responses
+}
+
+/// Warnings on the rate of loading, and checks that are not met.
+fn warnings(record: &TestRecord, test: &Loading) -> Vec<String> {
+    let rate = record.judgement.warnings(test.speed).into_iter().map(|warning| warning.to_string());
+    let unmet = record.checks.iter().filter(|check| !check.met);
+    rate.chain(
+        unmet.map(|c| format!("{} is {:.3}, the bound is {:.3}: the result is not valid", c.name, c.value, c.bound)),
+    )
+    .collect()
+}
+
+fn checks(record: &TestRecord) -> Table {
+    let checks = &record.checks;
+    table("whether the specimen failed as the test supposes")
+        .texts_column("check", "", checks.iter().map(|check| check.name.to_owned()).collect())
+        .reals_column("value", "", "", checks.iter().map(|check| check.value).collect())
+        .reals_column("bound", "", "", checks.iter().map(|check| check.bound).collect())
+        .ints_column("met", "1 when within the bound", checks.iter().map(|check| i64::from(check.met)).collect())
 }
 
 fn texts(texts: Vec<String>) -> Array {
@@ -53,7 +75,7 @@ fn table(about: &str) -> Table {
     Table { about: about.to_owned(), columns: Vec::new() }
 }
 
-fn judgement(record: &CompressionRecord) -> Table {
+fn judgement(record: &TestRecord) -> Table {
     let j = &record.judgement;
     let rows = [
         ("time step", j.time_step, "s"),
@@ -64,7 +86,7 @@ fn judgement(record: &CompressionRecord) -> Table {
         ("inertial number at the peak", j.inertial_number, ""),
         ("coordination (2 bonds / disc)", j.coordination, ""),
         ("side gauges", j.gauges as f64, ""),
-        ("difference of the platen forces / mean", j.platen_imbalance, ""),
+        ("unbalanced force / contact force at the end", j.unbalanced, ""),
     ];
     table("numbers by which the run is judged")
         .texts_column("quantity", "", rows.iter().map(|row| row.0.to_owned()).collect())
@@ -72,9 +94,9 @@ fn judgement(record: &CompressionRecord) -> Table {
         .texts_column("unit", "", rows.iter().map(|row| row.2.to_owned()).collect())
 }
 
-fn curve(record: &CompressionRecord) -> Table {
+fn curve(record: &TestRecord) -> Table {
     let samples = thinned(&record.run.samples, CURVE_POINTS);
-    let of = |pick: fn(&crate::dem::test::curve::Sample) -> f64| samples.iter().map(pick).collect::<Vec<f64>>();
+    let of = |pick: fn(&Sample) -> f64| samples.iter().map(pick).collect::<Vec<f64>>();
     table("stress and strains at even axial strains")
         .reals_column("axial_strain", "", "shortening positive", of(|s| s.axial))
         .reals_column("stress", "Pa", "compression positive", of(|s| s.stress))

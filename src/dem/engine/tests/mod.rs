@@ -1,8 +1,13 @@
 //! The engine's own mechanics: small systems against closed forms, and bits against bits.
 
+mod beam;
 mod bits;
 mod clump;
+mod energy;
+mod faults;
+mod memory;
 mod pair;
+mod twin;
 
 use crate::dem::*;
 use crate::math::random::Stream;

@@ -1,0 +1,76 @@
+//! Energies. With open books ([`Engine::keep_books`]) they close:
+//! kinetic + spring + bond + potential + damping + slip + dashpot + broken = initial + boundary, within about 1 %
+//! (velocities live half a step from positions).
+
+use crate::dem::engine::Engine;
+use crate::dem::space::{Space, Tuple};
+
+/// Energies of a run, J (per metre of thickness in the plane).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Kinetic energy, with the masses that move the bodies.
+    pub kinetic: f64,
+    /// Strain energy of the linear springs.
+    pub spring: f64,
+    /// Strain energy of the parallel bonds.
+    pub bond: f64,
+    /// Potential energy of the weights and applied forces (not moments), 0 at the origin.
+    pub potential: f64,
+    /// Spent by local damping.
+    pub damping: f64,
+    /// Spent by friction.
+    pub slip: f64,
+    /// Spent by dashpots.
+    pub dashpot: f64,
+    /// Lost with the bonds that broke.
+    pub broken: f64,
+    /// Given by walls and prescribed motion.
+    pub boundary: f64,
+    /// Stored when the books were opened.
+    pub initial: f64,
+}
+
+impl Energy {
+    /// What the books fail to explain over the largest sum that went through them.
+    pub fn imbalance(&self) -> f64 {
+        let stored = self.kinetic + self.spring + self.bond + self.potential;
+        let spent = self.damping + self.slip + self.dashpot + self.broken;
+        let turnover = self.kinetic
+            + self.spring
+            + self.bond
+            + spent
+            + self.boundary.abs()
+            + (self.potential - self.initial).abs();
+        if turnover > 0.0 { (stored + spent - self.boundary - self.initial) / turnover } else { 0.0 }
+    }
+}
+
+/// Energies now; what was spent and given since [`Engine::keep_books`], 0 without.
+pub fn energy<S: Space>(engine: &Engine<S>) -> Energy {
+    engine.account()
+}
+
+/// The stored energies alone.
+pub(crate) fn stored<S: Space>(engine: &Engine<S>) -> Energy {
+    let gravity = engine.settings().gravity;
+    let mut energy = Energy::default();
+    for particle in (0..engine.particle_count()).filter(|&p| engine.clump_of(p).is_none()) {
+        let ([mass, inertia], v, w) = (engine.moving_mass(particle), engine.velocity(particle), engine.spin(particle));
+        energy.kinetic += 0.5 * (mass * v.dot(v) + inertia * w.dot(w));
+        energy.potential -= engine.mass(particle) * gravity.dot(engine.position(particle));
+    }
+    for particle in 0..engine.particle_count() {
+        energy.potential -= engine.applied_force(particle).dot(engine.position(particle));
+    }
+    for clump in 0..engine.clump_count() {
+        let c = engine.clump(clump);
+        energy.kinetic += 0.5 * (c.mass * c.velocity.dot(c.velocity) + S::momentum_of(&c.inertia, c.spin).dot(c.spin));
+        energy.potential -= c.mass * gravity.dot(c.centre);
+    }
+    for contact in engine.contacts() {
+        let [spring, bond] = contact.strain_energy();
+        energy.spring += spring;
+        energy.bond += bond;
+    }
+    energy
+}
