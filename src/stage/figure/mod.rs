@@ -8,14 +8,15 @@
 //! | `stress-strain` | runs | `curve`, `cracks` |
 //! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces` |
 //! | `specimen` | a specimen | its arrays |
-//! | `main-effects`, `range` | results (`compare`: results) | `runs`: factors and `response` |
+//! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
 //! | `points` | a design or results | `design` or `runs`: two or three factors |
 //! | `agreement` | results (`compare`: as many results) | `runs`; rows are matched by their factors |
-//! | `contour`, `surface` | surfaces | `coefficients` (`response`, `term`, `estimate`) |
-//! | `residuals`, `observed-predicted` | anova, regression, surfaces | `residuals` |
-//! | `pareto`, `half-normal` | a screening | `effects` |
-//! | `convergence`, `solutions` | solutions | `history`, `solution_set` |
-//! | `verification` | verifications | `runs`, `targets` |
+//! | `contour`, `surface` | surfaces (`compare`: a design or results, whose points are marked) | `coefficients`, `domain` |
+//! | `residuals`, `observed-predicted` | anova, screening, surfaces | `residuals` |
+//! | `pareto` | a screening, or an anova | `effects` and `limits`, or `anova` |
+//! | `half-normal` | a screening | `effects`, `limits` |
+//! | `convergence`, `solutions` | solutions | `history`; `solution`, `solution_set` |
+//! | `verification` | a verification | `summary`, `runs` |
 //!
 //! A picture depends on the numbers it draws, on its labels (symbols and units of the factors and responses it draws)
 //! and on its style: on nothing else, so it is drawn anew when, and only when, one of these changed.
@@ -190,18 +191,20 @@ impl Show {
     fn needs(self) -> Needs {
         let needs = |from, compare, responses, factors| Needs { from, compare, responses, factors };
         const RESULTS: &[&str] = &["results"];
-        const MODELS: &[&str] = &["anova", "regression", "surfaces"];
+        const MODELS: &[&str] = &["anova", "screening", "surfaces"];
+        const PLACES: &[&str] = &["design", "results"];
         match self {
             Show::StressStrain => needs(&["run"], &[], [0, 0], [0, 0]),
             Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&["run"], &["specimen"], [0, 0], [0, 0]),
             Show::Specimen => needs(&["specimen"], &[], [0, 0], [0, 0]),
-            Show::MainEffects | Show::Range => needs(RESULTS, RESULTS, [1, 1], [0, MANY]),
-            Show::Points => needs(&["design", "results"], &[], [0, 0], [2, 3]),
+            Show::MainEffects | Show::Range => needs(&["range"], &["range"], [1, 1], [0, MANY]),
+            Show::Points => needs(PLACES, &[], [0, 0], [2, 3]),
             Show::Agreement => needs(RESULTS, RESULTS, [1, MANY], [0, MANY]),
-            Show::Contour | Show::Surface => needs(&["surfaces"], &[], [1, 1], [2, 2]),
+            Show::Contour | Show::Surface => needs(&["surfaces"], PLACES, [1, 1], [2, 2]),
             Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
             Show::ObservedPredicted => needs(MODELS, &[], [1, MANY], [0, 0]),
-            Show::Pareto | Show::HalfNormal => needs(&["anova", "screening", "regression"], &[], [1, 1], [0, 0]),
+            Show::Pareto => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
+            Show::HalfNormal => needs(&["screening"], &[], [1, 1], [0, MANY]),
             Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),
             Show::Solutions => needs(&["solution"], &[], [0, 0], [0, MANY]),
             Show::Verification => needs(&["verification"], &[], [0, MANY], [0, 0]),
@@ -389,16 +392,13 @@ impl Figure {
             return Ok(Vec::new());
         }
         let mut keys = self.factors.clone();
-        keys.extend(self.at.keys().cloned());
-        if matches!(self.show, Show::Contour | Show::Surface) {
-            keys.extend(known.context.factors.keys().filter(|key| !keys.contains(key)).cloned().collect::<Vec<_>>());
-        } else if keys.is_empty() {
+        // A surface is drawn over two factors and its note tells the others; any other figure shows those named, or all.
+        if keys.is_empty() || matches!(self.show, Show::Contour | Show::Surface) {
             let artifact = known.load(known.one("from")?)?;
-            let tables = artifact.tables();
-            let columns = tables.iter().flat_map(|(_, table)| &table.columns).map(|column| &column.name);
-            for name in columns.filter(|name| known.context.factors.contains_key(*name)) {
-                if !keys.contains(name) {
-                    keys.push(name.clone());
+            let found = source::words(&artifact, self.response.list().first().map(String::as_str));
+            for name in found.into_iter().filter(|name| known.context.factors.contains_key(name)) {
+                if !keys.contains(&name) {
+                    keys.push(name);
                 }
             }
         }
@@ -506,3 +506,6 @@ pub(super) fn stored(columns: Vec<column::Column>) -> Table {
     }
     table
 }
+
+#[cfg(test)]
+mod tests;

@@ -83,6 +83,26 @@ impl<'a> Source<'a> {
     }
 }
 
+/// Names that occur in an artifact: of columns, and in its columns `factor`, `source` and `term` in the rows of the
+/// response, in the order of first sight.
+pub(super) fn words(artifact: &Artifact, response: Option<&str>) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for (_, table) in artifact.tables() {
+        found.extend(table.columns.iter().map(|column| column.name.clone()));
+        let texts = |name: &str| match table.column(name).map(|column| &column.values) {
+            Some(Values::Texts(texts)) => Some(texts),
+            Some(_) | None => None,
+        };
+        let mine = |i: usize| texts("response").is_none_or(|r| response.is_none_or(|wanted| r[i] == wanted));
+        for column in ["factor", "source", "term"] {
+            let rows = texts(column).into_iter().flatten().enumerate().filter(|(i, _)| mine(*i));
+            let parts = rows.flat_map(|(_, text)| text.split('*').map(|part| part.split('^').next().unwrap_or(part)));
+            found.extend(parts.map(|part| part.trim().to_owned()));
+        }
+    }
+    found
+}
+
 impl Rows<'_> {
     fn lacks(self, column: &str, what: &str) -> StageError {
         let there: Vec<&str> = self.table.columns.iter().map(|c| c.name.as_str()).collect();
