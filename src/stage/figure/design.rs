@@ -59,13 +59,14 @@ pub(super) fn main_effects(params: &Params, sources: &Sources) -> Result<MainEff
     let response = one_response(params)?;
     let computed = ranges(sources.first()?, params, response)?;
     let published = compared(params, sources, response)?;
+    let some_set = params.factors.iter().any(|label| !label.group.is_empty());
     let all: Vec<f64> = computed.iter().flat_map(|r| r.means.iter().copied()).collect();
     let mut factors = Vec::new();
     for range in computed {
         let label = label_of(params, &range)?;
         factors.push(FactorMeans {
             factor: named(label),
-            group: if label.group.is_empty() { "none".into() } else { label.group.clone() },
+            group: if some_set && label.group.is_empty() { "empty column".into() } else { label.group.clone() },
             published: published.iter().find(|r| r.factor == label.key).map(|r| r.means.clone()).unwrap_or_default(),
             levels: range.levels,
             means: range.means,
@@ -87,10 +88,11 @@ pub(super) fn range(params: &Params, sources: &Sources) -> Result<RankedBars, St
     let computed = ranges(sources.first()?, params, response)?;
     let published = compared(params, sources, response)?;
     let (mut bars, mut references) = (Vec::new(), Vec::new());
+    let some_set = params.factors.iter().any(|label| !label.group.is_empty());
     for range in &computed {
         let label = label_of(params, range)?;
-        // A column that sets nothing shows what chance alone does.
-        if label.group.is_empty() {
+        // Where others set a parameter, a column that sets none shows what chance alone does.
+        if some_set && label.group.is_empty() {
             references.push(("empty column".to_owned(), range.range));
             continue;
         }
@@ -128,7 +130,7 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
     let mut pairs: Vec<Pair> = Vec::new();
     for response in &params.responses {
         let mut clouds = Vec::new();
-        for (i, (ours, theirs)) in sources.from.iter().zip(&sources.compare).enumerate() {
+        for (i, (ours, theirs)) in sources.of.iter().zip(&sources.compare).enumerate() {
             let (ours, theirs) = (ours.rows(&["runs"])?, theirs.rows(&["runs"])?);
             if !ours.has(&response.key) || !theirs.has(&response.key) {
                 continue;

@@ -15,14 +15,14 @@ const MM: f64 = 1e3;
 
 pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<StressStrain, StageError> {
     let mut curves = Vec::new();
-    for (k, source) in sources.from.iter().enumerate() {
+    for (k, source) in sources.of.iter().enumerate() {
         let rows = source.rows(&["curve"])?;
         let axial = rows.reals("axial_strain")?;
         let cracks = match source.rows(&["cracks"]) {
             Ok(cracks) => counts(cracks, &axial)?,
             Err(_) => Vec::new(),
         };
-        let several = sources.from.len() > 1;
+        let several = sources.of.len() > 1;
         curves.push(Curve {
             name: params.series.get(k).cloned().unwrap_or_default(),
             lateral: if several { Vec::new() } else { lateral(rows) },

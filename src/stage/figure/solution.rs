@@ -41,7 +41,7 @@ fn sets_of(rows: Rows<'_>) -> Result<Vec<String>, StageError> {
 
 pub(super) fn convergence(params: &Params, sources: &Sources) -> Result<Convergence, StageError> {
     let mut runs = Vec::new();
-    for (k, source) in sources.from.iter().enumerate() {
+    for (k, source) in sources.of.iter().enumerate() {
         let rows = source.rows(&["history"])?;
         let (effort, best) = (rows.reals("evaluation")?, rows.reals("best")?);
         for (target, group) in by_target(&sets_of(rows)?) {
@@ -60,7 +60,7 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
         return Err(StageError::new("the solutions hold no factor of the workflow"));
     }
     let mut sets: Vec<SolutionSet> = Vec::new();
-    for (k, source) in sources.from.iter().enumerate() {
+    for (k, source) in sources.of.iter().enumerate() {
         let best = source.rows(&["solution"])?;
         let further = source.rows(&["solution_set"]).ok();
         let others = further.map(sets_of).transpose()?.unwrap_or_default();

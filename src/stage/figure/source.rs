@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// The inputs of a figure by port.
 pub(super) struct Sources<'a> {
-    pub from: Vec<Source<'a>>,
+    pub of: Vec<Source<'a>>,
     pub compare: Vec<Source<'a>>,
 }
 
@@ -27,11 +27,11 @@ impl<'a> Sources<'a> {
             let named = job.inputs.iter().filter(|(name, _)| name == port);
             named.map(|(_, artifact): &(String, Arc<Artifact>)| Source(artifact)).collect()
         };
-        Self { from: pick("from"), compare: pick("compare") }
+        Self { of: pick("of"), compare: pick("compare") }
     }
 
     pub(super) fn first(&self) -> Result<Source<'a>, StageError> {
-        self.from.first().copied().ok_or_else(|| StageError::new("`from` names no stage"))
+        self.of.first().copied().ok_or_else(|| StageError::new("`of` names no stage"))
     }
 }
 

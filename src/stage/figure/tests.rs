@@ -220,7 +220,7 @@ fn task_of(figure: &Figure, context: &Context, from: &[Artifact], compare: &[Art
     let all: Vec<Arc<Artifact>> = from.iter().chain(compare).map(|a| Arc::new(a.clone())).collect();
     let shelf = Shelf(all);
     let input = |i: usize| Input {
-        key: if i < from.len() { "from" } else { "compare" },
+        key: if i < from.len() { "of" } else { "compare" },
         stage: "s",
         content: ContentHash([i as u8; 32]),
         replicate: Box::new(|_| None),
@@ -237,7 +237,7 @@ fn made(text: &str, from: &[Artifact], compare: &[Artifact]) -> Result<Artifact,
     let figure = settings(text);
     assert_eq!(figure.check(&context()), [], "{text}");
     let task = task_of(&figure, &context(), from, compare);
-    let inputs: Vec<(String, Arc<Artifact>)> = (from.iter().map(|a| ("from".to_owned(), Arc::new(a.clone()))))
+    let inputs: Vec<(String, Arc<Artifact>)> = (from.iter().map(|a| ("of".to_owned(), Arc::new(a.clone()))))
         .chain(compare.iter().map(|a| ("compare".to_owned(), Arc::new(a.clone()))))
         .collect();
     let (stop, say) = (AtomicBool::new(false), |_: crate::stage::Progress| ());
@@ -285,7 +285,7 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
         ("verification", "", vec![verification()], vec![]),
     ];
     for (show, more, from, compare) in cases {
-        let picture = made(&format!("show = '{show}'\nfrom = 'a'\n{more}"), &from, &compare);
+        let picture = made(&format!("show = '{show}'\nof = 'a'\n{more}"), &from, &compare);
         let picture = picture.unwrap_or_else(|e| panic!("{show}: {e}"));
         assert!(text(&picture, "svg").starts_with("<svg") && !text(&picture, "title").is_empty(), "{show}");
         let starts = |name: &str, with: &[u8]| match picture.root.get(name) {
@@ -299,22 +299,22 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
 
 #[test]
 fn the_numbers_are_those_of_the_inputs() {
-    let ranges = made("show = 'range'\nfrom = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
+    let ranges = made("show = 'range'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
     let data = ranges.table("data").unwrap();
     assert_eq!(data.reals("value").unwrap(), [10.0, 2.0]);
     assert_eq!(data.reals("empty column").unwrap(), [0.5, 0.5]);
 
-    let means = made("show = 'main-effects'\nfrom = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
+    let means = made("show = 'main-effects'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
     assert_eq!(means.table("data").unwrap().reals("mean").unwrap(), [30.0, 40.0, 34.0, 35.0, 36.0, 34.5, 35.0, 34.6]);
 
-    let pairs = "show = 'agreement'\nfrom = 'a'\nresponse = 'UCS'\ncompare = 'b'";
+    let pairs = "show = 'agreement'\nof = 'a'\nresponse = 'UCS'\ncompare = 'b'";
     let agreement = made(pairs, &[results(1.0)], &[results(0.0)]).unwrap();
     let data = agreement.table("data").unwrap();
     let (x, y) = (data.reals("published").unwrap(), data.reals("computed").unwrap());
     assert_eq!(x.len(), 6);
     assert!(x.iter().zip(&y).all(|(x, y)| y - x == 1.0));
 
-    let contour = "show = 'contour'\nfrom = 'a'\nresponse = 'UCS'\nfactors = ['mu', 'Ec']";
+    let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['mu', 'Ec']";
     let field = made(contour, &[surfaces()], &[]).unwrap();
     let data = field.table("data").unwrap();
     let z = data.reals("z").or_else(|| data.reals("UCS")).unwrap();
@@ -324,7 +324,7 @@ fn the_numbers_are_those_of_the_inputs() {
 
 #[test]
 fn only_what_is_drawn_decides_the_picture() {
-    let figure = settings("show = 'main-effects'\nfrom = 'a'\nresponse = 'UCS'\nfactors = ['Ec']");
+    let figure = settings("show = 'main-effects'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec']");
     let task = |context: &Context| task_of(&figure, context, &[range_analysis()], &[]).params;
     let before = task(&context());
     let mut other = context();
@@ -342,24 +342,24 @@ fn faults_of_the_settings_are_told_before_anything_runs() {
         found.into_iter().map(|c| c.message).collect::<Vec<_>>().join("; ")
     };
     assert_eq!(
-        said("show = 'range'\nfrom = 'a'\nresponse = 'UCS'\nband = 0.1"),
+        said("show = 'range'\nof = 'a'\nresponse = 'UCS'\nband = 0.1"),
         "`band` has no effect on a figure that shows `range`"
     );
-    assert_eq!(said("show = 'range'\nfrom = 'a'"), "`response` names 0, but `range` shows 1");
+    assert_eq!(said("show = 'range'\nof = 'a'"), "`response` names 0, but `range` shows 1");
     assert_eq!(
-        said("show = 'specimen'\nfrom = 'a'\nresponse = 'UCS'"),
+        said("show = 'specimen'\nof = 'a'\nresponse = 'UCS'"),
         "`response` has no effect on a figure that shows `specimen`"
     );
     assert_eq!(
-        said("show = 'contour'\nfrom = 'a'\nresponse = 'x'\nfactors = ['Ec', 'y']"),
+        said("show = 'contour'\nof = 'a'\nresponse = 'x'\nfactors = ['Ec', 'y']"),
         "there is no [response.x]; there is no [factor.y]"
     );
     assert_eq!(
-        said("show = 'agreement'\nfrom = ['a', 'b']\nresponse = 'UCS'\ncompare = 'c'"),
-        "`from` names 2 stages and `compare` 1; they are compared in pairs"
+        said("show = 'agreement'\nof = ['a', 'b']\nresponse = 'UCS'\ncompare = 'c'"),
+        "`of` names 2 stages and `compare` 1; they are compared in pairs"
     );
-    assert!(said("show = 'specimen'\nfrom = 'a'\nwidth = '9 mm'").contains("9 mm is no width"));
-    assert!(said("show = 'specimen'\nfrom = 'a'\nnames = { UCS = '$\\\\sgma$' }").contains("unknown command"));
+    assert!(said("show = 'specimen'\nof = 'a'\nwidth = '9 mm'").contains("9 mm is no width"));
+    assert!(said("show = 'specimen'\nof = 'a'\nnames = { UCS = '$\\\\sgma$' }").contains("unknown command"));
 }
 
 #[test]
@@ -368,8 +368,8 @@ fn what_an_input_lacks_is_named() {
         Err(Failure::Failed(e)) => format!("{} ({})", e.message, e.hint.unwrap_or_default()),
         other => panic!("{other:?}"),
     };
-    let residuals = "show = 'residuals'\nfrom = 'a'\nresponse = 'UCS'";
+    let residuals = "show = 'residuals'\nof = 'a'\nresponse = 'UCS'";
     assert_eq!(said(residuals, anova()), "the artifact `anova` holds no table `residuals` (it holds anova)");
-    let contour = "show = 'contour'\nfrom = 'a'\nresponse = 'UCS'\nfactors = ['Ec', 'null']";
+    let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec', 'null']";
     assert_eq!(said(contour, surfaces()), "the surface of `UCS` does not depend on `null` (it depends on Ec, mu)");
 }
