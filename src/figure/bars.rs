@@ -138,7 +138,8 @@ impl RankedBars {
         let (top, bottom) = (panel.place_y(row - 0.33), panel.place_y(row + 0.33));
         let right = panel.place_x(bar.value);
         let patch = Rect { left: panel.area.left, top, right, bottom };
-        scene.fill(Path::rect(patch), palette::area(group));
+        let color = palette::area(group);
+        scene.shape(Path::rect(patch), color, Stroke::new(color.mix(INK, 0.35), 0.15));
     }
 
     /// The number behind a bar, on a white ground where a reference line passes.

@@ -113,7 +113,7 @@ impl MainEffects {
     fn entries(&self) -> Vec<Entry> {
         let mut entries = Vec::new();
         for (i, group) in self.groups().iter().enumerate().filter(|(_, g)| !g.is_empty()) {
-            let swatch = Swatch::Line(Stroke::new(palette::category(i), 0.4), Some(palette::marker(i)));
+            let swatch = Swatch::Line(Stroke::new(palette::group(i), 0.4), Some(palette::marker(i)));
             entries.push(Entry::new(*group, swatch));
         }
         let mean = Stroke::new(SOFT, 0.25).dashed(&[0.9, 0.8]);
@@ -159,7 +159,7 @@ impl MainEffects {
 
     fn draw_factor(&self, scene: &mut Scene, panel: &Panel, f: &FactorMeans, style: &Style) {
         let group = self.groups().iter().position(|g| *g == f.group).unwrap_or(0);
-        let color = palette::category(group);
+        let color = palette::group(group);
         panel.draw_grid(scene);
         let y = panel.place_y(self.grand_mean);
         let mean = Stroke::new(SOFT, 0.25).dashed(&[0.9, 0.8]);

@@ -20,6 +20,7 @@ pub mod curve;
 pub mod dag;
 pub mod effects;
 pub mod font;
+mod geometry;
 pub mod half_normal;
 pub mod isoline;
 pub mod layers;
