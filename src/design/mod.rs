@@ -16,11 +16,13 @@ mod hadamard;
 pub mod latin_hypercube;
 pub mod orthogonal;
 pub mod plackett_burman;
+pub mod report;
 pub mod sobol;
 pub mod table;
 
 pub use coding::{Domain, Factor};
 pub use error::{DesignError, Fault};
+pub use report::{Report, report};
 pub use table::{DesignTable, Layout, Order, Place, PointType, Points};
 
 use crate::math::random::Stream;
