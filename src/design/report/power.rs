@@ -14,9 +14,11 @@
 use super::model::{Kind, Model, ModelReport};
 use crate::math::distribution::f_upper;
 use crate::math::elementary::{exp, ln};
+use serde::{Deserialize, Serialize};
 
 /// Which effect, noise and level the power is asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct Question {
     /// Size of the effect, in the unit of the response.
     pub effect: f64,

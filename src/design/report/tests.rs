@@ -120,7 +120,7 @@ fn the_published_table_is_exactly_proportional() {
 /// Largest VIF and condition number of the column-scaled matrix from statsmodels and numpy (`generate.py`).
 #[test]
 fn surface_designs_estimate_the_second_order() {
-    let ccd = Method::CentralComposite(CentralComposite { centre: Some(5), ..Default::default() });
+    let ccd = Method::CentralComposite(CentralComposite { centre_points: Some(5), ..Default::default() });
     let r = judged(ccd, &[2, 2]);
     let second = model(&r, Kind::SecondOrder);
     assert_eq!((second.terms, second.rank, second.residual_df), (6, Some(6), 7));
@@ -140,10 +140,11 @@ fn surface_designs_estimate_the_second_order() {
 #[test]
 fn missing_terms_are_named() {
     // two levels cannot show curvature; face points without a third level of x2
-    let r = judged(Method::FullFactorial(FullFactorial { centre: 0 }), &[3, 2]);
+    let r = judged(Method::FullFactorial(FullFactorial { centre_points: 0 }), &[3, 2]);
     let second = model(&r, Kind::SecondOrder);
     assert_eq!((second.rank, second.missing.as_slice()), (Some(5), ["x2^2".to_string()].as_slice()));
-    let table = build(&Method::FullFactorial(FullFactorial { centre: 0 }), &factors(&[3, 2]), Layout::default(), 1);
+    let table =
+        build(&Method::FullFactorial(FullFactorial { centre_points: 0 }), &factors(&[3, 2]), Layout::default(), 1);
     let lines = r.lines(&table.unwrap());
     let line =
         lines.iter().find(|l| l.section == "model" && l.subject == "second order" && l.quantity == "rank").unwrap();
@@ -155,7 +156,7 @@ fn missing_terms_are_named() {
 fn noncentralities_are_the_closed_ones() {
     let r = judged(Method::Orthogonal(Orthogonal::default()), &[3; 3]);
     assert!((unit(&r, "x1") - 1.5).abs() < 1e-12);
-    let cube = Method::FullFactorial(FullFactorial { centre: 3 });
+    let cube = Method::FullFactorial(FullFactorial { centre_points: 3 });
     let r = judged(cube, &[2; 3]);
     assert_eq!(r.power_model, Some(Kind::Interactions));
     assert!((unit(&r, "x1") - 2.0).abs() < 1e-12 && (unit(&r, "x1*x3") - 2.0).abs() < 1e-12);
@@ -189,7 +190,7 @@ fn published_surface_tables_have_our_points() {
         let rows = text.lines().filter_map(|l| l.strip_prefix(name)?.strip_prefix(','));
         rows.map(|l| l.split(',').map(|c| c.parse().unwrap()).collect()).collect()
     };
-    let ccd = CentralComposite { alpha: Alpha::Rotatable, centre: Some(5), ..Default::default() };
+    let ccd = CentralComposite { alpha: Alpha::Rotatable, centre_points: Some(5), ..Default::default() };
     let [two, four, five] = [
         vec![Factor::range("sigma_c", "MPa", 10.0, 30.0), Factor::range("tau_c", "MPa", 10.0, 30.0)],
         vec![
