@@ -104,7 +104,7 @@ impl Settings {
             moves: self.moves.unwrap_or(Moves::Ingber),
             cooling: self.cooling.unwrap_or(cooling),
             temperature: or(self.temperature, 100.0, 1.0),
-            factor: or(self.factor, 0.95, 0.85),
+            factor: or(self.factor, 0.95, 0.8),
             chain: self.chain.unwrap_or(if published { 100 } else { 10 * factors }).max(1),
             frozen: or(self.frozen, 1e-6, 1e-9),
             descend: self.descend.unwrap_or(!published),
@@ -164,6 +164,9 @@ impl Optimiser for Annealing {
         self.chains.iter().all(Chain::is_frozen).then_some(Stop::Iterations)
     }
 }
+
+/// Chains between descents.
+const DESCENT: usize = 6;
 
 struct Chain {
     plan: Plan,
@@ -268,7 +271,7 @@ impl Chain {
         }
         if self.temperature < self.plan.frozen {
             *self = Self::new(self.plan.clone(), &self.domain, self.random.clone());
-        } else if self.lowest.2 && self.cooled.is_multiple_of(4) {
+        } else if self.lowest.2 && self.cooled.is_multiple_of(DESCENT) {
             self.descent = Some(Local::new(&self.domain, &self.lowest.0, self.lowest.1)).filter(|d| d.stop().is_none());
         }
     }

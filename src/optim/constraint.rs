@@ -92,6 +92,11 @@ impl Domain {
         self.factors.iter().zip(unit).map(lerp).collect()
     }
 
+    /// Natural units of a point that may lie outside the unit box.
+    pub fn natural_beyond(&self, unit: &[f64]) -> Vec<f64> {
+        self.factors.iter().zip(unit).map(|(f, &u)| f.low + u * (f.high - f.low)).collect()
+    }
+
     /// Place of a natural point in the unit box; outside the range it lies outside 0 … 1.
     pub fn unit(&self, natural: &[f64]) -> Vec<f64> {
         self.factors.iter().zip(natural).map(|(f, x)| (x - f.low) / (f.high - f.low)).collect()
@@ -159,6 +164,14 @@ impl Domain {
         if self.contains(unit) {
             return Ok(unit.to_vec());
         }
+        let (rows, bounds) = self.walls_from(unit);
+        let step = least_distance(&rows, &bounds).map_err(|rows| self.contradiction(&rows))?;
+        Ok(unit.iter().zip(step).map(|(u, s)| (u + s).clamp(0.0, 1.0)).collect())
+    }
+
+    /// All bounds as rows · y ≥ bounds for the step y from a point: linear constraints first, then the two ends of
+    /// every range.
+    pub(super) fn walls_from(&self, unit: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let n = unit.len();
         let (mut rows, mut bounds) = (Vec::new(), Vec::new());
         for (normal, bound, _) in &self.walls {
@@ -170,8 +183,7 @@ impl Domain {
             rows.extend([along(1.0), along(-1.0)]);
             bounds.extend([-u, u - 1.0]);
         }
-        let step = least_distance(&rows, &bounds).map_err(|rows| self.contradiction(&rows))?;
-        Ok(unit.iter().zip(step).map(|(u, s)| (u + s).clamp(0.0, 1.0)).collect())
+        (rows, bounds)
     }
 
     fn contradiction(&self, rows: &[usize]) -> Error {

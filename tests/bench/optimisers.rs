@@ -1,9 +1,9 @@
 //! Tables of how well the optimisers do: `cargo bench --bench optimisers -- [standard|su2021|surrogate]`.
 //!
-//! `tests/reference/optimisers.py` prints the table of the standard functions for scipy, in the same form.
+//! `tests/reference/optim/optimisers.py` prints the table of the standard functions for scipy, in the same form.
 
 use flow::math;
-use flow::optim::search::{Limits, METHODS, Method, Run, Search, minimise};
+use flow::optim::search::{Knowledge, Limits, METHODS, Method, Run, Search, minimise};
 use flow::optim::{Problem, annealing, cma_es, constraint, differential, genetic, misfit, surrogate};
 use misfit::{Denominator, Form};
 use std::time::Instant;
@@ -101,14 +101,15 @@ fn stand_in() {
     println!(
         "on all three outputs (first / for good), true error in % at 20 and 30; median and 90th percentile of 100"
     );
-    for (earlier, budget) in [(0, 60), (50, 40)] {
-        for batch in [1, 2, 4] {
+    for (earlier, budget) in [(0, 40), (50, 24)] {
+        for batch in [1, 4] {
+            let reps: usize = std::env::var("REPS").map_or(100, |v| v.parse().expect("n"));
             let clock = Instant::now();
-            let results: Vec<[f64; 4]> = (0..100).map(|i| calibrate(i % 5, i as u64, earlier, budget, batch)).collect();
+            let results: Vec<[f64; 4]> = (0..reps).map(|i| calibrate(i % 5, i as u64, earlier, budget, batch)).collect();
             let column = |k: usize| {
                 let mut values: Vec<f64> = results.iter().map(|r| r[k]).collect();
                 values.sort_by(f64::total_cmp);
-                format!("{:.1}/{:.1}", values[49].midpoint(values[50]), values[89])
+                format!("{:.1}/{:.1}", values[reps / 2 - 1].midpoint(values[reps / 2]), values[reps * 9 / 10 - 1])
             };
             let time = clock.elapsed().as_secs_f64() / results.len() as f64;
             println!(
@@ -126,7 +127,7 @@ fn stand_in() {
 fn calibrate(set: usize, seed: u64, earlier: usize, budget: usize, batch: usize) -> [f64; 4] {
     let problem = benchmark::su2021(set, Form::Sum, Denominator::Target);
     let mut noise = math::random::Stream::new(seed, "bench noise", 0);
-    let known: Vec<Run> = (0..earlier)
+    let earlier: Vec<Run> = (0..earlier)
         .map(|_| {
             let point = problem.domain.natural(&problem.domain.sample(&mut noise));
             let responses = Some(benchmark::noisy(&point, &mut noise));
@@ -135,7 +136,7 @@ fn calibrate(set: usize, seed: u64, earlier: usize, budget: usize, batch: usize)
         .collect();
     let settings = surrogate::Settings { batch, tolerance: 0.0, ..Default::default() };
     let limits = Limits { evaluations: Some(budget), ..Default::default() };
-    let mut search = Search::new(&problem, &Method::Surrogate(settings), &limits, seed, &known);
+    let mut search = Search::new(&problem, &Method::Surrogate(settings), &limits, seed, &Knowledge { earlier, trend: None });
     let (mut first, mut last_bad, mut at) = (f64::INFINITY, 0.0, [f64::NAN; 2]);
     loop {
         let state = search.state();
