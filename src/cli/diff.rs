@@ -3,7 +3,7 @@
 //! Each side is a workflow file (`c30.toml`), a profile of one (`c30.toml@quick`), or a recorded run (`run 3` is `#3`).
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, Color, system};
 use super::progress::Silent;
 use crate::artifact::{Artifact, ContentHash, Table, Values};
 use crate::run::{Settings, StageStatus, run};
@@ -84,7 +84,13 @@ impl Diff {
             Some((file, profile)) => (file, Some(profile.to_owned())),
             None => (text, None),
         };
-        let campaign = Campaign { workflow: PathBuf::from(file), profile, sets: Vec::new(), store: self.store.clone() };
+        let campaign = Campaign {
+            workflow: PathBuf::from(file),
+            profile,
+            sets: Vec::new(),
+            store: self.store.clone(),
+            color: Color::Auto,
+        };
         let workflow = campaign.load(&[])?;
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
         let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));

@@ -1,7 +1,7 @@
 //! `flow store`: what the store holds, whether it is sound, what it takes, and what may go.
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, Color, system};
 use super::progress::{Silent, duration};
 use crate::artifact::Key;
 use crate::run::{Settings, run};
@@ -137,8 +137,13 @@ impl StoreCommand {
 
 /// Adds all that a workflow can reach, as it stands and with each of its profiles.
 fn reach(path: &std::path::Path, folder: &std::path::Path, store: &Store, keys: &mut HashSet<Key>) -> Result<(), Exit> {
-    let campaign =
-        |profile| Campaign { workflow: path.to_owned(), profile, sets: Vec::new(), store: folder.to_owned() };
+    let campaign = |profile| Campaign {
+        workflow: path.to_owned(),
+        profile,
+        sets: Vec::new(),
+        store: folder.to_owned(),
+        color: Color::Auto,
+    };
     let plain = campaign(None).load(&[])?;
     let profiles = plain.profiles.iter().cloned().map(Some);
     let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: false };
