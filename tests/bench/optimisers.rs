@@ -2,8 +2,9 @@
 //!
 //! `tests/reference/optim/optimisers.py` prints the table of the standard functions for scipy, in the same form.
 
+use benchmark::METHODS;
 use flow::math;
-use flow::optim::search::{Knowledge, Limits, METHODS, Method, Run, Search, minimise};
+use flow::optim::search::{Knowledge, Limits, Method, Run, Search, minimise};
 use flow::optim::{Problem, annealing, cma_es, constraint, differential, genetic, misfit, surrogate};
 use misfit::{Denominator, Form};
 use std::time::Instant;
@@ -103,9 +104,10 @@ fn stand_in() {
     );
     for (earlier, budget) in [(0, 40), (50, 24)] {
         for batch in [1, 4] {
-            let reps: usize = std::env::var("REPS").map_or(100, |v| v.parse().expect("n"));
+            let reps = 100;
             let clock = Instant::now();
-            let results: Vec<[f64; 4]> = (0..reps).map(|i| calibrate(i % 5, i as u64, earlier, budget, batch)).collect();
+            let results: Vec<[f64; 4]> =
+                (0..reps).map(|i| calibrate(i % 5, i as u64, earlier, budget, batch)).collect();
             let column = |k: usize| {
                 let mut values: Vec<f64> = results.iter().map(|r| r[k]).collect();
                 values.sort_by(f64::total_cmp);
@@ -136,7 +138,8 @@ fn calibrate(set: usize, seed: u64, earlier: usize, budget: usize, batch: usize)
         .collect();
     let settings = surrogate::Settings { batch, tolerance: 0.0, ..Default::default() };
     let limits = Limits { evaluations: Some(budget), ..Default::default() };
-    let mut search = Search::new(&problem, &Method::Surrogate(settings), &limits, seed, &Knowledge { earlier, trend: None });
+    let mut search =
+        Search::new(&problem, &Method::Surrogate(settings), &limits, seed, &Knowledge { earlier, trend: None });
     let (mut first, mut last_bad, mut at) = (f64::INFINITY, 0.0, [f64::NAN; 2]);
     loop {
         let state = search.state();
