@@ -104,7 +104,7 @@ impl Settings {
             moves: self.moves.unwrap_or(Moves::Ingber),
             cooling: self.cooling.unwrap_or(cooling),
             temperature: or(self.temperature, 100.0, 1.0),
-            factor: or(self.factor, 0.95, 0.8),
+            factor: or(self.factor, 0.95, 0.85),
             chain: self.chain.unwrap_or(if published { 100 } else { 10 * factors }).max(1),
             frozen: or(self.frozen, 1e-6, 1e-9),
             descend: self.descend.unwrap_or(!published),

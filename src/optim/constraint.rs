@@ -146,20 +146,6 @@ impl Domain {
         self.repair(&point)
     }
 
-    /// How far one may go from `from` (allowed) along `direction` before a bound; infinite without one.
-    pub fn reach(&self, from: &[f64], direction: &[f64]) -> f64 {
-        let sides = from.iter().zip(direction).map(|(&u, &d)| match d {
-            d if d > 0.0 => (1.0 - u) / d,
-            d if d < 0.0 => -u / d,
-            _ => f64::INFINITY,
-        });
-        let walls = self.walls.iter().map(|(normal, bound, _)| {
-            let speed = dot(normal, direction);
-            if speed > 0.0 { (bound - dot(normal, from)) / speed } else { f64::INFINITY }
-        });
-        sides.chain(walls).fold(f64::INFINITY, f64::min).max(0.0)
-    }
-
     fn project(&self, unit: &[f64]) -> Result<Vec<f64>, Error> {
         if self.contains(unit) {
             return Ok(unit.to_vec());
@@ -325,7 +311,6 @@ mod tests {
         near([0.8, 0.6], [0.6, 0.4]);
         near([2.0, 0.5], [0.75, 0.25]);
         near([-1.0, 0.5], [0.0, 0.5]);
-        assert!((domain.reach(&[0.0, 0.0], &[1.0, 1.0]) - 0.5).abs() < 1e-15);
     }
 
     #[test]

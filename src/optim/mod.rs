@@ -152,14 +152,6 @@ pub enum Error {
         /// The names there are.
         known: Vec<String>,
     },
-    /// A target names a response that the model does not give.
-    #[error("unknown response `{found}`; the responses are {}", list(known))]
-    UnknownResponse {
-        /// The name as written.
-        found: String,
-        /// The names there are.
-        known: Vec<String>,
-    },
     /// A factor or a target stands twice.
     #[error("`{name}` is given twice")]
     Twice {

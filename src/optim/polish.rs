@@ -41,7 +41,7 @@ impl Optimiser for Polish {
             None => {
                 self.descent.tell(trials);
                 if self.descent.stop().is_some() {
-                    let settings = cma_es::Settings { step: STEP, restarts: 0, population: None };
+                    let settings = cma_es::Settings { step: STEP, restarts: 0, ..Default::default() };
                     let start = self.descent.best().0;
                     self.adaptation = Some(CmaEs::from(&settings, &self.domain, self.seed, start));
                 }

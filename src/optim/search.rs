@@ -30,9 +30,6 @@ pub enum Method {
     Surrogate(surrogate::Settings),
 }
 
-/// The names of the methods as a workflow writes them.
-pub const METHODS: [&str; 5] = ["genetic", "annealing", "differential", "cma-es", "surrogate"];
-
 /// When any method ends, and whether its end is refined.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]

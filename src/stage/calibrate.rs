@@ -106,7 +106,7 @@ impl Calibrate {
         set: usize,
     ) -> Result<(Vec<Told>, Vec<Task>, Vec<Task>), StageError> {
         let problem = params.problem(set)?;
-        let mut load = |key: &str| known.port(key).map(|input| known.load(input)).collect::<Result<Vec<_>, _>>();
+        let load = |key: &str| known.port(key).map(|input| known.load(input)).collect::<Result<Vec<_>, _>>();
         let (surfaces, earlier) = (load("surfaces")?, load("learn_from")?);
         let knowledge = params.knowledge(set, surfaces.first().map(|a| &**a), &earlier)?;
         let simulator = known.one("simulator")?;
@@ -142,13 +142,7 @@ impl Calibrate {
     }
 
     /// The task that tries one point; `index` counts the simulations of its set from 0.
-    fn task(
-        &self,
-        simulator: &super::Input,
-        params: &Params,
-        point: &[f64],
-        index: usize,
-    ) -> Result<Task, StageError> {
+    fn task(&self, simulator: &super::Input, params: &Params, point: &[f64], index: usize) -> Result<Task, StageError> {
         let names = params.factors.iter().map(|factor| factor.name.clone());
         let point: Point = names.zip(point.iter().copied()).collect();
         let index = index as u64;

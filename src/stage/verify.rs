@@ -71,8 +71,9 @@ impl Stage for Verify {
         let factors: Vec<String> =
             table.columns.iter().map(|c| c.name.clone()).filter(|n| known.context.factors.contains_key(n)).collect();
         let simulator = known.one("simulator")?;
-        let mut task = Task::new("verify", json!(Params { factors: factors.clone(), replicates: self.replicates as usize }))
-            .input("solution", input.content);
+        let mut task =
+            Task::new("verify", json!(Params { factors: factors.clone(), replicates: self.replicates as usize }))
+                .input("solution", input.content);
         for set in 0..table.rows() {
             let value = |name: &String| table.reals(name).map(|values| (name.clone(), values[set]));
             let point: Point = factors.iter().filter_map(value).collect();
@@ -173,19 +174,30 @@ fn summary(verified: &[Verified]) -> Table {
         .reals_column("mean", "", "of the runs", reals(|(_, m)| m.0))
         .reals_column("std", "", "standard deviation of a run", reals(|(_, m)| m.1))
         .reals_column("cv_percent", "", "standard deviation over mean", reals(|(_, m)| 100.0 * m.1 / m.0.abs()))
-        .reals_column("relative_error_percent", "", "of the mean against the target", reals(|(one, m)| {
-            100.0 * (m.0 - one.target).abs() / one.target.abs()
-        }))
-        .reals_column("error_of_mean_percent", "", "the same difference against the mean", reals(|(one, m)| {
-            100.0 * (m.0 - one.target).abs() / m.0.abs()
-        }))
+        .reals_column(
+            "relative_error_percent",
+            "",
+            "of the mean against the target",
+            reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / one.target.abs()),
+        )
+        .reals_column(
+            "error_of_mean_percent",
+            "",
+            "the same difference against the mean",
+            reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / m.0.abs()),
+        )
         .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|(_, m)| m.0 - m.2))
         .reals_column("high", "", "upper end", reals(|(_, m)| m.0 + m.2))
         .texts_column("target_inside", "whether the interval holds the target", all.iter().map(inside).collect())
         .ints_column("n", "runs with a value", moments.iter().map(|m| m.3 as i64).collect())
 }
 
-fn run_table(params: &Params, solution: &Artifact, verified: &[Verified], failures: Vec<String>) -> Result<Table, StageError> {
+fn run_table(
+    params: &Params,
+    solution: &Artifact,
+    verified: &[Verified],
+    failures: Vec<String>,
+) -> Result<Table, StageError> {
     let source = solution.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
     let n = params.replicates;
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() }

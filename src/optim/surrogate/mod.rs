@@ -2,8 +2,8 @@
 //!
 //! Every response gets its own model ([`gaussian`]) over *all* runs, its own and those it was told to learn from, so
 //! that no single lucky run can win. A first design of two levels around the centre finds the directions; then every
-//! batch is placed around the point the models recommend, each point off by a little in a direction of its own, which
-//! measures the neighbourhood from all sides.
+//! batch takes the point the models recommend and points around it, each off by a little in a direction of its own,
+//! which measures the neighbourhood from all sides.
 //!
 //! The recommended point minimises the misfit with every deviation δ replaced by √(δ² + v), v the variance of the
 //! expected response: among the many points that meet the targets it takes the one that is known best.
@@ -153,13 +153,13 @@ impl Surrogate {
         rows.into_iter().map(|i| domain.repair(&row(i))).take(self.first()).collect()
     }
 
-    /// Points around the recommended one, in pairs on opposite sides of it.
+    /// The recommended point, and points around it in pairs on opposite sides.
     fn around(&self, centre: &[f64]) -> Vec<Vec<f64>> {
         let mut random = self.stream("surrogate batch");
         let scatter = self.models.as_ref().and_then(Models::scatter).unwrap_or(LARGEST_JITTER);
         let jitter = self.settings.jitter.unwrap_or((2.0 * scatter).min(LARGEST_JITTER));
         let size = self.settings.batch.max(1);
-        let mut batch: Vec<Vec<f64>> = Vec::new();
+        let mut batch: Vec<Vec<f64>> = vec![centre.to_vec()];
         while batch.len() < size {
             let step: Vec<f64> = centre.iter().map(|_| jitter * random.normal()).collect();
             for sign in [1.0, -1.0] {
@@ -202,4 +202,3 @@ impl Optimiser for Surrogate {
         self.recommended.clone()
     }
 }
-

@@ -81,9 +81,18 @@ impl Params {
         Misfit::new(self.sets[set].iter().map(target).collect(), self.form, self.denominator)
     }
 
+    /// The preferred point in natural units, the middle of the range where nothing is said; none without a preference.
+    pub(super) fn preferred(&self) -> Option<Vec<f64>> {
+        let middle = |f: &FactorParam| self.preference.get(&f.name).copied().unwrap_or(0.5 * (f.low + f.high));
+        (!self.preference.is_empty()).then(|| self.factors.iter().map(middle).collect())
+    }
+
     /// Every fault of the problem.
     pub(super) fn faults(&self) -> Vec<Error> {
-        let mut found = self.domain().err().unwrap_or_default();
+        let domain = self.domain();
+        let outside = domain.as_ref().ok().and_then(|domain| domain.check(&self.preferred()?).err());
+        let mut found: Vec<Error> = outside.into_iter().collect();
+        found.extend(domain.err().unwrap_or_default());
         for set in 0..self.sets.len() {
             for fault in self.misfit(set).err().unwrap_or_default() {
                 if !found.contains(&fault) {
@@ -103,9 +112,8 @@ impl Params {
 
     /// The optimisation problem of one set.
     pub(super) fn problem(&self, set: usize) -> Result<Problem, StageError> {
-        let all = |faults: Vec<Error>| {
-            StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
-        };
+        let all =
+            |faults: Vec<Error>| StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
         Ok(Problem { domain: self.domain().map_err(all)?, misfit: self.misfit(set).map_err(all)? })
     }
 

@@ -118,7 +118,8 @@ pub(super) fn runs(
     factors: &[FactorParam],
     targets: &[TargetParam],
 ) -> Result<Vec<Run>, StageError> {
-    let table = artifact.table("runs").ok_or_else(|| StageError::new("a stage of `learn_from` holds no table `runs`"))?;
+    let table =
+        artifact.table("runs").ok_or_else(|| StageError::new("a stage of `learn_from` holds no table `runs`"))?;
     let points = factors.iter().map(|f| factor_values(table, f)).collect::<Result<Vec<_>, _>>()?;
     let responses = targets.iter().map(|t| response_values(table, t)).collect::<Result<Vec<_>, _>>()?;
     let failed = failures(table);

@@ -53,8 +53,11 @@ fn solution(params: &Params, solved: &[Solved]) -> Table {
     let means: Vec<Vec<f64>> = solved.iter().map(|s| s.expected.iter().map(|y| y.mean).collect()).collect();
     let rows: Vec<_> = solved.iter().zip(&means).enumerate().map(|(i, (s, y))| (i, &s.point[..], &y[..])).collect();
     let free = |s: &Solved| s.set.as_ref().map_or(f64::NAN, |set| set.free as f64);
-    let table = named("calibrated parameters and the responses they are predicted to give")
-        .ints_column("set", "target set, from 1", numbered(0..solved.len()));
+    let table = named("calibrated parameters and the responses they are predicted to give").ints_column(
+        "set",
+        "target set, from 1",
+        numbered(0..solved.len()),
+    );
     columns(table, params, &rows)
         .reals_column("misfit", "", "of the predicted responses", solved.iter().map(|s| s.misfit).collect())
         .ints_column("evaluations", "of the model", solved.iter().map(|s| s.evaluations as i64).collect())
@@ -137,8 +140,11 @@ fn solution_set(params: &Params, solved: &[Solved]) -> Table {
         let sample = s.set.iter().flat_map(|set| &set.sample);
         points.extend(sample.map(|unit| (i, s.problem.domain.natural(unit))));
     }
-    let mut table = named("further parameters that give the responses of the solution")
-        .ints_column("set", "target set, from 1", numbered(points.iter().map(|(set, _)| *set)));
+    let mut table = named("further parameters that give the responses of the solution").ints_column(
+        "set",
+        "target set, from 1",
+        numbered(points.iter().map(|(set, _)| *set)),
+    );
     for (i, FactorParam { name, unit, .. }) in params.factors.iter().enumerate() {
         table = table.reals_column(name, unit, "", points.iter().map(|(_, point)| point[i]).collect());
     }

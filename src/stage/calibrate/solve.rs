@@ -97,7 +97,7 @@ fn on_surfaces(
     };
     let state = search.state();
     let found = state.best.clone().ok_or_else(|| StageError::new("the surfaces have no value anywhere"))?;
-    let preference = preference(params, &problem);
+    let preference = params.preferred().map(|point| problem.domain.unit(&point));
     let set = explore(&problem, &|x| surfaces(x), &found.point, preference.as_deref(), params.solutions, seed);
     let chosen = set.as_ref().filter(|set| set.misfit <= found.misfit.max(REFINED)).map(|set| set.chosen.clone());
     let point = problem.domain.natural(&chosen.unwrap_or(found.point));
@@ -147,7 +147,7 @@ fn simulated(
     let State { evaluations, failed, recommended, .. } = state;
     let recommended = recommended.ok_or_else(|| StageError::new("no run gave responses"))?;
     let models = fitted(params, &problem, knowledge, &runs);
-    let preference = preference(params, &problem);
+    let preference = params.preferred().map(|point| problem.domain.unit(&point));
     let explored = models.and_then(|models| {
         let model = |x: &[f64]| Some(models.expected(&problem.domain.unit(x)));
         explore(&problem, &model, &recommended.point, preference.as_deref(), params.solutions, seed)
@@ -179,15 +179,4 @@ fn lines(problem: &Problem, runs: &[Run], failures: &[String]) -> Vec<Line> {
         Line { evaluation: i + 1, point: run.point.clone(), responses, misfit, best, failure: failure.clone() }
     };
     runs.iter().zip(failures).enumerate().map(line).collect()
-}
-
-/// The preference in the unit box, the centre where nothing is said.
-fn preference(params: &Params, problem: &Problem) -> Option<Vec<f64>> {
-    if params.preference.is_empty() {
-        return None;
-    }
-    let natural = |f: &crate::optim::constraint::Factor| {
-        params.preference.get(&f.name).copied().unwrap_or(0.5 * (f.low + f.high))
-    };
-    Some(problem.domain.unit(&problem.domain.factors().iter().map(natural).collect::<Vec<_>>()))
 }
