@@ -65,7 +65,7 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     let mut natural = coefficient_table(&found, |r| &r.natural);
     let mut fit = fit_table(&fits);
     if let Some(prints) = prints(job, "term", "estimate")? {
-        let plain = |response, line, value| Computed { response, line, value: Some(value), rounding: 0.0 };
+        let plain = |response, line, value| Computed { response, line, value: Some(value), rounding: 0.0, remark: "" };
         let own = |(f, c): (&'_ Fitting, &'_ Coefficient)| (f.response.clone(), c.term.clone(), c.estimate);
         let values: Vec<(String, String, f64)> =
             found.iter().flat_map(|(f, r)| r.natural.iter().map(move |c| own((*f, c)))).collect();
