@@ -21,9 +21,9 @@ impl Check {
     pub(super) fn go(self) -> Exit {
         let (workflow, faults) = self.faults();
         if self.json {
-            println!("{}", document(&self.campaign.workflow.display().to_string(), &faults));
+            out!("{}", document(&self.campaign.workflow.display().to_string(), &faults));
         } else if let (Some(workflow), []) = (&workflow, &faults[..]) {
-            println!("{}", summary(workflow));
+            out!("{}", summary(workflow));
         } else {
             message::print(&faults, self.campaign.color);
         }

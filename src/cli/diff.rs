@@ -56,17 +56,17 @@ impl Diff {
                 continue;
             }
             if !self.json {
-                println!("{name}");
-                settings.iter().for_each(|(path, old, new)| println!("  {path}: {old} → {new}"));
-                results.iter().for_each(|line| println!("  {line}"));
+                out!("{name}");
+                settings.iter().for_each(|(path, old, new)| out!("  {path}: {old} → {new}"));
+                results.iter().for_each(|line| out!("  {line}"));
             }
             let settings: Vec<Value> =
                 settings.into_iter().map(|(path, a, b)| json!({ "path": path, "a": a, "b": b })).collect();
             document.insert(name.clone(), json!({ "settings": settings, "results": results }));
         }
         match (self.json, document.is_empty()) {
-            (true, _) => println!("{}", Value::from(document)),
-            (false, true) => println!("no difference"),
+            (true, _) => out!("{}", Value::from(document)),
+            (false, true) => out!("no difference"),
             (false, false) => {}
         }
         Ok(Exit::Done)

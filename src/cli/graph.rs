@@ -84,7 +84,7 @@ impl Graph {
             Form::Mermaid => mermaid(&workflow, &states),
             Form::Dot => dot(&workflow, &states),
         };
-        println!("{}", drawn.trim_end());
+        out!("{}", drawn.trim_end());
         Ok(Exit::Done)
     }
 }

@@ -3,6 +3,8 @@
 //! Results go to standard output, everything else to standard error. Exit codes: 0 done, 1 a task failed, 2 the input
 //! is wrong, 3 the store or the system failed, 130 interrupted.
 
+#[macro_use]
+mod output;
 mod check;
 mod common;
 mod completions;

@@ -44,7 +44,7 @@ impl New {
                 return Exit::System;
             }
         }
-        println!("{} written; next: flow plan {0}", path.display());
+        out!("{} written; next: flow plan {0}", path.display());
         Exit::Done
     }
 }

@@ -10,7 +10,7 @@ pub(super) struct Schema {}
 
 impl Schema {
     pub(super) fn go(self) -> Exit {
-        println!("{:#}", crate::plan::schema::schema());
+        out!("{:#}", crate::plan::schema::schema());
         Exit::Done
     }
 }

@@ -236,7 +236,11 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     }
     let remark = |line: &Line| {
         let significant = line.p.is_some_and(|p| p <= params.alpha) && params.empty.contains(&line.source);
-        if significant { "an empty column is significant: the model lacks interactions or the table has an error" } else { "" }
+        if significant {
+            "an empty column is significant: the model lacks interactions or the table has an error"
+        } else {
+            ""
+        }
     };
     let prints = prints(job, "source", "f")?;
     if prints.is_some() || !params.empty.is_empty() {

@@ -77,7 +77,9 @@ pub(super) fn beside(table: Table, prints: &[Print], computed: &[Computed]) -> T
     let off = |c: &Computed| Some(c.value? - own(c)?.value);
     let deviation = computed.iter().map(|c| off(c).unwrap_or(f64::NAN)).collect();
     let remark = |c: &Computed| match (own(c), off(c)) {
-        (Some(print), Some(off)) => [&judge(print, off.abs(), c.rounding), c.remark].join("; ").trim_end_matches("; ").into(),
+        (Some(print), Some(off)) => {
+            [&judge(print, off.abs(), c.rounding), c.remark].join("; ").trim_end_matches("; ").into()
+        }
         (Some(_) | None, _) => c.remark.to_owned(),
     };
     table
@@ -107,8 +109,10 @@ mod tests {
     fn a_print_is_judged_by_its_own_decimals() {
         let file = b"response,term,estimate,decimals,note\nE,a,0.3,2,\nE,b,-1.5,,sign\n";
         let prints = parse(file, "term", "estimate").unwrap();
-        let computed = |line, value, rounding| Computed { response: "E", line, value: Some(value), rounding, remark: "" };
-        let all = [computed("a", 0.3049, 0.0), computed("a", 0.31, 0.0), computed("a", 0.31, 0.003), computed("b", 1.5, 0.0)];
+        let computed =
+            |line, value, rounding| Computed { response: "E", line, value: Some(value), rounding, remark: "" };
+        let all =
+            [computed("a", 0.3049, 0.0), computed("a", 0.31, 0.0), computed("a", 0.31, 0.003), computed("b", 1.5, 0.0)];
         let table = beside(Table::default(), &prints, &all);
         let crate::artifact::Values::Texts(remarks) = &table.column("remark").unwrap().values else { panic!() };
         assert_eq!(remarks[..2], ["as printed", "differs from print"]);
