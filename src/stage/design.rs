@@ -19,7 +19,7 @@ use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageErr
 use crate::artifact::{Artifact, Table};
 use crate::design::given::Given;
 use crate::design::report::power::Question;
-use crate::design::{Factor, Fault, Layout, Method, Order, build, check, report};
+use crate::design::{Domain, Factor, Fault, Layout, Method, Order, build, check, report};
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -33,6 +33,9 @@ struct Params {
     layout: Layout,
     #[serde(default, skip_serializing_if = "is_default")]
     power: Question,
+    /// Given rows hold numbers of levels, from 1.
+    #[serde(default, skip_serializing_if = "is_default")]
+    by_level: bool,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -68,7 +71,7 @@ impl Stage for Design {
     fn settings(&self) -> Value {
         json!({
             "design": self.method().ok(), "factors": self.factors, "file": self.file,
-            "replicates": self.replicates, "order": self.order, "power": self.power,
+            "replicates": self.replicates, "order": self.order, "power": self.power, "by_level": self.by_level,
         })
     }
 
@@ -77,7 +80,8 @@ impl Stage for Design {
         let layout = Layout { replicates: self.replicates, order: self.order };
         let draws = design.draws() || layout.order == Order::Random;
         let factors = self.factors(known.context);
-        let params = Params { design, factors, layout, power: self.power };
+        let by_level = self.by_level.unwrap_or(false);
+        let params = Params { design, factors, layout, power: self.power, by_level };
         let mut task = Task::new("design", json!(params));
         if draws {
             task = task.seed(known.context.seed);
@@ -123,7 +127,10 @@ fn complaint(fault: &Fault) -> Complaint {
 fn run(job: &Job) -> Result<Artifact, Failure> {
     let mut params: Params = job.params()?;
     if let (Method::Given(given), Some(_)) = (&mut params.design, job.files.first()) {
-        given.rows = rows(&data::parse(&job.file("rows")?)?, &params.factors)?;
+        given.rows = rows(&data::parse(&job.file("rows")?)?, &params.factors, params.by_level)?;
+    }
+    if let (Method::Given(given), true) = (&mut params.design, params.by_level) {
+        given.rows.iter_mut().enumerate().try_for_each(|(i, row)| levels(row, i, &params.factors))?;
     }
     let table = build(&params.design, &params.factors, params.layout, job.seed.unwrap_or(0))
         .map_err(|error| StageError::new(error.to_string()))?;
@@ -131,8 +138,24 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
     Ok(tables::artifact(&table, &report))
 }
 
-/// The columns of a file that are the factors, converted to the factors' units.
-fn rows(table: &Table, factors: &[Factor]) -> Result<Vec<Vec<f64>>, StageError> {
+/// Replaces the numbers of levels in a row by the levels.
+fn levels(row: &mut [f64], index: usize, factors: &[Factor]) -> Result<(), StageError> {
+    for (value, factor) in row.iter_mut().zip(factors) {
+        let Domain::Levels(levels) = &factor.domain else {
+            let message = format!("factor `{}` has a range, and `by_level` needs levels", factor.name);
+            return Err(StageError::new(message).hint("give [factor] its levels, or leave `by_level` out"));
+        };
+        let level = (1..=levels.len()).find(|&n| n as f64 == *value).ok_or_else(|| {
+            let message = format!("row {}: `{}` has no level {value}", index + 1, factor.name);
+            StageError::new(message).hint(format!("its levels are numbered 1 to {}", levels.len()))
+        })?;
+        *value = levels[level - 1];
+    }
+    Ok(())
+}
+
+/// The columns of a file that are the factors, converted to the factors' units unless they are numbers of levels.
+fn rows(table: &Table, factors: &[Factor], by_level: bool) -> Result<Vec<Vec<f64>>, StageError> {
     let columns = factors.iter().map(|factor| {
         let name = &factor.name;
         let known = || table.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
@@ -144,6 +167,9 @@ fn rows(table: &Table, factors: &[Factor]) -> Result<Vec<Vec<f64>>, StageError> 
         })?;
         let unit = |text: &str| Unit::parse(text).map_err(|e| StageError::new(format!("factor `{name}`: {e}")));
         let (from, to) = (unit(&column.unit)?, unit(&factor.unit)?);
+        if by_level {
+            return Ok(values);
+        }
         if from.dimension != to.dimension {
             let message = format!("column `{name}` is in `{}`, the factor in `{}`", column.unit, factor.unit);
             return Err(StageError::new(message).hint("name the unit in the head of the column: `Ec [GPa]`"));

@@ -93,6 +93,8 @@ pub struct Design {
     pub rows: Option<Vec<Vec<f64>>>,
     /// Given: a CSV file beside the workflow with a column for every factor.
     pub file: Option<String>,
+    /// Given: the rows hold numbers of the factors' levels, from 1, as published tables do, not their values.
+    pub by_level: Option<bool>,
 }
 
 fn once() -> usize {
@@ -128,11 +130,12 @@ const OPTIONS: &[(&str, &[Name])] = &[
     ("skip", &[Name::Sobol]),
     ("rows", &[Name::Given]),
     ("file", &[Name::Given]),
+    ("by_level", &[Name::Given]),
 ];
 
 impl Design {
     /// Whether the option is there, in the order of [`OPTIONS`].
-    fn said(&self) -> [bool; 18] {
+    fn said(&self) -> [bool; 19] {
         [
             self.table.is_some(),
             self.columns.is_some(),
@@ -152,6 +155,7 @@ impl Design {
             self.skip.is_some(),
             self.rows.is_some(),
             self.file.is_some(),
+            self.by_level.is_some(),
         ]
     }
 
