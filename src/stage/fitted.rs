@@ -14,7 +14,10 @@ use crate::stats::terms::Term;
 use serde::{Deserialize, Serialize};
 
 mod keep;
+mod predict;
 pub use keep::models;
+pub use predict::Predict;
+pub(super) use predict::check_predict;
 
 /// One response to be fitted.
 #[derive(Debug, Serialize, Deserialize)]
@@ -35,6 +38,8 @@ pub(super) struct Params {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub select_alpha: Option<f64>,
     pub outlier_alpha: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub predict: Option<Predict>,
 }
 
 /// The level at which terms are selected when none is given.
@@ -76,16 +81,20 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     }
     let residuals = found.iter().map(|(f, r)| (f.response.as_str(), r.residuals.as_slice()));
     let (stationary, axes) = stationary_tables(&found);
-    let root = Group::new()
+    let mut root = Group::new()
         .with("coefficients", Node::Table(natural))
         .with("coded", Node::Table(coefficient_table(&found, |r| &r.coded)))
         .with("fit", Node::Table(fit))
         .with("residuals", Node::Table(residual_table(residuals)))
         .with("stationary", Node::Table(stationary))
         .with("axes", Node::Table(axes))
+        .with("path", Node::Table(predict::path_table(&found)))
         .with("domain", Node::Table(domain_table(&found)))
         .with("selection", Node::Table(selection_table(&found)))
         .with("models", Node::Group(keep::kept(found.iter().map(|(f, r)| (f.response.as_str(), &r.model)))));
+    if let Some(points) = &params.predict {
+        root.put("predictions", Node::Table(predict::prediction_table(&found, points)));
+    }
     Ok(Artifact::new("surfaces", 1, root))
 }
 
