@@ -80,7 +80,7 @@ impl Figure for RankedBars {
         let pick = |f: &dyn Fn(&Bar) -> f64| order.iter().map(|&i| f(&self.bars[i])).collect::<Vec<_>>();
         let words = |f: &dyn Fn(&Bar) -> String| order.iter().map(|&i| f(&self.bars[i])).collect::<Vec<_>>();
         let mut columns = vec![
-            Column::words("factor", words(&|b| b.factor.name.clone())),
+            Column::words("factor", words(&|b| b.factor.id().to_string())),
             Column::words("group", words(&|b| b.group.clone())),
             self.quantity.column("value", pick(&|b| b.value)),
         ];
@@ -115,7 +115,7 @@ impl RankedBars {
     fn describe(&self, order: &[usize]) -> String {
         let top = order.iter().take(4).map(|&i| {
             let bar = &self.bars[i];
-            format!("{} {} {}", bar.factor.name, significant(bar.value, 3), self.quantity.unit)
+            format!("{} {} {}", bar.factor.id(), significant(bar.value, 3), self.quantity.unit)
         });
         format!("Bars in descending order: {}.", top.collect::<Vec<_>>().join(", "))
     }

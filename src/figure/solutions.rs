@@ -70,7 +70,7 @@ impl Figure for Solutions {
         for (k, factor) in self.factors.iter().enumerate() {
             let cell = |r: &Vec<f64>| r.get(k).copied().unwrap_or(f64::NAN);
             let values = self.sets.iter().flat_map(|s| s.rows.iter().map(cell)).collect();
-            columns.push(factor.column(&factor.name, values));
+            columns.push(factor.column(factor.id(), values));
         }
         let misfit = |s: &SolutionSet, k: usize| s.misfit.get(k).copied().unwrap_or(f64::NAN);
         let misfits = self.sets.iter().flat_map(|s| (0..s.rows.len()).map(move |k| misfit(s, k))).collect();
@@ -89,7 +89,7 @@ impl Solutions {
         let tell = |s: &SolutionSet| {
             let best = s.rows.first().cloned().unwrap_or_default();
             let pairs =
-                self.factors.iter().zip(best).map(|(f, v)| format!("{} {} {}", f.name, significant(v, 3), f.unit));
+                self.factors.iter().zip(best).map(|(f, v)| format!("{} {} {}", f.id(), significant(v, 3), f.unit));
             format!("{}: {} solutions, best {}.", s.name, s.rows.len(), pairs.collect::<Vec<_>>().join(", "))
         };
         self.sets.iter().map(tell).collect::<Vec<_>>().join(" ")

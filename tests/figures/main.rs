@@ -63,7 +63,7 @@ fn bytes_of_a_small_drawing_are_pinned() {
     let got = [hash(svg(&scene).as_bytes()), hash(&pdf(&scene)), hash(&png(&scene, 150.0).unwrap())];
     assert_eq!(got, PINNED);
 }
-const PINNED: [&str; 3] = ["", "", ""];
+const PINNED: [&str; 3] = ["ee9f5ec635352656", "dddf1df940c8e9d9", "f3f5656213f2f050"];
 
 #[test]
 fn svg_is_small_and_names_its_parts() {
@@ -98,4 +98,22 @@ fn every_figure_hands_out_its_numbers() {
 fn an_impossible_size_is_refused() {
     let message = png(&small(), 1e6).unwrap_err().to_string();
     assert!(message.contains("40.0 mm × 20.0 mm at 1000000 dpi"), "{message}");
+}
+
+/// The check that the others lean on can fail.
+#[test]
+fn clipped_and_covered_labels_are_found() {
+    let mut scene = small();
+    let label = || Line::new("label", 2.822);
+    scene.text(label(), [38.0, 3.0], Anchor::Start, 0.0, palette::INK);
+    scene.text(label(), [20.0, 12.5], Anchor::Middle, 0.0, palette::INK);
+    let faults = scene.faults();
+    assert!(faults[0].starts_with("“label” leaves the page"), "{faults:?}");
+    assert!(faults[1].contains("“label” covers “σ") && faults.len() == 2, "{faults:?}");
+    // A turned label beside another: their upright boxes meet, they do not.
+    let mut scene = Scene::new(40.0, 40.0);
+    for x in [10.0, 14.0] {
+        scene.text(Line::new("a slanted label", 2.822), [x, 35.0], Anchor::Start, 45.0, palette::INK);
+    }
+    assert_eq!(scene.faults(), Vec::<String>::new());
 }

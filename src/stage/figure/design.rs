@@ -65,7 +65,7 @@ pub(super) fn main_effects(params: &Params, sources: &Sources) -> Result<MainEff
     for range in computed {
         let label = label_of(params, &range)?;
         factors.push(FactorMeans {
-            factor: named(label),
+            factor: label.quantity(),
             group: if some_set && label.group.is_empty() { "empty column".into() } else { label.group.clone() },
             published: published.iter().find(|r| r.factor == label.key).map(|r| r.means.clone()).unwrap_or_default(),
             levels: range.levels,
@@ -75,12 +75,6 @@ pub(super) fn main_effects(params: &Params, sources: &Sources) -> Result<MainEff
     }
     let grand_mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
     Ok(MainEffects { response: response.quantity(), grand_mean, factors })
-}
-
-/// A factor with its key as name, so that data tables and descriptions can tell it.
-pub(super) fn named(label: &Label) -> crate::figure::Quantity {
-    let name = if label.name.is_empty() { &label.key } else { &label.name };
-    crate::figure::Quantity::new(name, &label.symbol, &label.unit)
 }
 
 pub(super) fn range(params: &Params, sources: &Sources) -> Result<RankedBars, StageError> {
@@ -97,12 +91,12 @@ pub(super) fn range(params: &Params, sources: &Sources) -> Result<RankedBars, St
             continue;
         }
         let published = published.iter().find(|r| r.factor == label.key).map(|r| r.range);
-        bars.push(Bar { factor: named(label), group: label.group.clone(), value: range.range, published });
+        bars.push(Bar { factor: label.quantity(), group: label.group.clone(), value: range.range, published });
     }
     let quantity = response.quantity();
     Ok(RankedBars {
-        title: format!("Ranges of {}", if quantity.name.is_empty() { &response.key } else { &quantity.name }),
-        quantity: crate::figure::Quantity { name: "Range of".into(), ..quantity },
+        title: format!("Ranges of {}", quantity.words()),
+        quantity: quantity.worded("Range of"),
         bars,
         references,
     })

@@ -58,7 +58,7 @@ struct Label {
 impl Label {
     fn quantity(&self) -> figure::Quantity {
         let name = if self.name.is_empty() && self.symbol.is_empty() { &self.key } else { &self.name };
-        figure::Quantity::new(name, &self.symbol, &self.unit)
+        figure::Quantity::new(name, &self.symbol, &self.unit).keyed(&self.key)
     }
 }
 

@@ -310,7 +310,7 @@ pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, S
     let limits = [("margin of error", found.margin), ("simultaneous margin", found.simultaneous)];
     Ok(RankedBars {
         title: format!("Effects on {}", response.key),
-        quantity: Quantity { name: "Absolute effect on".into(), ..response.quantity() },
+        quantity: response.quantity().worded("Absolute effect on"),
         bars: (0..found.sizes.len()).map(bar).collect(),
         references: limits.into_iter().filter_map(|(name, v)| v.map(|v| (name.to_owned(), v))).collect(),
     })

@@ -1,7 +1,6 @@
 //! Figures of a calibration: convergence, parameter sets, verification.
 
 use super::super::StageError;
-use super::design::named;
 use super::source::{Rows, Source, Sources, pick};
 use super::{Label, Params};
 use crate::figure::convergence::{Convergence, Descent};
@@ -80,7 +79,7 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
         label.range.unwrap_or(if high > low { [low, high] } else { [low - 1.0, low + 1.0] })
     };
     let bounds = labels.iter().enumerate().map(bound).collect();
-    Ok(Solutions { factors: labels.iter().map(|l| named(l)).collect(), bounds, sets })
+    Ok(Solutions { factors: labels.iter().map(|l| l.quantity()).collect(), bounds, sets })
 }
 
 /// Values of the runs, and the target of each set and response.

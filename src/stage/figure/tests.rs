@@ -317,7 +317,7 @@ fn the_numbers_are_those_of_the_inputs() {
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['mu', 'Ec']";
     let field = made(contour, &[surfaces()], &[]).unwrap();
     let data = field.table("data").unwrap();
-    let z = data.reals("z").or_else(|| data.reals("UCS")).unwrap();
+    let z = data.reals("UCS").unwrap();
     // At mu = 0.4, Ec = 8: 1 + 16 − 1.2 + 1.6.
     assert!((z[0] - 17.4).abs() < 1e-12, "{}", z[0]);
 }

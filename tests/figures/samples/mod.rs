@@ -219,7 +219,10 @@ fn points_ccd() -> DesignPoints {
         .collect();
     DesignPoints {
         title: "central composite design".into(),
-        factors: vec![Quantity::new("", r"\bar\sigma_c", "MPa"), Quantity::new("", r"\bar\tau_c", "MPa")],
+        factors: vec![
+            Quantity::new("", r"\bar\sigma_c", "MPa").keyed("sigma_c"),
+            Quantity::new("", r"\bar\tau_c", "MPa").keyed("tau_c"),
+        ],
         sides: vec![[10.0, 30.0]; 2],
         points: points.iter().map(|p| p.to_vec()).collect(),
         kinds,
