@@ -254,6 +254,20 @@ impl Board {
         self.nodes[node].dependents.clone()
     }
 
+    /// A node whose result has this content.
+    pub(super) fn maker(&self, content: &ContentHash) -> Option<NodeId> {
+        let makes = |node: &Node| matches!(&node.state, TaskState::Done { content: c, .. } if c == content);
+        self.nodes.iter().position(makes)
+    }
+
+    /// A result that was lost is as if it had never been; `reader` waits for it.
+    pub(super) fn reopen(&mut self, node: NodeId, reader: NodeId) {
+        let count = self.count_mut(node);
+        count.cached = count.cached.saturating_sub(1);
+        self.nodes[node].state = TaskState::Open;
+        self.nodes[node].dependents.push(reader);
+    }
+
     pub(super) fn started(&mut self, node: NodeId) {
         self.nodes[node].state = TaskState::Running;
     }

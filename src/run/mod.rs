@@ -24,7 +24,7 @@ pub use stages::{StageReport, StageStatus};
 
 use crate::exec::Threads;
 use crate::plan::Workflow;
-use crate::stage::{Failure, Progress};
+use crate::stage::{Failure, Progress, StageError};
 use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
 use stages::Stages;
@@ -245,7 +245,22 @@ impl Loop<'_> {
             let threads = (idle / (self.ready.len() + 1)).max(1);
             match task::Order::new(&self.board, node, self.store, threads) {
                 Ok(order) => self.give(order),
-                Err(e) => self.take(Answer { node, result: Err(e) }),
+                Err(lost) => self.restore(node, &lost),
+            }
+        }
+    }
+
+    /// An input that was in the store cannot be read: its task runs again, and `node` after it.
+    fn restore(&mut self, node: NodeId, lost: &task::Lost) {
+        match self.board.maker(&lost.content).filter(|_| lost.again) {
+            Some(maker) => {
+                self.board.reopen(maker, node);
+                self.ready.insert(maker);
+            }
+            None => {
+                let hint = "run again: what is damaged was set aside and will be computed again";
+                let error = StageError::new(lost.error.to_string()).hint(hint);
+                self.take(Answer { node, result: Err(error.into()) });
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::board::{Board, NodeId};
 use crate::artifact::{Artifact, ContentHash, Key};
 use crate::stage::{Failure, Job, Progress, StageError, Task, work};
-use crate::store::{Claim, Store, Timing};
+use crate::store::{Claim, Guard, Store, StoreError, Timing};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Instant, SystemTime};
@@ -17,6 +17,14 @@ pub(super) struct Order {
     threads: usize,
 }
 
+/// An input that cannot be read.
+pub(super) struct Lost {
+    pub(super) content: ContentHash,
+    /// Whether computing it again will help.
+    pub(super) again: bool,
+    pub(super) error: StoreError,
+}
+
 /// A stored result.
 pub(super) struct Finished {
     pub(super) content: ContentHash,
@@ -27,19 +35,21 @@ pub(super) struct Finished {
 }
 
 impl Order {
-    /// Loads the inputs of an open node.
-    pub(super) fn new(board: &Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Failure> {
+    /// Loads the inputs of an open node, or says which of them is lost.
+    pub(super) fn new(board: &Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Lost> {
         let (Some(text), Some(contents)) = (board.text(node), board.inputs(node)) else {
             panic!("BUG: a task was started before its inputs were known");
         };
         let task = Arc::clone(board.task(node));
-        let load = |content: &ContentHash| store.get(content).map_err(failure);
+        let load = |content: &ContentHash| {
+            store.get(content).map_err(|error| Lost { content: *content, again: error.is_missing(), error })
+        };
         let inputs = task
             .inputs
             .iter()
             .zip(&contents)
             .map(|((name, _), content)| Ok((name.clone(), load(content)?)))
-            .collect::<Result<_, Failure>>()?;
+            .collect::<Result<_, Lost>>()?;
         Ok(Self { node, task, text, inputs, threads })
     }
 
@@ -54,9 +64,7 @@ impl Order {
         loop {
             match store.claim(&key).map_err(failure)? {
                 Claim::Done(record) => return Ok(Finished { content: record.content, shared: true, seconds: 0.0 }),
-                Claim::Mine(_guard) => {
-                    return self.compute(store, say, stop);
-                }
+                Claim::Mine(claim) => return self.compute(claim, store, say, stop),
                 Claim::Theirs(waiting) => {
                     say(Progress { fraction: None, note: format!("waits for {}", waiting.holder_now()) });
                     if !waiting.wait(|| stop.load(Ordering::Relaxed)) {
@@ -67,7 +75,13 @@ impl Order {
         }
     }
 
-    fn compute(&self, store: &Store, say: &(dyn Fn(Progress) + Sync), stop: &AtomicBool) -> Result<Finished, Failure> {
+    fn compute(
+        &self,
+        claim: Guard,
+        store: &Store,
+        say: &(dyn Fn(Progress) + Sync),
+        stop: &AtomicBool,
+    ) -> Result<Finished, Failure> {
         let Some(work) = work(self.task.work) else { panic!("BUG: no work is called `{}`", self.task.work) };
         let job = Job {
             params: &self.task.params,
@@ -82,11 +96,11 @@ impl Order {
         let (started, clock) = (SystemTime::now(), Instant::now());
         let artifact = (work.run)(&job)?;
         let timing = Timing { started, seconds: clock.elapsed().as_secs_f64() };
-        let (record, _) = store.put(&self.text, artifact, &timing).map_err(failure)?;
+        let (record, _) = store.finish(claim, &self.text, artifact, &timing).map_err(failure)?;
         Ok(Finished { content: record.content, shared: false, seconds: timing.seconds })
     }
 }
 
-fn failure(error: impl std::fmt::Display) -> Failure {
+pub(super) fn failure(error: impl std::fmt::Display) -> Failure {
     StageError::new(error.to_string()).into()
 }
