@@ -1,4 +1,35 @@
 //! `flow` runs a numerical-experiment campaign with bonded-particle models that is written down as one TOML file.
+//!
+//! # Layers
+//! An arrow is the only import allowed, directly or further along it; `tests/layers.rs` holds the code to it.
+//!
+//! ```text
+//! cli → run → { exec, plan, store }
+//! { run, plan } → stage → { dem, design, stats, optim, figure } → { math, unit }
+//! { run, plan, stage, store } → artifact → math
+//! ```
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`cli`] | what a person types and reads; the only place that prints |
+//! | [`run`] | the run loop, and the only state that changes during a run |
+//! | [`exec`] | threads that take work; knows neither tasks nor physics |
+//! | [`plan`] | TOML text → checked workflow; tasks → texts and keys; reasons of reruns |
+//! | [`store`] | the folder of results: HDF5, journals, locks |
+//! | [`stage`] | one file per kind of stage: where domains meet workflows and artifacts |
+//! | [`artifact`] | what can be stored, as plain data with a content hash |
+//! | [`dem`] | the discrete-element engine, specimens and tests |
+//! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
+//! | [`math`], [`unit`] | random streams, elementary functions, distributions; quantities with units |
+//!
+//! The domains (`dem`, `design`, `stats`, `optim`, `figure`) are pure and know nothing of one another, of files or of TOML.
+//!
+//! # The life of `flow run`
+//! 1. `plan` reads the file: every table into the config type of its kind, every fault at once.
+//! 2. `run` asks each stage whose inputs are there for its next step: tasks, which may need other tasks.
+//! 3. The text of a task whose inputs are known is hashed: its key. The store has a result for the key, or it runs.
+//! 4. A worker computes the artifact; the store writes it under the hash of its values and records key → object.
+//! 5. Keys use the content of inputs, so an equal result stops the wave; equal tasks are one, wherever they come from.
 
 pub mod artifact;
 pub mod cli;

@@ -1,9 +1,10 @@
 //! Options that mean the same on every command that takes a workflow, and the two things each begins with.
 
-use super::Exit;
+use super::{Exit, message};
 use crate::plan::{self, Overrides, Workflow};
 use crate::store::Store;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 
 /// Which campaign.
@@ -20,6 +21,32 @@ pub(super) struct Campaign {
     /// The folder that keeps results.
     #[arg(long, value_name = "FOLDER", default_value = "store")]
     pub(super) store: PathBuf,
+    /// Colours of messages; by default on a terminal, unless NO_COLOR is set.
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Color::Auto)]
+    pub(super) color: Color,
+}
+
+/// When to use colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Color {
+    /// On a terminal, unless NO_COLOR is set.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+impl Color {
+    /// Whether messages on standard error are coloured.
+    pub(super) fn on(self) -> bool {
+        let wanted = || std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        match self {
+            Self::Auto => std::io::stderr().is_terminal() && wanted(),
+            Self::Always => true,
+            Self::Never => false,
+        }
+    }
 }
 
 impl Campaign {
@@ -27,9 +54,7 @@ impl Campaign {
     pub(super) fn load(&self, stages: &[String]) -> Result<Workflow, Exit> {
         let overrides = Overrides { profile: self.profile.clone(), sets: self.sets.clone() };
         let workflow = plan::load(&self.workflow, &overrides).map_err(|faults| {
-            for fault in faults {
-                eprintln!("{fault}");
-            }
+            message::print(&faults, self.color);
             Exit::BadInput
         })?;
         let known: Vec<&str> = workflow.stages.iter().map(|stage| stage.name.as_str()).collect();

@@ -3,7 +3,7 @@
 //! Each side is a workflow file (`c30.toml`), a profile of one (`c30.toml@quick`), or a recorded run (`run 3` is `#3`).
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, Color, system};
 use super::progress::Silent;
 use crate::artifact::{Artifact, ContentHash, Table, Values};
 use crate::run::{Settings, StageStatus, run};
@@ -56,17 +56,17 @@ impl Diff {
                 continue;
             }
             if !self.json {
-                println!("{name}");
-                settings.iter().for_each(|(path, old, new)| println!("  {path}: {old} → {new}"));
-                results.iter().for_each(|line| println!("  {line}"));
+                out!("{name}");
+                settings.iter().for_each(|(path, old, new)| out!("  {path}: {old} → {new}"));
+                results.iter().for_each(|line| out!("  {line}"));
             }
             let settings: Vec<Value> =
                 settings.into_iter().map(|(path, a, b)| json!({ "path": path, "a": a, "b": b })).collect();
             document.insert(name.clone(), json!({ "settings": settings, "results": results }));
         }
         match (self.json, document.is_empty()) {
-            (true, _) => println!("{}", Value::from(document)),
-            (false, true) => println!("no difference"),
+            (true, _) => out!("{}", Value::from(document)),
+            (false, true) => out!("no difference"),
             (false, false) => {}
         }
         Ok(Exit::Done)
@@ -84,7 +84,13 @@ impl Diff {
             Some((file, profile)) => (file, Some(profile.to_owned())),
             None => (text, None),
         };
-        let campaign = Campaign { workflow: PathBuf::from(file), profile, sets: Vec::new(), store: self.store.clone() };
+        let campaign = Campaign {
+            workflow: PathBuf::from(file),
+            profile,
+            sets: Vec::new(),
+            store: self.store.clone(),
+            color: Color::Auto,
+        };
         let workflow = campaign.load(&[])?;
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
         let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));

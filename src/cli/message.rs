@@ -1,11 +1,17 @@
 //! Faults as a person reads them: the line, a caret under the place, what is known, what to do.
 
+use super::common::Color;
 use crate::plan::{Fault, Place};
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
 
+/// Prints all faults on standard error.
+pub(super) fn print(found: &[Fault], color: Color) {
+    eprint!("{}", faults(found, color.on()));
+}
+
 /// All faults, one under the other, and how many there are.
-pub(super) fn faults(faults: &[Fault], colour: bool) -> String {
+fn faults(faults: &[Fault], colour: bool) -> String {
     let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
     let mut text = String::new();
     for fault in faults {

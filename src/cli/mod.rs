@@ -3,11 +3,19 @@
 //! Results go to standard output, everything else to standard error. Exit codes: 0 done, 1 a task failed, 2 the input
 //! is wrong, 3 the store or the system failed, 130 interrupted.
 
+#[macro_use]
+mod output;
+mod check;
 mod common;
+mod completions;
 mod diff;
+mod graph;
+mod message;
+mod new;
 mod plan;
 mod progress;
 mod run;
+mod schema;
 mod show;
 mod store;
 
@@ -30,10 +38,20 @@ enum Command {
     Plan(plan::Plan),
     /// Show a result as a table.
     Show(show::Show),
+    /// Find every fault of a workflow without running anything.
+    Check(check::Check),
+    /// Show the stages, what they take from one another, and what is done of them.
+    Graph(graph::Graph),
     /// Compare two campaigns: what was set otherwise, what came out otherwise.
     Diff(diff::Diff),
     /// Look after the store: list, verify, sizes, remove what nothing reaches.
     Store(store::StoreCommand),
+    /// Write a commented workflow to start from.
+    New(new::New),
+    /// Print the JSON Schema of workflow files, for editors.
+    Schema(schema::Schema),
+    /// Print completions for a shell.
+    Completions(completions::Completions),
 }
 
 /// How a command ended.
@@ -59,6 +77,11 @@ pub fn main() -> ExitCode {
         Command::Show(show) => show.go(),
         Command::Diff(diff) => diff.go(),
         Command::Store(store) => store.go(),
+        Command::Check(check) => check.go(),
+        Command::Graph(graph) => graph.go(),
+        Command::New(new) => new.go(),
+        Command::Schema(schema) => schema.go(),
+        Command::Completions(completions) => completions.go(),
     };
     ExitCode::from(exit as u8)
 }

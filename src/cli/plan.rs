@@ -45,7 +45,7 @@ impl Plan {
         let lines: Vec<Line> =
             report.stages.iter().map(|stage| line(stage, open_tasks(&workflow, stage, &report), &past)).collect();
         if self.json {
-            println!("{}", document(&workflow.name, &report, &lines));
+            out!("{}", document(&workflow.name, &report, &lines));
         } else {
             print_lines(&lines);
         }
@@ -86,9 +86,9 @@ fn print_lines(lines: &[Line]) {
     let width = lines.iter().map(|line| line.name.chars().count()).max().unwrap_or(0);
     for line in lines {
         let about = line.seconds.map_or_else(String::new, |s| format!(", about {}", duration(s / cores() as f64)));
-        println!("{:width$}  {}{about}", line.name, line.state);
+        out!("{:width$}  {}{about}", line.name, line.state);
         for reason in &line.reasons {
-            println!("{:width$}    {reason}", "");
+            out!("{:width$}    {reason}", "");
         }
     }
 }

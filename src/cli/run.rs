@@ -61,9 +61,9 @@ impl Run {
         }
         let seconds = started.elapsed().unwrap_or_default().as_secs_f64();
         if self.json {
-            println!("{}", document(&workflow.name, &report, seconds));
+            out!("{}", document(&workflow.name, &report, seconds));
         } else if !self.quiet {
-            println!("{}", summary(&report, seconds));
+            out!("{}", summary(&report, seconds));
         }
         self.failures(&workflow, &report);
         Ok(exit(&report))

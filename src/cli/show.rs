@@ -56,7 +56,7 @@ impl Show {
             return Err(Exit::BadInput);
         };
         if self.path {
-            println!("{}", store.path(&object).display());
+            out!("{}", store.path(&object).display());
             return Ok(Exit::Done);
         }
         self.values(&store, &object)
@@ -84,12 +84,12 @@ impl Show {
                 Some(_) => tables.first().map_or(Value::Null, |(_, table)| table_json(table)),
                 None => group_json(&artifact),
             };
-            println!("{value}");
+            out!("{value}");
         } else if self.csv {
-            tables.iter().for_each(|(_, table)| print!("{}", csv_text(table)));
+            tables.iter().for_each(|(_, table)| super::output::write(&csv_text(table)));
         } else {
             for (name, table) in tables {
-                println!("{name}\n{}", text(table));
+                out!("{name}\n{}\n", text(table));
             }
             print_others(&artifact, self.table.is_some());
         }
@@ -134,15 +134,15 @@ fn print_others(artifact: &Artifact, only_table: bool) {
     }
     for (name, node) in artifact.root.iter() {
         match node {
-            Node::Text(text) if !text.is_empty() => println!("{name}: {text}"),
-            Node::Real { value, unit } => println!("{name}: {value} {unit}"),
-            Node::Int(value) => println!("{name}: {value}"),
-            Node::Flag(value) => println!("{name}: {}", if *value { "yes" } else { "no" }),
+            Node::Text(text) if !text.is_empty() => out!("{name}: {text}"),
+            Node::Real { value, unit } => out!("{name}: {value} {unit}"),
+            Node::Int(value) => out!("{name}: {value}"),
+            Node::Flag(value) => out!("{name}: {}", if *value { "yes" } else { "no" }),
             Node::Array(array) => {
                 let shape: Vec<String> = array.shape.iter().map(usize::to_string).collect();
-                println!("{name}: {} {} {}", shape.join(" × "), array.values.type_name(), array.unit);
+                out!("{name}: {} {} {}", shape.join(" × "), array.values.type_name(), array.unit);
             }
-            Node::Bytes(bytes) => println!("{name}: {} bytes", bytes.len()),
+            Node::Bytes(bytes) => out!("{name}: {} bytes", bytes.len()),
             Node::Group(_) | Node::Table(_) | Node::Text(_) => {}
         }
     }
@@ -183,12 +183,15 @@ fn head(column: &Column) -> String {
     }
 }
 
-fn text(table: &Table) -> comfy_table::Table {
+/// So many rows of a table are shown to a reader; programs take `--csv` or `--json`.
+const MOST_ROWS: usize = 100;
+
+fn text(table: &Table) -> String {
     let mut shown = comfy_table::Table::new();
-    shown.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY);
+    shown.load_style(comfy_table::presets::NOTHING);
     shown.set_header(table.columns.iter().map(head));
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| short(&column.values)).collect();
-    for row in 0..table.rows() {
+    for row in 0..table.rows().min(MOST_ROWS) {
         shown.add_row(columns.iter().map(|column| &column[row]));
     }
     for (place, column) in table.columns.iter().enumerate() {
@@ -196,7 +199,10 @@ fn text(table: &Table) -> comfy_table::Table {
             shown.set_cell_alignment(comfy_table::CellAlignment::Right);
         }
     }
-    shown
+    let more = table.rows().saturating_sub(MOST_ROWS);
+    let rest = if more > 0 { format!("\n… and {more} more rows; --csv shows all") } else { String::new() };
+    let lines: Vec<String> = shown.lines().map(|line| line.trim_end().to_owned()).collect();
+    format!("{}{rest}", lines.join("\n"))
 }
 
 fn csv_text(table: &Table) -> String {

@@ -1,7 +1,7 @@
 //! `flow store`: what the store holds, whether it is sound, what it takes, and what may go.
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, Color, system};
 use super::progress::{Silent, duration};
 use crate::artifact::Key;
 use crate::run::{Settings, run};
@@ -66,7 +66,7 @@ impl StoreCommand {
             let text = store.task_text(&record).unwrap_or_default();
             let work = text.lines().nth(1).and_then(|line| line.strip_prefix("work ")).unwrap_or("unreadable");
             let (took, size) = (duration(record.seconds), bytes(record.bytes()));
-            println!(
+            out!(
                 "{:.16}  {work:16} {took:>8} {size:>9}  {}",
                 record.content.to_string(),
                 store.path(&record.object()).display()
@@ -77,24 +77,21 @@ impl StoreCommand {
 
     fn verify(&self) -> Result<Exit, Exit> {
         let verdict = self.open()?.verify().map_err(|e| system(&e))?;
-        println!("{} results are sound ({})", verdict.sound.files, bytes(verdict.sound.bytes));
+        out!("{} results are sound ({})", verdict.sound.files, bytes(verdict.sound.bytes));
         for damage in &verdict.damages {
-            println!("damaged: {damage}");
+            out!("damaged: {damage}");
         }
         for key in &verdict.missing {
-            println!("missing: the result of task {key}; the next run computes it again");
+            out!("missing: the result of task {key}; the next run computes it again");
         }
         for key in &verdict.adopted {
-            println!("adopted: the result of task {key} had lost its record");
+            out!("adopted: the result of task {key} had lost its record");
         }
         for (key, first, second) in &verdict.contradictions {
-            println!("contradiction: task {key} gave {first} and {second}; it depends on something outside its key");
+            out!("contradiction: task {key} gave {first} and {second}; it depends on something outside its key");
         }
         if verdict.lost_records > 0 {
-            println!(
-                "{} records of the journal cannot be read; their results were adopted again",
-                verdict.lost_records
-            );
+            out!("{} records of the journal cannot be read; their results were adopted again", verdict.lost_records);
         }
         let sound = verdict.damages.is_empty() && verdict.contradictions.is_empty();
         Ok(if sound { Exit::Done } else { Exit::System })
@@ -111,7 +108,7 @@ impl StoreCommand {
             ("leftovers", usage.temporary),
         ];
         for (name, amount) in rows {
-            println!("{name:20} {:>7} files {:>10}", amount.files, bytes(amount.bytes));
+            out!("{name:20} {:>7} files {:>10}", amount.files, bytes(amount.bytes));
         }
         Ok(Exit::Done)
     }
@@ -125,11 +122,11 @@ impl StoreCommand {
         let swept = store.sweep(&reachable, gc.yes).map_err(|e| system(&e))?;
         let verb = if gc.yes { "removed" } else { "would remove" };
         let (removed, rubbish) = (swept.removed, swept.rubbish);
-        println!("{verb} {} results ({}) that no named workflow reaches", removed.files, bytes(removed.bytes));
-        println!("{verb} {} damaged or left-over files ({})", rubbish.files, bytes(rubbish.bytes));
-        println!("kept {} results ({})", swept.kept.files, bytes(swept.kept.bytes));
+        out!("{verb} {} results ({}) that no named workflow reaches", removed.files, bytes(removed.bytes));
+        out!("{verb} {} damaged or left-over files ({})", rubbish.files, bytes(rubbish.bytes));
+        out!("kept {} results ({})", swept.kept.files, bytes(swept.kept.bytes));
         if !gc.yes {
-            println!("nothing was removed; say --yes to do it");
+            out!("nothing was removed; say --yes to do it");
         }
         Ok(Exit::Done)
     }
@@ -137,8 +134,13 @@ impl StoreCommand {
 
 /// Adds all that a workflow can reach, as it stands and with each of its profiles.
 fn reach(path: &std::path::Path, folder: &std::path::Path, store: &Store, keys: &mut HashSet<Key>) -> Result<(), Exit> {
-    let campaign =
-        |profile| Campaign { workflow: path.to_owned(), profile, sets: Vec::new(), store: folder.to_owned() };
+    let campaign = |profile| Campaign {
+        workflow: path.to_owned(),
+        profile,
+        sets: Vec::new(),
+        store: folder.to_owned(),
+        color: Color::Auto,
+    };
     let plain = campaign(None).load(&[])?;
     let profiles = plain.profiles.iter().cloned().map(Some);
     let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: false };

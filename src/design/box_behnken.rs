@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 pub struct BoxBehnken {
     /// Number of centre points; the published number if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub centre: Option<usize>,
+    pub centre_points: Option<usize>,
 }
 
 /// Blocks and centre points by number of factors.
@@ -62,7 +62,7 @@ impl Design for BoxBehnken {
             }
         }
         let edges = rows.len();
-        let centre = self.centre.unwrap_or(*centre);
+        let centre = self.centre_points.unwrap_or(*centre);
         let mut rows = Points::coded(&rows, PointType::Edge);
         rows.extend(Points::centre(k, centre));
         Ok(Points {
@@ -78,9 +78,9 @@ mod tests {
     use super::*;
     use crate::design::{DesignTable, Layout, Method, build};
 
-    fn table(k: usize, centre: Option<usize>) -> DesignTable {
+    fn table(k: usize, centre_points: Option<usize>) -> DesignTable {
         let factors: Vec<Factor> = (0..k).map(|i| Factor::range(&format!("x{i}"), "", -1.0, 1.0)).collect();
-        build(&Method::BoxBehnken(BoxBehnken { centre }), &factors, Layout::default(), 1).unwrap()
+        build(&Method::BoxBehnken(BoxBehnken { centre_points }), &factors, Layout::default(), 1).unwrap()
     }
 
     /// Box & Behnken 1960, table 1; NIST handbook, table 3.24.

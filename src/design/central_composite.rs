@@ -11,14 +11,14 @@
 //! | spherical | √k | all points but the centre on one sphere |
 //! | face | 1 | three levels suffice, no point leaves the cube |
 //!
-//! Without `centre`, n₀ gives uniform precision (Box & Hunter 1957, table 2): the integer nearest to λ(√F + 2)² − F − 2k with
+//! Without `centre_points`, n₀ gives uniform precision (Box & Hunter 1957, table 2): the integer nearest to λ(√F + 2)² − F − 2k with
 //! λ = (k + 3 + √(9k² + 14k − 7)) / (4(k + 2)).
 
 use super::coding::{Factor, check_surface};
 use super::error::Fault;
 use super::fractional::cube;
 use super::table::{PointType, Points};
-use super::{Design, Stream};
+use super::{Design, Stream, is_default};
 use serde::{Deserialize, Serialize};
 
 /// Rule for the distance of the axial points.
@@ -66,13 +66,16 @@ pub enum Corners {
 #[serde(default, deny_unknown_fields)]
 pub struct CentralComposite {
     /// Distance of the axial points: a rule or a number.
+    #[serde(skip_serializing_if = "is_default")]
     pub alpha: Alpha,
     /// Number of centre points; that of uniform precision if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub centre: Option<usize>,
+    pub centre_points: Option<usize>,
     /// What the factors' ranges stand for.
+    #[serde(skip_serializing_if = "is_default")]
     pub extent: Extent,
     /// Which corners are run.
+    #[serde(skip_serializing_if = "is_default")]
     pub corners: Corners,
 }
 
@@ -143,7 +146,7 @@ impl Design for CentralComposite {
             return Err(faults);
         }
         let f = corners.len();
-        let centre = self.centre.unwrap_or_else(|| uniform_precision(k, f));
+        let centre = self.centre_points.unwrap_or_else(|| uniform_precision(k, f));
         let alpha = self.distance(k, f, centre);
         let unit = if self.extent == Extent::Axial && alpha > 1.0 { 1.0 / alpha } else { 1.0 };
         let scaled: Vec<Vec<f64>> = corners.iter().map(|r| r.iter().map(|x| x * unit).collect()).collect();
@@ -233,7 +236,7 @@ mod tests {
     #[test]
     fn orthogonal_alpha_makes_squares_uncorrelated() {
         let orthogonal =
-            |centre| CentralComposite { alpha: Alpha::Orthogonal, centre: Some(centre), ..Default::default() };
+            |centre| CentralComposite { alpha: Alpha::Orthogonal, centre_points: Some(centre), ..Default::default() };
         for (k, alpha) in [(2, 1.0), (3, 1.2154), (4, 2.0_f64.sqrt()), (5, 1.5467)] {
             let t = table(orthogonal(1), k);
             assert!((t.coded.iter().map(|r| r[0]).fold(0.0, f64::max) - alpha).abs() < 1e-4, "k = {k}");

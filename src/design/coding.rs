@@ -6,12 +6,14 @@
 //! very bits, so that a row of one design equals the same row of another.
 
 use super::error::Fault;
+use serde::{Deserialize, Serialize};
 
 /// Relative distance below which a computed value is taken for a declared level or a whole coded number.
 const SNAP: f64 = 1e-12;
 
 /// The values a factor may take.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Domain {
     /// These values only, in the order "level 1, level 2, …".
     Levels(Vec<f64>),
@@ -25,7 +27,7 @@ pub enum Domain {
 }
 
 /// A factor of a design.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
     /// Name, unique in the design; it stands in the names of terms (`Ec*kn_ks`).
     pub name: String,

@@ -6,7 +6,7 @@
 use super::coding::{Factor, check_surface};
 use super::error::Fault;
 use super::table::{MOST_RUNS, Place, PointType, Points};
-use super::{Design, Stream};
+use super::{Design, Stream, is_default};
 use serde::{Deserialize, Serialize};
 
 /// Options of a full factorial.
@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct FullFactorial {
     /// Number of centre points added to the combinations.
-    pub centre: usize,
+    #[serde(skip_serializing_if = "is_default")]
+    pub centre_points: usize,
 }
 
 impl Design for FullFactorial {
@@ -22,7 +23,7 @@ impl Design for FullFactorial {
 
     fn points(&self, factors: &[Factor], _: &mut Stream) -> Result<Points, Vec<Fault>> {
         let counts: Vec<usize> = factors.iter().map(Factor::level_count).collect();
-        let mut faults = if self.centre > 0 { check_surface(factors, "a centre point") } else { vec![] };
+        let mut faults = if self.centre_points > 0 { check_surface(factors, "a centre point") } else { vec![] };
         let runs = counts.iter().try_fold(1_usize, |runs, &n| runs.checked_mul(n).filter(|&r| r <= MOST_RUNS));
         let Some(runs) = runs else {
             faults.push(Fault::NoConstruction {
@@ -46,7 +47,7 @@ impl Design for FullFactorial {
             (counts.iter().map(place).collect(), kind)
         };
         let mut rows: Vec<_> = (0..runs).map(row).collect();
-        rows.extend(Points::centre(factors.len(), self.centre));
+        rows.extend(Points::centre(factors.len(), self.centre_points));
         let shape: Vec<String> = counts.iter().map(ToString::to_string).collect();
         Ok(Points {
             rows,
@@ -73,7 +74,8 @@ mod tests {
     #[test]
     fn centre_points_stand_at_the_middle_and_are_replicates() {
         let factors = [Factor::range("a", "", 0.0, 4.0), Factor::range("b", "", -1.0, 0.0)];
-        let t = build(&Method::FullFactorial(FullFactorial { centre: 2 }), &factors, Layout::default(), 1).unwrap();
+        let t =
+            build(&Method::FullFactorial(FullFactorial { centre_points: 2 }), &factors, Layout::default(), 1).unwrap();
         assert_eq!((t.runs(), t.natural[4].as_slice()), (6, [2.0, -0.5].as_slice()));
         assert_eq!(t.replicate(), [1, 1, 1, 1, 1, 2]);
     }

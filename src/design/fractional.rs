@@ -15,7 +15,7 @@ mod tests;
 use super::coding::{Factor, check_two_level};
 use super::error::Fault;
 use super::table::{PointType, Points};
-use super::{Design, Stream};
+use super::{Design, Stream, is_default};
 use generator::{Word, parse};
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +34,8 @@ pub struct FractionalFactorial {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub runs: Option<usize>,
     /// Number of centre points added.
-    pub centre: usize,
+    #[serde(skip_serializing_if = "is_default")]
+    pub centre_points: usize,
 }
 
 /// The defining relation of a fraction.
@@ -166,7 +167,7 @@ impl Design for FractionalFactorial {
         let rows = rows(&words, factors.len());
         let (runs, k, p) = (rows.len(), factors.len(), words.len());
         let mut rows = Points::coded(&rows, PointType::Cube);
-        rows.extend(Points::centre(factors.len(), self.centre));
+        rows.extend(Points::centre(factors.len(), self.centre_points));
         let resolution = relation.resolution().map_or("full".into(), |r| format!("resolution {r}"));
         Ok(Points {
             rows,

@@ -9,7 +9,7 @@ use super::coding::Factor;
 use super::error::Fault;
 use super::sobol::{check_runs, place};
 use super::table::{PointType, Points};
-use super::{Design, Stream};
+use super::{Design, Stream, is_default};
 use crate::math::elementary::{exp, ln};
 use serde::{Deserialize, Serialize};
 
@@ -42,10 +42,10 @@ pub struct LatinHypercube {
     /// Number of points.
     pub runs: usize,
     /// How the strata are combined.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub criterion: Criterion,
     /// Where a point lies in its stratum.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub position: Position,
 }
 
@@ -55,19 +55,28 @@ const MOST_SPREAD: usize = 2000;
 impl Design for LatinHypercube {
     const NAME: &'static str = "latin-hypercube";
 
-    fn points(&self, factors: &[Factor], stream: &mut Stream) -> Result<Points, Vec<Fault>> {
-        let (n, k) = (self.runs, factors.len());
-        let mut faults: Vec<Fault> = check_runs(n, 2).into_iter().collect();
-        if self.criterion == Criterion::Maximin && n > MOST_SPREAD {
+    fn faults(&self, _: &[Factor]) -> Vec<Fault> {
+        let mut faults: Vec<Fault> = check_runs(self.runs, 2).into_iter().collect();
+        if self.criterion == Criterion::Maximin && self.runs > MOST_SPREAD {
             faults.push(Fault::BadOption {
                 option: "criterion".into(),
-                found: format!("maximin for {n} points"),
+                found: format!("maximin for {} points", self.runs),
                 wanted: format!("it spreads at most {MOST_SPREAD} points; say `random`, or use a Sobol sample"),
             });
         }
+        faults
+    }
+
+    fn draws(&self) -> bool {
+        true
+    }
+
+    fn points(&self, factors: &[Factor], stream: &mut Stream) -> Result<Points, Vec<Fault>> {
+        let faults = self.faults(factors);
         if !faults.is_empty() {
             return Err(faults);
         }
+        let (n, k) = (self.runs, factors.len());
         let mut columns: Vec<Vec<usize>> = (0..k).map(|_| permutation(n, stream)).collect();
         if self.criterion == Criterion::Maximin && n > 2 && k > 1 {
             columns = Spread::new(columns).anneal(stream);

@@ -8,7 +8,7 @@ use super::coding::{Factor, check_two_level};
 use super::error::Fault;
 use super::hadamard::two_level;
 use super::table::{PointType, Points};
-use super::{Design, Stream};
+use super::{Design, Stream, is_default};
 use serde::{Deserialize, Serialize};
 
 /// Options of a Plackett–Burman design.
@@ -19,9 +19,11 @@ pub struct PlackettBurman {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub runs: Option<usize>,
     /// Add the mirror image of every run.
+    #[serde(skip_serializing_if = "is_default")]
     pub fold: bool,
     /// Number of centre points added.
-    pub centre: usize,
+    #[serde(skip_serializing_if = "is_default")]
+    pub centre_points: usize,
 }
 
 impl Design for PlackettBurman {
@@ -54,7 +56,7 @@ impl Design for PlackettBurman {
             rows.extend(table.rows.iter().map(row(-1)));
         }
         let mut rows = Points::coded(&rows, PointType::Cube);
-        rows.extend(Points::centre(factors.len(), self.centre));
+        rows.extend(Points::centre(factors.len(), self.centre_points));
         let folded = if self.fold { ", folded over" } else { "" };
         Ok(Points {
             rows,
@@ -106,7 +108,7 @@ mod tests {
 
     #[test]
     fn folding_and_centre_points_add_runs() {
-        let t = rows(PlackettBurman { runs: Some(12), fold: true, centre: 3 }, 5);
+        let t = rows(PlackettBurman { runs: Some(12), fold: true, centre_points: 3 }, 5);
         assert_eq!(t.len(), 27);
         assert!((0..12).all(|i| (0..5).all(|j| t[i][j] == -t[12 + i][j])));
         assert_eq!(t[26], [0.0; 5]);

@@ -13,7 +13,7 @@ mod directions;
 use super::coding::{Domain, Factor};
 use super::error::Fault;
 use super::table::{MOST_RUNS, Place, PointType, Points};
-use super::{Design, Stream};
+use super::{Design, Stream, is_default};
 use directions::DIRECTIONS;
 use serde::{Deserialize, Serialize};
 
@@ -24,15 +24,19 @@ pub struct Sobol {
     /// Number of points, preferably a power of two.
     pub runs: usize,
     /// Scramble by the seed.
-    #[serde(default = "yes")]
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
     pub scramble: bool,
     /// Points left out from the start of the sequence.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub skip: usize,
 }
 
 fn yes() -> bool {
     true
+}
+
+fn is_yes(value: &bool) -> bool {
+    *value
 }
 
 const BITS: usize = 32;
@@ -113,7 +117,7 @@ pub(super) fn check_runs(runs: usize, least: usize) -> Option<Fault> {
 impl Design for Sobol {
     const NAME: &'static str = "sobol";
 
-    fn points(&self, factors: &[Factor], stream: &mut Stream) -> Result<Points, Vec<Fault>> {
+    fn faults(&self, factors: &[Factor]) -> Vec<Fault> {
         let mut faults: Vec<Fault> = check_runs(self.runs, 1).into_iter().collect();
         if self.skip > MOST_RUNS {
             let wanted = format!("at most {MOST_RUNS} points can be left out");
@@ -126,6 +130,15 @@ impl Design for Sobol {
                 remedy: format!("direction numbers are here for {}; use a Latin hypercube", DIRECTIONS.len() + 1),
             });
         }
+        faults
+    }
+
+    fn draws(&self) -> bool {
+        self.scramble
+    }
+
+    fn points(&self, factors: &[Factor], stream: &mut Stream) -> Result<Points, Vec<Fault>> {
+        let faults = self.faults(factors);
         if !faults.is_empty() {
             return Err(faults);
         }

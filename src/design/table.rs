@@ -173,7 +173,7 @@ impl Place {
 pub const MOST_RUNS: usize = 1 << 20;
 
 /// How the runs of any design are repeated and ordered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Layout {
     /// How often the whole design is run.
     pub replicates: usize,

@@ -86,7 +86,7 @@ impl Figure for Agreement {
                 .collect::<Vec<_>>()
         };
         vec![
-            Column::words("response", words(&|p, _, _| p.quantity.name.clone())),
+            Column::words("response", words(&|p, _, _| p.quantity.id().to_string())),
             Column::words("unit", words(&|p, _, _| p.quantity.unit.clone())),
             Column::words("origin", words(&|_, c, _| c.name.clone())),
             Column::words("row", words(&|_, c, i| c.rows.get(i).cloned().unwrap_or_default())),
@@ -130,7 +130,7 @@ impl Agreement {
                 let hits = p.clouds.iter().flat_map(|c| c.x.iter().zip(&c.y)).filter(|&p| close(p)).count();
                 format!(", {hits} within the band")
             });
-            format!("{}: {points} points{}.", p.quantity.name, inside.unwrap_or_default())
+            format!("{}: {points} points{}.", p.quantity.words(), inside.unwrap_or_default())
         };
         self.pairs.iter().map(tell).collect::<Vec<_>>().join(" ")
     }
@@ -140,8 +140,9 @@ impl Agreement {
         let values = || pair.clouds.iter().flat_map(|c| c.x.iter().chain(&c.y).copied());
         let (low, high) = extent(values());
         let margin = 0.06 * (high - low).max(1e-12 * high.abs());
-        let axis =
-            |word: &str| Axis::between(pair.quantity.titled(word), Scale::Linear, low - margin, high + margin, 4);
+        let axis = |word: &str| {
+            Axis::between(pair.quantity.worded(word).title(), Scale::Linear, low - margin, high + margin, 4)
+        };
         (axis(&self.x_word), axis(&self.y_word))
     }
 

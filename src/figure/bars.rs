@@ -80,7 +80,7 @@ impl Figure for RankedBars {
         let pick = |f: &dyn Fn(&Bar) -> f64| order.iter().map(|&i| f(&self.bars[i])).collect::<Vec<_>>();
         let words = |f: &dyn Fn(&Bar) -> String| order.iter().map(|&i| f(&self.bars[i])).collect::<Vec<_>>();
         let mut columns = vec![
-            Column::words("factor", words(&|b| b.factor.name.clone())),
+            Column::words("factor", words(&|b| b.factor.id().to_string())),
             Column::words("group", words(&|b| b.group.clone())),
             self.quantity.column("value", pick(&|b| b.value)),
         ];
@@ -115,7 +115,7 @@ impl RankedBars {
     fn describe(&self, order: &[usize]) -> String {
         let top = order.iter().take(4).map(|&i| {
             let bar = &self.bars[i];
-            format!("{} {} {}", bar.factor.name, significant(bar.value, 3), self.quantity.unit)
+            format!("{} {} {}", bar.factor.id(), significant(bar.value, 3), self.quantity.unit)
         });
         format!("Bars in descending order: {}.", top.collect::<Vec<_>>().join(", "))
     }
@@ -138,7 +138,8 @@ impl RankedBars {
         let (top, bottom) = (panel.place_y(row - 0.33), panel.place_y(row + 0.33));
         let right = panel.place_x(bar.value);
         let patch = Rect { left: panel.area.left, top, right, bottom };
-        scene.fill(Path::rect(patch), palette::area(group));
+        let color = palette::area(group);
+        scene.shape(Path::rect(patch), color, Stroke::new(color.mix(INK, 0.35), 0.15));
     }
 
     /// The number behind a bar, on a white ground where a reference line passes.

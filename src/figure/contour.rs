@@ -37,7 +37,7 @@ impl Figure for Contour {
     fn scene(&self, style: &Style) -> Scene {
         let size = style.size();
         let mut scene = Scene::new(style.width, 0.78 * style.width);
-        scene.title = format!("{} over {} and {}", self.z.name, self.x.name, self.y.name);
+        scene.title = format!("The response {} over {} and {}", self.z.words(), self.x.words(), self.y.words());
         let (low, high) = extent(self.values.iter().copied());
         scene.description =
             format!("Contours from {} to {} {}.", significant(low, 3), significant(high, 3), self.z.unit);
@@ -63,7 +63,7 @@ impl Figure for Contour {
 
     fn data(&self) -> Vec<Column> {
         let pairs = || self.ys.iter().flat_map(|y| self.xs.iter().map(move |x| (*x, *y)));
-        let name = |q: &Quantity, other: &str| if q.name.is_empty() { other.to_string() } else { q.name.clone() };
+        let name = |q: &Quantity, other: &str| if q.id().is_empty() { other.to_string() } else { q.id().to_string() };
         vec![
             self.x.column(&name(&self.x, "x"), pairs().map(|p| p.0).collect()),
             self.y.column(&name(&self.y, "y"), pairs().map(|p| p.1).collect()),

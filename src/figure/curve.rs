@@ -6,7 +6,7 @@
 use super::axis::{Axis, Scale, extent, significant};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
-use super::palette::{self, INK, Marker, SOFT};
+use super::palette::{self, INK, SOFT};
 use super::panel::{Margins, Panel, draw_marker};
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
@@ -145,7 +145,7 @@ impl StressStrain {
     fn names(&self) -> Vec<Entry> {
         let several = self.curves.len() > 1;
         let named = self.curves.iter().enumerate().filter(|_| several);
-        named.map(|(i, c)| Entry::new(c.name.clone(), Swatch::Line(line_style(i), None))).collect()
+        named.map(|(i, c)| Entry::new(c.name.clone(), Swatch::Line(line_style(i), Some(palette::marker(i))))).collect()
     }
 
     /// With one curve the modes have colours of their own; with several the colour names the curve, the dash the mode.
@@ -175,7 +175,7 @@ impl StressStrain {
         for (i, curve) in self.curves.iter().enumerate() {
             if let Some((at, stress)) = peak(curve) {
                 let [x, y] = panel.place(curve.axial[at] * PERCENT, stress);
-                draw_marker(scene, Marker::Disc, [x, y], 1.7, palette::category(i));
+                draw_marker(scene, palette::marker(i), [x, y], 1.8, palette::category(i));
                 if self.curves.len() == 1 {
                     let label = format!("$\\sigma_u$ = {} MPa", significant(stress, 3));
                     let line = Line::new(&label, style.size());
@@ -197,6 +197,9 @@ impl StressStrain {
                 let k = modes.iter().position(|m| m == mode).unwrap_or(0);
                 for part in panel.places(&percent, counts) {
                     scene.stroke(Path::polyline(&part), self.crack_style(i, k));
+                    if let (Some(&end), true) = (part.last(), self.curves.len() > 1) {
+                        draw_marker(scene, palette::marker(i), end, 1.6, palette::category(i));
+                    }
                 }
             }
         }

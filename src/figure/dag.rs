@@ -102,14 +102,18 @@ impl Dag {
     }
 }
 
+fn hue(i: usize) -> Color {
+    [palette::BLUE, palette::ORANGE, palette::GREEN, palette::PURPLE, palette::SKY, SOFT][i % 6]
+}
+
 /// A light tint of a category, on which ink reads well.
 fn tint(i: usize) -> Color {
-    palette::area(i).mix(PAPER, 0.72)
+    hue(i).mix(PAPER, 0.72)
 }
 
 fn draw_stage(scene: &mut Scene, stage: &Stage, place: Rect, style: &Style) {
     let size = style.size();
-    let rim = palette::area(stage.class).mix(INK, 0.25);
+    let rim = hue(stage.class).mix(INK, 0.25);
     scene.shape(rounded(place, 1.1), tint(stage.class), Stroke::new(rim, 0.22));
     let [x, y] = place.centre();
     let name = Line::with_face(&stage.name, size, Face::Semibold);

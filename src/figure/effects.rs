@@ -49,7 +49,7 @@ impl Figure for MainEffects {
         let entries = self.entries();
         let legend_height = legend::height(&entries, style.width - 14.0, style);
         let mut scene = Scene::new(style.width, rows as f64 * ROW + legend_height + 2.2);
-        scene.title = format!("Main effects on {}", self.response.name.to_lowercase());
+        scene.title = format!("Main effects on {}", self.response.words());
         scene.description = self.describe();
         let page = scene.page().inset(0.8, 1.2, 0.8, 0.6);
         let y = self.y_axis();
@@ -83,7 +83,7 @@ impl Figure for MainEffects {
             rows().map(|(f, i)| values(f).get(i).copied().unwrap_or(f64::NAN)).collect::<Vec<_>>()
         };
         let mut columns = vec![
-            Column::words("factor", rows().map(|(f, _)| f.factor.name.clone()).collect()),
+            Column::words("factor", rows().map(|(f, _)| f.factor.id().to_string()).collect()),
             Column::words("group", rows().map(|(f, _)| f.group.clone()).collect()),
             Column::reals("level", pick(|f| &f.levels)),
             Column::words("level_unit", rows().map(|(f, _)| f.factor.unit.clone()).collect()),
@@ -113,7 +113,7 @@ impl MainEffects {
     fn entries(&self) -> Vec<Entry> {
         let mut entries = Vec::new();
         for (i, group) in self.groups().iter().enumerate().filter(|(_, g)| !g.is_empty()) {
-            let swatch = Swatch::Line(Stroke::new(palette::category(i), 0.4), Some(palette::marker(i)));
+            let swatch = Swatch::Line(Stroke::new(palette::group(i), 0.4), Some(palette::marker(i)));
             entries.push(Entry::new(*group, swatch));
         }
         let mean = Stroke::new(SOFT, 0.25).dashed(&[0.9, 0.8]);
@@ -128,7 +128,7 @@ impl MainEffects {
         let mut spans: Vec<(f64, &str)> = Vec::new();
         for f in &self.factors {
             let (low, high) = extent(f.means.iter().copied());
-            spans.push((high - low, &f.factor.name));
+            spans.push((high - low, f.factor.id()));
         }
         spans.sort_by(|a, b| b.0.total_cmp(&a.0));
         let most: Vec<String> =
@@ -159,7 +159,7 @@ impl MainEffects {
 
     fn draw_factor(&self, scene: &mut Scene, panel: &Panel, f: &FactorMeans, style: &Style) {
         let group = self.groups().iter().position(|g| *g == f.group).unwrap_or(0);
-        let color = palette::category(group);
+        let color = palette::group(group);
         panel.draw_grid(scene);
         let y = panel.place_y(self.grand_mean);
         let mean = Stroke::new(SOFT, 0.25).dashed(&[0.9, 0.8]);

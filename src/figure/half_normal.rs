@@ -38,11 +38,11 @@ pub struct HalfNormal {
 impl Figure for HalfNormal {
     fn scene(&self, style: &Style) -> Scene {
         let mut scene = Scene::new(style.width, 0.8 * style.width);
-        scene.title = format!("Half-normal plot of the effects on {}", self.response.name.to_lowercase());
+        scene.title = format!("Half-normal plot of the effects on {}", self.response.words());
         let active: Vec<&str> = self.effects.iter().filter(|e| e.active).map(|e| e.name.as_str()).collect();
         scene.description = format!("{} effects; active: {}.", self.effects.len(), active.join(", "));
         let entries = self.entries();
-        let title = self.response.titled("Absolute effect on");
+        let title = self.response.worded("Absolute effect on").title();
         let margin = self.margin.iter().map(|m| m.1);
         let x = Axis::from_zero(title, self.effects.iter().map(|e| 1.04 * e.size).chain(margin), 5);
         let y = Axis::from_zero("Half-normal quantile $z$ / –", self.effects.iter().map(|e| e.quantile), 5);

@@ -20,6 +20,7 @@ pub mod curve;
 pub mod dag;
 pub mod effects;
 pub mod font;
+mod geometry;
 pub mod half_normal;
 pub mod isoline;
 pub mod layers;
@@ -84,6 +85,8 @@ impl Style {
 /// Name, symbol and unit of something that has values; each may be empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Quantity {
+    /// Name in tables and programs: "UCS"; the plain name stands in when empty.
+    pub key: String,
     /// Plain words: "Peak strength".
     pub name: String,
     /// Symbol in LaTeX notation without dollar signs: `\sigma_u`.
@@ -95,7 +98,18 @@ pub struct Quantity {
 impl Quantity {
     /// From its three parts.
     pub fn new(name: &str, symbol: &str, unit: &str) -> Self {
-        Self { name: name.into(), symbol: symbol.into(), unit: unit.into() }
+        Self { key: String::new(), name: name.into(), symbol: symbol.into(), unit: unit.into() }
+    }
+
+    /// The same with a key.
+    pub fn keyed(mut self, key: &str) -> Self {
+        self.key = key.into();
+        self
+    }
+
+    /// The key, or the name.
+    pub fn id(&self) -> &str {
+        if self.key.is_empty() { &self.name } else { &self.key }
     }
 
     /// Name, symbol and unit as an axis title.
@@ -103,11 +117,21 @@ impl Quantity {
         text::quantity(&self.name, &self.symbol, &self.unit)
     }
 
-    /// A word before the symbol, or before the name when there is none: "Published σ_u / MPa".
-    pub fn titled(&self, word: &str) -> String {
-        let name =
-            if self.symbol.is_empty() { format!("{word} {}", self.name.to_lowercase()) } else { word.to_string() };
-        text::quantity(&name, &self.symbol, &self.unit)
+    /// Plain words for titles and descriptions: the name with a small first letter, or the symbol.
+    pub fn words(&self) -> String {
+        if self.name.is_empty() {
+            return text::Line::new(&self.sign(), 1.0).plain;
+        }
+        let mut letters = self.name.chars();
+        let first = letters.next().unwrap_or_default();
+        let is_word = letters.clone().next().is_some_and(char::is_lowercase);
+        if is_word { first.to_lowercase().chain(letters).collect() } else { self.name.clone() }
+    }
+
+    /// The same with a word before the symbol, or before the name when there is no symbol: "Published σ_u".
+    pub fn worded(&self, word: &str) -> Self {
+        let name = if self.symbol.is_empty() { format!("{word} {}", self.words()) } else { word.to_string() };
+        Self { name, ..self.clone() }
     }
 
     /// Symbol and unit, or name and unit when there is no symbol.

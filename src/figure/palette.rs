@@ -70,7 +70,12 @@ pub fn mode(i: usize) -> Color {
 
 /// Colour of category number `i` for areas: lighter neighbours than lines need, so that grey tells them apart.
 pub fn area(i: usize) -> Color {
-    [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION][i % 6]
+    [BLUE, ORANGE, Color(0xa6, 0xdb, 0xc4), PURPLE, SKY, VERMILION][i % 6]
+}
+
+/// Colour of group `i` for lines, of the hue that its areas have.
+pub fn group(i: usize) -> Color {
+    [BLUE, Color(0xc2, 0x77, 0x00), GREEN, PURPLE, VERMILION, INK][i % 6]
 }
 
 /// Dash of category number `i`.

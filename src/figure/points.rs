@@ -58,7 +58,7 @@ impl Figure for DesignPoints {
         let mut columns: Vec<Column> = Vec::new();
         for (k, factor) in self.factors.iter().enumerate() {
             let values = self.points.iter().map(|p| p.get(k).copied().unwrap_or(f64::NAN)).collect();
-            columns.push(factor.column(&factor.name, values));
+            columns.push(factor.column(factor.id(), values));
         }
         columns.push(Column::words("point_type", self.kinds.clone()));
         columns

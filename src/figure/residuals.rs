@@ -37,7 +37,7 @@ impl Figure for Residuals {
         let rows = 4 / columns;
         let panel_height = if columns == 4 { 0.30 * style.width } else { 0.44 * style.width };
         let mut scene = Scene::new(style.width, rows as f64 * panel_height + 1.6);
-        scene.title = format!("Residuals of {}", self.response.name.to_lowercase());
+        scene.title = format!("Residuals of {}", self.response.words());
         scene.description = self.describe();
         let views = self.views();
         let none = Margins { left: 0.0, top: 0.0, right: 0.0, bottom: 0.0 };
@@ -92,7 +92,7 @@ impl Residuals {
         let pairs = |xs: &[f64]| xs.iter().zip(&self.studentized).map(|(&x, &y)| [x, y]).collect::<Vec<_>>();
         let order: Vec<f64> = (1..=self.studentized.len()).map(|i| i as f64).collect();
         let around = |label: &str, v: &[f64]| Axis::around(label, Scale::Linear, v.iter().copied(), 4);
-        let fitted = self.response.titled("Fitted");
+        let fitted = self.response.worded("Fitted").title();
         let critical = 2.0 * self.coefficients as f64 / self.studentized.len().max(1) as f64;
         let leverage = Axis::from_zero("Leverage $h$ / –", self.leverage.iter().copied().chain([critical]), 4);
         [

@@ -20,7 +20,7 @@ pub struct SolutionSet {
     pub name: String,
     /// Values of all factors, one row per solution, the best first.
     pub rows: Vec<Vec<f64>>,
-    /// Misfit of each solution.
+    /// Misfit of each solution; empty when it is not known.
     pub misfit: Vec<f64>,
 }
 
@@ -38,11 +38,11 @@ pub struct Solutions {
 impl Figure for Solutions {
     fn scene(&self, style: &Style) -> Scene {
         let size = style.size();
-        let several = self.sets.len() > 1;
+        let several = !self.graded();
         let mut scene = Scene::new(style.width, (0.42 * style.width).max(52.0));
         scene.title = "Calibrated parameter sets".into();
         scene.description = self.describe();
-        let entries = if several { self.entries() } else { Vec::new() };
+        let entries = if self.sets.len() > 1 { self.entries() } else { Vec::new() };
         let top = legend::height(&entries, style.width - 10.0, style);
         legend::draw(&mut scene, &entries, Rect::new(4.0, 0.8, style.width - 8.0, 0.0), style);
         let misfits = || self.sets.iter().flat_map(|s| s.misfit.iter().copied());
@@ -70,20 +70,26 @@ impl Figure for Solutions {
         for (k, factor) in self.factors.iter().enumerate() {
             let cell = |r: &Vec<f64>| r.get(k).copied().unwrap_or(f64::NAN);
             let values = self.sets.iter().flat_map(|s| s.rows.iter().map(cell)).collect();
-            columns.push(factor.column(&factor.name, values));
+            columns.push(factor.column(factor.id(), values));
         }
-        let misfit = self.sets.iter().flat_map(|s| s.misfit.iter().copied()).collect();
-        columns.push(Column::reals("misfit", misfit));
+        let misfit = |s: &SolutionSet, k: usize| s.misfit.get(k).copied().unwrap_or(f64::NAN);
+        let misfits = self.sets.iter().flat_map(|s| (0..s.rows.len()).map(move |k| misfit(s, k))).collect();
+        columns.push(Column::reals("misfit", misfits));
         columns
     }
 }
 
 impl Solutions {
+    /// One set whose misfits are known: they give the colours.
+    fn graded(&self) -> bool {
+        self.sets.len() == 1 && self.sets.iter().all(|s| s.misfit.len() == s.rows.len())
+    }
+
     fn describe(&self) -> String {
         let tell = |s: &SolutionSet| {
             let best = s.rows.first().cloned().unwrap_or_default();
             let pairs =
-                self.factors.iter().zip(best).map(|(f, v)| format!("{} {} {}", f.name, significant(v, 3), f.unit));
+                self.factors.iter().zip(best).map(|(f, v)| format!("{} {} {}", f.id(), significant(v, 3), f.unit));
             format!("{}: {} solutions, best {}.", s.name, s.rows.len(), pairs.collect::<Vec<_>>().join(", "))
         };
         self.sets.iter().map(tell).collect::<Vec<_>>().join(" ")
@@ -106,9 +112,10 @@ impl Solutions {
     }
 
     fn draw_lines(&self, scene: &mut Scene, area: Rect, style: &Style, (low, high): (f64, f64)) {
-        let several = self.sets.len() > 1;
+        let several = !self.graded();
         for (i, set) in self.sets.iter().enumerate() {
-            for (row, &misfit) in set.rows.iter().zip(&set.misfit).rev() {
+            for (k, row) in set.rows.iter().enumerate().rev() {
+                let misfit = set.misfit.get(k).copied().unwrap_or(low);
                 let t = if high > low { (misfit - low) / (high - low) } else { 0.0 };
                 let color = if several { palette::category(i) } else { style.map.at(t) };
                 let stroke = Stroke::new(color, 0.2).with_opacity(if several { 0.25 } else { 0.8 });
@@ -118,7 +125,7 @@ impl Solutions {
         for (i, set) in self.sets.iter().enumerate() {
             let Some(best) = set.rows.first() else { continue };
             let points = self.points(best, area);
-            let stroke = if several { heavy(i) } else { Stroke::new(INK, 0.6) };
+            let stroke = if self.graded() { Stroke::new(INK, 0.6) } else { heavy(i) };
             let color = stroke.color;
             scene.stroke(Path::polyline(&points), stroke);
             for p in points {

@@ -55,14 +55,14 @@ impl Figure for Surface {
         let f = &self.field;
         let size = style.size();
         let mut scene = Scene::new(style.width, 0.74 * style.width);
-        scene.title = format!("{} over {} and {}", f.z.name, f.x.name, f.y.name);
+        scene.title = format!("The response {} over {} and {}", f.z.words(), f.x.words(), f.y.words());
         let (low, high) = extent(f.values.iter().copied());
         scene.description = format!("A surface from {} to {} {}.", significant(low, 3), significant(high, 3), f.z.unit);
         let bands = Bands::of(low, high, &f.z);
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
         let note = if f.note.is_empty() { 0.3 * size } else { 1.8 * size };
         let right = page.right - bands.width(style) - 3.0;
-        let area = Rect { right, ..page }.inset(5.0 * size, note, 1.6 * size, 4.2 * size);
+        let area = Rect { right, ..page }.inset(5.0 * size, note, 1.6 * size, 3.6 * size);
         let space = self.space(area, (low, high));
         draw_walls(&mut scene, &space);
         self.draw_floor(&mut scene, &space, &bands, style);

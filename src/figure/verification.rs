@@ -64,7 +64,7 @@ impl Figure for Verification {
         for check in &self.checks {
             for (k, runs) in check.runs.iter().enumerate() {
                 for (j, &v) in runs.iter().enumerate() {
-                    words[0].push(check.response.name.clone());
+                    words[0].push(check.response.id().to_string());
                     words[1].push(check.response.unit.clone());
                     words[2].push(self.sets.get(k).cloned().unwrap_or_default());
                     target.push(check.target.get(k).copied().unwrap_or(f64::NAN));
@@ -89,7 +89,11 @@ impl Verification {
     fn describe(&self) -> String {
         let tell = |c: &Check| {
             let errors = c.runs.iter().zip(&c.target).map(|(r, t)| (moments(r).0 / t - 1.0).abs());
-            format!("{}: largest relative error of a mean {} %.", c.response.name, fixed(100.0 * extent(errors).1, 2))
+            format!(
+                "{}: largest relative error of a mean {} %.",
+                c.response.words(),
+                fixed(100.0 * extent(errors).1, 2)
+            )
         };
         self.checks.iter().map(tell).collect::<Vec<_>>().join(" ")
     }

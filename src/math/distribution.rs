@@ -43,9 +43,9 @@ pub fn t_for_coverage(coverage: f64, df: f64) -> f64 {
     t_for_tail(1.0 - coverage, df)
 }
 
-/// The `t` with P(|T| > t) = `tail` (0 … 1) on `df` degrees of freedom.
+/// The `t` with P(|T| > t) = `tail` (0 … 1) on `df` degrees of freedom; infinity without degrees of freedom.
 pub fn t_for_tail(tail: f64, df: f64) -> f64 {
-    if !(tail > 0.0 && tail < 1.0) {
+    if !(tail > 0.0 && tail < 1.0 && df > 0.0) {
         return if tail >= 1.0 { 0.0 } else { f64::INFINITY };
     }
     let (mut low, mut high) = (0.0, 1.0);

@@ -165,6 +165,9 @@ impl Optimiser for Annealing {
     }
 }
 
+/// Chains between descents.
+const DESCENT: usize = 6;
+
 struct Chain {
     plan: Plan,
     domain: Domain,
@@ -268,7 +271,7 @@ impl Chain {
         }
         if self.temperature < self.plan.frozen {
             *self = Self::new(self.plan.clone(), &self.domain, self.random.clone());
-        } else if self.lowest.2 && self.cooled.is_multiple_of(4) {
+        } else if self.lowest.2 && self.cooled.is_multiple_of(DESCENT) {
             self.descent = Some(Local::new(&self.domain, &self.lowest.0, self.lowest.1)).filter(|d| d.stop().is_none());
         }
     }

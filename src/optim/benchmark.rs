@@ -6,6 +6,9 @@ use super::misfit::{Denominator, Form, Misfit, Target};
 use crate::math::elementary::{cos, exp};
 use crate::math::random::Stream;
 
+/// The names of the methods, in the order of the tables.
+pub const METHODS: [&str; 5] = ["genetic", "annealing", "differential", "cma-es", "surrogate"];
+
 /// A standard function: name, range of every coordinate, value (0 at the minimum).
 pub struct Standard {
     pub name: &'static str,

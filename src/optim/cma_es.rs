@@ -3,13 +3,13 @@
 //! A generation samples λ points from N(m, σ² C). The mean m moves to the weighted mean of the best half; the evolution
 //! paths p_σ and p_c steer the step size σ (cumulative step-size adaptation) and the rank-one update of C; the ranked
 //! steps give the rank-μ update, bad ones with negative weight. When a run has converged or stagnates a new one starts
-//! elsewhere with twice the population (IPOP).
+//! elsewhere with a larger population (IPOP; three times, so that a short budget still reaches a large one).
 //!
 //! A point outside the domain is evaluated at the nearest allowed one, and ranked by misfit + γ distance², with γ from
 //! the spread of the misfits, so that the mean is drawn back without bending the covariance.
 //!
 //! Sources: Hansen, "The CMA Evolution Strategy: A Tutorial", arXiv:1604.00772 (constants: table 1, equations 49–58);
-//! Auger & Hansen 2005, doi:10.1109/CEC.2005.1554902 (restarts); Hansen et al. 2009, doi:10.1109/TEVC.2008.924423
+//! Auger & Hansen 2005, doi:10.1109/CEC.2005.1554902 (restarts, there twice as large); Hansen et al. 2009, doi:10.1109/TEVC.2008.924423
 //! (bounds). Under noise the population must grow: `population` is the setting for it.
 
 use super::constraint::Domain;
@@ -28,13 +28,15 @@ pub struct Settings {
     pub population: Option<usize>,
     /// Step size at the start, in ranges.
     pub step: f64,
-    /// Restarts, each with twice the population.
+    /// Restarts.
     pub restarts: usize,
+    /// How much larger the population of each restart is.
+    pub growth: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { population: None, step: 0.3, restarts: 9 }
+        Self { population: None, step: 0.3, restarts: 6, growth: 3 }
     }
 }
 
@@ -56,13 +58,18 @@ pub struct CmaEs {
 impl CmaEs {
     /// A fresh search, from the centre of the domain.
     pub fn new(settings: &Settings, domain: &Domain, seed: u64) -> Self {
+        Self::from(settings, domain, seed, domain.centre())
+    }
+
+    /// A fresh search from a given point of the unit box.
+    pub fn from(settings: &Settings, domain: &Domain, seed: u64, start: &[f64]) -> Self {
         let d = domain.len();
         let population = settings.population.unwrap_or(4 + (3.0 * ln(d as f64)).floor() as usize).max(4);
         Self {
             settings: settings.clone(),
             domain: domain.clone(),
             random: Stream::new(seed, "cma-es", 0),
-            run: Run::new(domain.centre(), settings.step, population),
+            run: Run::new(start, settings.step, population),
             restarts: 0,
             stopped: None,
         }
@@ -75,7 +82,7 @@ impl CmaEs {
         }
         self.restarts += 1;
         let start = self.domain.sample(&mut self.random);
-        self.run = Run::new(&start, self.settings.step, 2 * self.run.weights.len());
+        self.run = Run::new(&start, self.settings.step, self.settings.growth.max(1) * self.run.weights.len());
     }
 }
 

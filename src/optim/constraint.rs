@@ -92,6 +92,11 @@ impl Domain {
         self.factors.iter().zip(unit).map(lerp).collect()
     }
 
+    /// Natural units of a point that may lie outside the unit box.
+    pub fn natural_beyond(&self, unit: &[f64]) -> Vec<f64> {
+        self.factors.iter().zip(unit).map(|(f, &u)| f.low + u * (f.high - f.low)).collect()
+    }
+
     /// Place of a natural point in the unit box; outside the range it lies outside 0 … 1.
     pub fn unit(&self, natural: &[f64]) -> Vec<f64> {
         self.factors.iter().zip(natural).map(|(f, x)| (x - f.low) / (f.high - f.low)).collect()
@@ -141,24 +146,18 @@ impl Domain {
         self.repair(&point)
     }
 
-    /// How far one may go from `from` (allowed) along `direction` before a bound; infinite without one.
-    pub fn reach(&self, from: &[f64], direction: &[f64]) -> f64 {
-        let sides = from.iter().zip(direction).map(|(&u, &d)| match d {
-            d if d > 0.0 => (1.0 - u) / d,
-            d if d < 0.0 => -u / d,
-            _ => f64::INFINITY,
-        });
-        let walls = self.walls.iter().map(|(normal, bound, _)| {
-            let speed = dot(normal, direction);
-            if speed > 0.0 { (bound - dot(normal, from)) / speed } else { f64::INFINITY }
-        });
-        sides.chain(walls).fold(f64::INFINITY, f64::min).max(0.0)
-    }
-
     fn project(&self, unit: &[f64]) -> Result<Vec<f64>, Error> {
         if self.contains(unit) {
             return Ok(unit.to_vec());
         }
+        let (rows, bounds) = self.walls_from(unit);
+        let step = least_distance(&rows, &bounds).map_err(|rows| self.contradiction(&rows))?;
+        Ok(unit.iter().zip(step).map(|(u, s)| (u + s).clamp(0.0, 1.0)).collect())
+    }
+
+    /// All bounds as rows · y ≥ bounds for the step y from a point: linear constraints first, then the two ends of
+    /// every range.
+    pub(super) fn walls_from(&self, unit: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let n = unit.len();
         let (mut rows, mut bounds) = (Vec::new(), Vec::new());
         for (normal, bound, _) in &self.walls {
@@ -170,8 +169,7 @@ impl Domain {
             rows.extend([along(1.0), along(-1.0)]);
             bounds.extend([-u, u - 1.0]);
         }
-        let step = least_distance(&rows, &bounds).map_err(|rows| self.contradiction(&rows))?;
-        Ok(unit.iter().zip(step).map(|(u, s)| (u + s).clamp(0.0, 1.0)).collect())
+        (rows, bounds)
     }
 
     fn contradiction(&self, rows: &[usize]) -> Error {
@@ -313,7 +311,6 @@ mod tests {
         near([0.8, 0.6], [0.6, 0.4]);
         near([2.0, 0.5], [0.75, 0.25]);
         near([-1.0, 0.5], [0.0, 0.5]);
-        assert!((domain.reach(&[0.0, 0.0], &[1.0, 1.0]) - 0.5).abs() < 1e-15);
     }
 
     #[test]

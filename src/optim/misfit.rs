@@ -89,15 +89,6 @@ impl Misfit {
         &self.targets
     }
 
-    /// Where each target stands among the responses a model gives, by name.
-    pub fn columns(&self, known: &[String]) -> Result<Vec<usize>, Vec<Error>> {
-        let place = |t: &Target| known.iter().position(|name| *name == t.response);
-        let missing = self.targets.iter().filter(|t| place(t).is_none());
-        let unknown = |t: &Target| Error::UnknownResponse { found: t.response.clone(), known: known.to_vec() };
-        let faults: Vec<_> = missing.map(unknown).collect();
-        if faults.is_empty() { Ok(self.targets.iter().filter_map(place).collect()) } else { Err(faults) }
-    }
-
     /// Signed relative deviations of responses given in the order of the targets.
     pub fn deviations(&self, responses: &[f64]) -> Vec<f64> {
         assert_eq!(responses.len(), self.targets.len(), "BUG: a response per target");
@@ -120,11 +111,6 @@ impl Misfit {
             Form::Maximum => parts.map(|(w, d)| w * d).fold(0.0, f64::max),
             Form::Squares => parts.map(|(w, d)| w * d * d).sum(),
         }
-    }
-
-    /// The misfit if every deviation were `relative`: what a tolerance means in the form's own units.
-    pub fn of_uniform(&self, relative: f64) -> f64 {
-        self.combine(&vec![relative; self.targets.len()])
     }
 
     fn scale(&self, target: &Target, computed: f64) -> f64 {
@@ -188,9 +174,6 @@ mod tests {
         let bad = vec![t("UCS", 0.0, 1.0), t("E", f64::INFINITY, 1.0), t("nu", 0.2, -1.0)];
         let faults = Misfit::new(bad, Form::Sum, Denominator::Target).expect_err("bad");
         assert!(matches!(faults[..], [Error::ZeroTarget { .. }, Error::NotFinite { .. }, Error::Weight { .. }]));
-        let m = misfit(Form::Sum, Denominator::Target);
-        let faults = m.columns(&["UCS".into(), "E".into()]).expect_err("no nu");
-        assert_eq!(faults[0].to_string(), "unknown response `nu`; the responses are `UCS`, `E`");
     }
 
     #[test]

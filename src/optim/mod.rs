@@ -4,7 +4,7 @@
 //! * [`misfit`]: how far responses are from their targets
 //! * [`genetic`], [`annealing`], [`differential`], [`cma_es`]: minimise the misfit as one number
 //! * [`surrogate`]: models every response over all runs, which is what noisy and dear simulations need
-//! * [`local`]: the descent from a found point that may follow the four of them
+//! * [`local`], [`polish`]: the descent from a found point that may follow the four of them
 //! * [`search`]: the loop around any of them, as a pure function of settings, seed and history
 //! * [`solution_set`]: all the parameters that meet the targets when there is more than one answer
 //!
@@ -21,12 +21,15 @@ pub mod genetic;
 pub mod least_distance;
 pub mod local;
 pub mod misfit;
+pub mod polish;
 pub mod search;
 pub mod solution_set;
 pub mod surrogate;
 
 #[cfg(test)]
 mod benchmark;
+#[cfg(test)]
+mod tests;
 
 use constraint::Domain;
 use misfit::Misfit;
@@ -144,14 +147,6 @@ pub enum Error {
     /// A constraint names a factor that is not calibrated.
     #[error("unknown factor `{found}`; the factors are {}", list(known))]
     UnknownFactor {
-        /// The name as written.
-        found: String,
-        /// The names there are.
-        known: Vec<String>,
-    },
-    /// A target names a response that the model does not give.
-    #[error("unknown response `{found}`; the responses are {}", list(known))]
-    UnknownResponse {
         /// The name as written.
         found: String,
         /// The names there are.

@@ -7,8 +7,8 @@ use super::annealing::Annealing;
 use super::cma_es::CmaEs;
 use super::differential::Differential;
 use super::genetic::Genetic;
-use super::local::Local;
-use super::surrogate::Surrogate;
+use super::polish::Polish;
+use super::surrogate::{Surrogate, Trend};
 use super::{Error, Interval, Optimiser, Problem, Recommendation, Stop, Trial};
 use super::{annealing, cma_es, differential, genetic, surrogate};
 use schemars::JsonSchema;
@@ -30,9 +30,6 @@ pub enum Method {
     Surrogate(surrogate::Settings),
 }
 
-/// The names of the methods as a workflow writes them.
-pub const METHODS: [&str; 5] = ["genetic", "annealing", "differential", "cma-es", "surrogate"];
-
 /// When any method ends, and whether its end is refined.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -41,8 +38,17 @@ pub struct Limits {
     pub evaluations: Option<usize>,
     /// A misfit that is good enough.
     pub misfit: Option<f64>,
-    /// Descend from the best point at the end ([`super::local`]): for models without noise.
+    /// Refine the best point at the end ([`super::polish`]): for models without noise.
     pub polish: bool,
+}
+
+/// What the surrogate may know beforehand; the other methods have no use for it.
+#[derive(Clone, Default)]
+pub struct Knowledge {
+    /// Runs of other stages; a response that a run lacks is NaN.
+    pub earlier: Vec<Run>,
+    /// Responses believed beforehand, which runs then correct.
+    pub trend: Option<Trend>,
 }
 
 /// A finished run: where, and what it gave.
@@ -78,8 +84,7 @@ pub enum Next {
 
 /// The next points or the end, from the history alone.
 ///
-/// `earlier` are runs of other stages that the surrogate may learn from. Where the history ends within a batch the rest
-/// of that batch is asked for.
+/// Where the history ends within a batch the rest of that batch is asked for.
 ///
 /// # Errors
 /// [`Error::ForeignHistory`] when the history was not asked for by these settings and this seed.
@@ -88,10 +93,10 @@ pub fn next(
     method: &Method,
     limits: &Limits,
     seed: u64,
-    earlier: &[Run],
+    knowledge: &Knowledge,
     history: &[Run],
 ) -> Result<Next, Error> {
-    let mut search = Search::new(problem, method, limits, seed, earlier);
+    let mut search = Search::new(problem, method, limits, seed, knowledge);
     let mut told = history;
     loop {
         if let Some(stop) = search.stop() {
@@ -121,7 +126,7 @@ pub fn minimise(
     seed: u64,
     mut model: impl FnMut(&[f64]) -> Option<Vec<f64>>,
 ) -> (Stop, State) {
-    let mut search = Search::new(problem, method, limits, seed, &[]);
+    let mut search = Search::new(problem, method, limits, seed, &Knowledge::default());
     loop {
         if let Some(stop) = search.stop() {
             return (stop, search.state());
@@ -133,7 +138,7 @@ pub fn minimise(
 
 /// Failures in a row, from the first run, that end a search.
 const HOPELESS: usize = 30;
-/// Part of the budget kept for the final descent.
+/// Part of the budget kept for the final refinement.
 const POLISHING: f64 = 0.1;
 
 /// An optimiser with its budget and its best point.
@@ -141,7 +146,8 @@ pub struct Search {
     problem: Problem,
     optimiser: Box<dyn Optimiser>,
     limits: Limits,
-    descent: Option<Local>,
+    seed: u64,
+    polish: Option<Polish>,
     /// Why the method itself ended, once it has.
     ended: Option<Stop>,
     asked: Vec<Vec<f64>>,
@@ -152,7 +158,7 @@ pub struct Search {
 
 impl Search {
     /// A fresh search.
-    pub fn new(problem: &Problem, method: &Method, limits: &Limits, seed: u64, earlier: &[Run]) -> Self {
+    pub fn new(problem: &Problem, method: &Method, limits: &Limits, seed: u64, knowledge: &Knowledge) -> Self {
         let domain = &problem.domain;
         let optimiser: Box<dyn Optimiser> = match method {
             Method::Genetic(s) => Box::new(Genetic::new(s, domain, seed)),
@@ -160,15 +166,16 @@ impl Search {
             Method::Differential(s) => Box::new(Differential::new(s, domain, seed)),
             Method::CmaEs(s) => Box::new(CmaEs::new(s, domain, seed)),
             Method::Surrogate(s) => {
-                let known = earlier.iter().map(|run| trial(problem, domain.unit(&run.point), run.responses.as_deref()));
-                Box::new(Surrogate::new(s, problem, seed, known.collect()))
+                let known = knowledge.earlier.iter().map(|run| earlier(problem, run)).collect();
+                Box::new(Surrogate::new(s, problem, seed, known, knowledge.trend.clone()))
             }
         };
         Self {
             problem: problem.clone(),
             optimiser,
             limits: limits.clone(),
-            descent: None,
+            seed,
+            polish: None,
             ended: None,
             asked: Vec::new(),
             evaluations: 0,
@@ -179,8 +186,8 @@ impl Search {
 
     /// The next batch in natural units; at least one point.
     pub fn ask(&mut self) -> Vec<Vec<f64>> {
-        self.asked = match &mut self.descent {
-            Some(descent) => descent.ask(),
+        self.asked = match &mut self.polish {
+            Some(polish) => polish.ask(),
             None => self.optimiser.ask(),
         };
         if let Some(left) = self.limits.evaluations.map(|most| most.saturating_sub(self.evaluations).max(1)) {
@@ -202,22 +209,22 @@ impl Search {
                 self.best = Some(t.clone());
             }
         }
-        match &mut self.descent {
-            Some(descent) => descent.tell(&trials),
+        match &mut self.polish {
+            Some(polish) => polish.tell(&trials),
             None => self.optimiser.tell(&trials),
         }
         self.begin_polish();
     }
 
-    /// Starts the final descent when the method has ended or its share of the budget is used.
+    /// Starts the final refinement when the method has ended or its share of the budget is used.
     fn begin_polish(&mut self) {
-        if self.ended.is_none() {
+        if self.polish.is_none() {
             self.ended = self.optimiser.stop();
         }
         let share = |most: usize| (most as f64 * (1.0 - POLISHING)) as usize;
         let due = self.ended.is_some() || self.limits.evaluations.is_some_and(|most| self.evaluations >= share(most));
-        if let (true, true, None, Some(best)) = (self.limits.polish, due, &self.descent, &self.best) {
-            self.descent = Some(Local::new(&self.problem.domain, &best.point, best.misfit));
+        if let (true, true, None, Some(best)) = (self.limits.polish, due, &self.polish, &self.best) {
+            self.polish = Some(Polish::new(&self.problem.domain, &best.point, best.misfit, self.seed));
         }
     }
 
@@ -233,9 +240,10 @@ impl Search {
         if self.limits.evaluations.is_some_and(|most| self.evaluations >= most) {
             return Some(Stop::Evaluations);
         }
-        match &self.descent {
-            Some(descent) => descent.stop().map(|stalled| self.ended.unwrap_or(stalled)),
-            None => self.ended,
+        match &self.polish {
+            Some(polish) => polish.stop().map(|stalled| self.ended.unwrap_or(stalled)),
+            // Who asks for a misfit wants to see it in a run, not only to expect it.
+            None => self.ended.filter(|&stop| stop != Stop::Settled || self.limits.misfit.is_none()),
         }
     }
 
@@ -260,6 +268,13 @@ fn observed(trial: &Trial) -> Recommendation {
         responses: trial.responses.iter().map(seen).collect(),
         misfit: trial.misfit,
     }
+}
+
+/// An earlier run, with NaN for the responses that it lacks.
+fn earlier(problem: &Problem, run: &Run) -> Trial {
+    let responses = run.responses.clone().unwrap_or_default();
+    let misfit = if responses.is_empty() { f64::INFINITY } else { problem.misfit.of(&responses) };
+    Trial { point: problem.domain.unit(&run.point), misfit, responses }
 }
 
 fn trial(problem: &Problem, point: Vec<f64>, responses: Option<&[f64]>) -> Trial {

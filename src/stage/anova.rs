@@ -30,6 +30,10 @@ pub struct Anova {
     /// Factors that are counted as error: empty columns, weak factors.
     #[serde(default)]
     pub as_error: Vec<String>,
+    /// Factors that set nothing: they are analysed like the others, and a significant one is remarked upon, for then
+    /// the model lacks interactions or the table has an error.
+    #[serde(default)]
+    pub empty: Vec<String>,
     /// Terms whose p exceeds this are pooled into the error.
     pub pool_above: Option<f64>,
     /// Two-way interactions: `"none"`, `"estimable"`, or a list of pairs.
@@ -105,6 +109,8 @@ struct Params {
     columns: Columns,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     as_error: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    empty: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pool_above: Option<f64>,
     #[serde(default, skip_serializing_if = "is_default")]
@@ -130,6 +136,7 @@ impl Anova {
         Params {
             columns,
             as_error: self.as_error.clone(),
+            empty: self.empty.clone(),
             pool_above: self.pool_above,
             interactions: self.interactions.clone(),
             squares: self.squares,
@@ -157,6 +164,7 @@ impl Stage for Anova {
         let rounded: Vec<String> = self.rounding.keys().cloned().collect();
         let retitled = |key: &'static str| move |c: Complaint| Complaint { path: vec![key.to_owned()], ..c };
         found.extend(check_names(context, &self.as_error, &[]).into_iter().map(retitled("as_error")));
+        found.extend(check_names(context, &self.empty, &[]).into_iter().map(retitled("empty")));
         found.extend(check_names(context, &[], &rounded).into_iter().map(retitled("rounding")));
         if let Pairs::List(pairs) = &self.interactions {
             let names: Vec<String> = pairs.iter().flat_map(|(a, b)| [a.clone(), b.clone()]).collect();
@@ -226,20 +234,27 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         let about = "standard deviation of F when the responses are rounded";
         table = table.reals_column("f_rounding", "", about, Rows(&lines).reals(rounding));
     }
-    if let Some(prints) = prints(job, "source", "f")? {
-        let computed = |(a, line): &(&Analysis, &Line)| (a.response.clone(), line.source.clone());
-        let names: Vec<(String, String)> = lines.iter().map(computed).collect();
+    let remark = |line: &Line| {
+        let significant = line.p.is_some_and(|p| p <= params.alpha) && params.empty.contains(&line.source);
+        if significant {
+            "an empty column is significant: the model lacks interactions or the table has an error"
+        } else {
+            ""
+        }
+    };
+    let prints = prints(job, "source", "f")?;
+    if prints.is_some() || !params.empty.is_empty() {
         let computed: Vec<Computed> = lines
             .iter()
-            .zip(&names)
-            .map(|(own, (response, line))| Computed {
-                response,
-                line,
+            .map(|own| Computed {
+                response: &own.0.response,
+                line: &own.1.source,
                 value: own.1.f,
                 rounding: rounding(own).unwrap_or(0.0),
+                remark: remark(own.1),
             })
             .collect();
-        table = beside(table, &prints, &computed);
+        table = beside(table, &prints.unwrap_or_default(), &computed);
     }
     let residuals = analyses.iter().map(|a| (a.response.as_str(), a.residuals.as_slice()));
     let fits: Vec<_> = analyses.iter().map(|a| &a.fit).collect();

@@ -56,7 +56,7 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
 }
 
 /// Reads the whole table, or says every fault of it.
-fn parse(bytes: &[u8]) -> Result<Table, StageError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<Table, StageError> {
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
     let fail = |e: csv::Error| StageError::new(e.to_string()).hint("every line must have the cells of the first line");
     let heads: Vec<String> = reader.headers().map_err(fail)?.iter().map(str::to_owned).collect();

@@ -14,7 +14,10 @@ use crate::stats::terms::Term;
 use serde::{Deserialize, Serialize};
 
 mod keep;
+mod predict;
 pub use keep::models;
+pub use predict::Predict;
+pub(super) use predict::check_predict;
 
 /// One response to be fitted.
 #[derive(Debug, Serialize, Deserialize)]
@@ -35,6 +38,8 @@ pub(super) struct Params {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub select_alpha: Option<f64>,
     pub outlier_alpha: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub predict: Option<Predict>,
 }
 
 /// The level at which terms are selected when none is given.
@@ -65,7 +70,7 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     let mut natural = coefficient_table(&found, |r| &r.natural);
     let mut fit = fit_table(&fits);
     if let Some(prints) = prints(job, "term", "estimate")? {
-        let plain = |response, line, value| Computed { response, line, value: Some(value), rounding: 0.0 };
+        let plain = |response, line, value| Computed { response, line, value: Some(value), rounding: 0.0, remark: "" };
         let own = |(f, c): (&'_ Fitting, &'_ Coefficient)| (f.response.clone(), c.term.clone(), c.estimate);
         let values: Vec<(String, String, f64)> =
             found.iter().flat_map(|(f, r)| r.natural.iter().map(move |c| own((*f, c)))).collect();
@@ -76,16 +81,20 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     }
     let residuals = found.iter().map(|(f, r)| (f.response.as_str(), r.residuals.as_slice()));
     let (stationary, axes) = stationary_tables(&found);
-    let root = Group::new()
+    let mut root = Group::new()
         .with("coefficients", Node::Table(natural))
         .with("coded", Node::Table(coefficient_table(&found, |r| &r.coded)))
         .with("fit", Node::Table(fit))
         .with("residuals", Node::Table(residual_table(residuals)))
         .with("stationary", Node::Table(stationary))
         .with("axes", Node::Table(axes))
+        .with("path", Node::Table(predict::path_table(&found)))
         .with("domain", Node::Table(domain_table(&found)))
         .with("selection", Node::Table(selection_table(&found)))
         .with("models", Node::Group(keep::kept(found.iter().map(|(f, r)| (f.response.as_str(), &r.model)))));
+    if let Some(points) = &params.predict {
+        root.put("predictions", Node::Table(predict::prediction_table(&found, points)));
+    }
     Ok(Artifact::new("surfaces", 1, root))
 }
 

@@ -32,10 +32,12 @@
 //! (the domain's own spec types), built from the config in `next`.
 
 pub mod anova;
+pub mod calibrate;
 mod columns;
 pub mod command;
 mod context;
 pub mod data;
+pub mod design;
 pub mod figure;
 pub mod fitted;
 pub mod formula;
@@ -49,6 +51,7 @@ pub mod simulate;
 pub mod specimen;
 pub mod table;
 mod task;
+pub mod verify;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
@@ -203,8 +206,10 @@ macro_rules! kinds {
 
 kinds! {
     anova::Anova,
+    calibrate::Calibrate,
     command::Command,
     data::Data,
+    design::Design,
     figure::Figure,
     formula::Formula,
     range::Range,
@@ -214,6 +219,7 @@ kinds! {
     simulate::Simulate,
     specimen::Specimen,
     table::Table,
+    verify::Verify,
 }
 
 /// The work called `name`.

@@ -1,7 +1,8 @@
 //! Printed values beside computed ones: what a paper says, how far off it is, and whether that is explained.
 //!
 //! The file is a CSV with a column `response`, a column that names the line (`source` or `term`), the printed value as
-//! it was printed (its decimals count), and an optional `note` that says what is known about a print that differs.
+//! it was printed (its decimals count), an optional `decimals` where the print drops zeros at the end, and an optional
+//! `note` that says what is known about a print that differs.
 
 use super::{Failure, Job, StageError};
 use crate::artifact::Table;
@@ -10,9 +11,9 @@ use crate::artifact::Table;
 pub(super) struct Print {
     response: String,
     line: String,
-    /// As printed: its decimals say how it was rounded.
-    text: String,
     value: f64,
+    /// Decimals that it was rounded to.
+    decimals: usize,
     note: String,
 }
 
@@ -36,17 +37,21 @@ fn parse(bytes: &[u8], line: &str, value: &str) -> Result<Vec<Print>, StageError
                 .hint(format!("the file has columns `response`, `{line}`, `{value}` and perhaps `note`"))
         })
     };
-    let (response, name, print, note) = (needed("response")?, needed(line)?, needed(value)?, place("note"));
+    let (response, name, print) = (needed("response")?, needed(line)?, needed(value)?);
+    let (decimals, note) = (place("decimals"), place("note"));
     let mut found = Vec::new();
     for (i, record) in reader.records().enumerate() {
         let record = record.map_err(fail)?;
         let cell = |at: usize| record.get(at).unwrap_or("").to_owned();
         let text = cell(print);
-        let value = text
-            .parse()
-            .map_err(|_| StageError::new(format!("published values, row {}: `{text}` is no number", i + 1)))?;
+        let wrong = |text: &str| StageError::new(format!("published values, row {}: `{text}` is no number", i + 1));
+        let value = text.parse().map_err(|_| wrong(&text))?;
+        let decimals = match decimals.map(cell).filter(|own| !own.is_empty()) {
+            Some(own) => own.parse().map_err(|_| wrong(&own))?,
+            None => text.split_once('.').map_or(0, |(_, digits)| digits.len()),
+        };
         let note = note.map(cell).unwrap_or_default();
-        found.push(Print { response: cell(response), line: cell(name), value, text, note });
+        found.push(Print { response: cell(response), line: cell(name), value, decimals, note });
     }
     Ok(found)
 }
@@ -58,6 +63,8 @@ pub(super) struct Computed<'a> {
     pub value: Option<f64>,
     /// Standard deviation of the value under rounding of the responses; 0 when they are taken as they stand.
     pub rounding: f64,
+    /// What else is to be said of the line.
+    pub remark: &'static str,
 }
 
 /// Adds `published`, `deviation` (computed minus published) and `remark` to a table of the computed values.
@@ -70,8 +77,10 @@ pub(super) fn beside(table: Table, prints: &[Print], computed: &[Computed]) -> T
     let off = |c: &Computed| Some(c.value? - own(c)?.value);
     let deviation = computed.iter().map(|c| off(c).unwrap_or(f64::NAN)).collect();
     let remark = |c: &Computed| match (own(c), off(c)) {
-        (Some(print), Some(off)) => judge(print, off.abs(), c.rounding),
-        (Some(_) | None, _) => String::new(),
+        (Some(print), Some(off)) => {
+            [&judge(print, off.abs(), c.rounding), c.remark].join("; ").trim_end_matches("; ").into()
+        }
+        (Some(_) | None, _) => c.remark.to_owned(),
     };
     table
         .reals_column("published", "", "as printed", published)
@@ -80,8 +89,7 @@ pub(super) fn beside(table: Table, prints: &[Print], computed: &[Computed]) -> T
 }
 
 fn judge(print: &Print, off: f64, rounding: f64) -> String {
-    let decimals = print.text.split_once('.').map_or(0, |(_, digits)| digits.len());
-    let half_unit = format!("0.5e-{decimals}").parse().unwrap_or(0.5) * (1.0 + 1e-9);
+    let half_unit = format!("0.5e-{}", print.decimals).parse().unwrap_or(0.5) * (1.0 + 1e-9);
     if off <= half_unit {
         "as printed".to_owned()
     } else if off <= half_unit + 2.0 * rounding {
@@ -99,8 +107,10 @@ mod tests {
 
     #[test]
     fn a_print_is_judged_by_its_own_decimals() {
-        let prints = parse(b"response,term,estimate,note\nE,a,0.30,\nE,b,-1.5,sign\n", "term", "estimate").unwrap();
-        let computed = |line, value, rounding| Computed { response: "E", line, value: Some(value), rounding };
+        let file = b"response,term,estimate,decimals,note\nE,a,0.3,2,\nE,b,-1.5,,sign\n";
+        let prints = parse(file, "term", "estimate").unwrap();
+        let computed =
+            |line, value, rounding| Computed { response: "E", line, value: Some(value), rounding, remark: "" };
         let all =
             [computed("a", 0.3049, 0.0), computed("a", 0.31, 0.0), computed("a", 0.31, 0.003), computed("b", 1.5, 0.0)];
         let table = beside(Table::default(), &prints, &all);

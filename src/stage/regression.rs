@@ -4,7 +4,7 @@
 //! `stationary`, `axes`, `domain`, `selection`, and the models that prediction needs.
 
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
-use super::fitted::{self, Fitting, Params, fit};
+use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
 use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::stats::selection::Direction;
 use crate::stats::terms::Term;
@@ -33,6 +33,8 @@ pub struct Regression {
     pub outlier_alpha: f64,
     /// Column with the number of replicates that each row is the mean of.
     pub weights: Option<String>,
+    /// Points at which the models are asked.
+    pub predict: Option<Predict>,
     /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
     /// compared with the fit.
     pub published: Option<String>,
@@ -81,13 +83,14 @@ impl Stage for Regression {
             let own = check_names(context, &factors_of(terms), std::slice::from_ref(response));
             found.extend(own.into_iter().map(|c| Complaint { path: vec!["terms".into(), response.clone()], ..c }));
         }
+        found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
     }
 
     fn settings(&self) -> Value {
         let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
-        json!({ "terms": self.terms, "select": select, "weights": self.weights, "published": self.published })
+        json!({ "terms": self.terms, "select": select, "weights": self.weights, "predict": self.predict, "published": self.published })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -114,6 +117,7 @@ impl Stage for Regression {
             select: self.select,
             select_alpha: self.select.map(|_| self.select_alpha.unwrap_or(fitted::SELECT_ALPHA)),
             outlier_alpha: self.outlier_alpha,
+            predict: self.predict.clone(),
         };
         let mut task = Task::new("fit", json!(params)).input("table", input.content);
         if let Some(path) = &self.published {

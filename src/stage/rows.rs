@@ -175,10 +175,10 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
 }
 
-type Responses<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
+pub(super) type Responses<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
 
 /// Failure text and (name, value, unit) of every response of a run.
-fn responses(run: &Artifact) -> Result<Responses<'_>, StageError> {
+pub(super) fn responses(run: &Artifact) -> Result<Responses<'_>, StageError> {
     let wrong = |what: &str| StageError::new(format!("a run holds no {what}"));
     let failure = match run.root.get("failure") {
         Some(Node::Text(text)) => text.as_str(),

@@ -3,7 +3,7 @@
 //! The result is an artifact `surfaces`, as [`super::regression`] gives it.
 
 use super::columns::{Columns, Wanted, check_names, runs};
-use super::fitted::{self, Fitting, Params};
+use super::fitted::{self, Fitting, Params, Predict, check_predict};
 use super::regression::{check_levels, factors_of, outlier_alpha, with_constant};
 use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::stats::selection::Direction;
@@ -34,6 +34,8 @@ pub struct Rsm {
     pub outlier_alpha: f64,
     /// Column with the number of replicates that each row is the mean of.
     pub weights: Option<String>,
+    /// Points at which the models are asked.
+    pub predict: Option<Predict>,
     /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
     /// compared with the fit.
     pub published: Option<String>,
@@ -73,6 +75,7 @@ impl Stage for Rsm {
                 found.push(Complaint { path, message, hint: None });
             }
         }
+        found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
     }
@@ -80,7 +83,7 @@ impl Stage for Rsm {
     fn settings(&self) -> Value {
         let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
         let what = json!({ "responses": self.responses, "terms": self.terms });
-        json!({ "fit": what, "select": select, "weights": self.weights, "published": self.published })
+        json!({ "fit": what, "select": select, "weights": self.weights, "predict": self.predict, "published": self.published })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -99,6 +102,7 @@ impl Stage for Rsm {
             select: self.select,
             select_alpha: self.select.map(|_| self.select_alpha.unwrap_or(fitted::SELECT_ALPHA)),
             outlier_alpha: self.outlier_alpha,
+            predict: self.predict.clone(),
         };
         task.params = json!(params);
         if let Some(path) = &self.published {

@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// The stages whose tables are printed.
-    pub from: Names,
+    pub of: Names,
     /// Which table of the artifact; its first one when not given.
     pub table: Option<String>,
     /// Columns in the order of print; all when not given.
@@ -86,7 +86,7 @@ struct Params {
 
 impl Stage for Table {
     fn inputs(&self) -> Vec<Port> {
-        let mut ports = vec![Port { key: "from", stages: self.from.list(), accepts: ANY }];
+        let mut ports = vec![Port { key: "of", stages: self.of.list(), accepts: ANY }];
         ports.extend(self.compare.iter().map(|c| Port { key: "compare", stages: vec![c.clone()], accepts: ANY }));
         ports
     }
@@ -97,8 +97,8 @@ impl Stage for Table {
 
     fn check(&self, _context: &Context) -> Vec<Complaint> {
         let mut found = Vec::new();
-        if self.from.list().is_empty() {
-            found.push(Complaint::new("from", "no stage is named"));
+        if self.of.list().is_empty() {
+            found.push(Complaint::new("of", "no stage is named"));
         }
         if self.compare.is_some() && self.by.is_empty() {
             let hint = "name the columns that tell a row, such as by = [\"source\"]";
@@ -120,18 +120,18 @@ impl Stage for Table {
 
     fn settings(&self) -> Value {
         json!({
-            "from": self.from.list(), "table": self.table, "columns": self.columns, "where": self.only,
+            "of": self.of.list(), "table": self.table, "columns": self.columns, "where": self.only,
             "compare": self.compare, "by": self.by, "caption": self.caption, "label": self.label, "notes": self.notes,
             "digits": self.digits, "decimals": self.decimals, "symbols": self.symbols,
         })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
-        let artifact = known.load(known.one("from")?)?;
+        let artifact = known.load(known.one("of")?)?;
         let table = find(&artifact, self.table.as_deref())?;
         let all = table.columns.iter().map(|c| c.name.clone());
         let columns: Vec<String> = if self.columns.is_empty() { all.collect() } else { self.columns.clone() };
-        let stages = self.from.list();
+        let stages = self.of.list();
         let params = Params {
             table: self.table.clone(),
             columns: self.columns.clone(),
@@ -146,7 +146,7 @@ impl Stage for Table {
             stages: if stages.len() > 1 { stages } else { Vec::new() },
         };
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
-        for port in ["from", "compare"] {
+        for port in ["of", "compare"] {
             for input in known.port(port) {
                 task = task.input(port, input.content);
             }
@@ -202,7 +202,7 @@ fn find<'a>(artifact: &'a Artifact, name: Option<&str>) -> Result<&'a artifact::
 
 fn print(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let inputs = job.inputs.iter().filter(|(name, _)| name == "from");
+    let inputs = job.inputs.iter().filter(|(name, _)| name == "of");
     let mut columns: Vec<Column> = Vec::new();
     let mut names: Vec<String> = Vec::new();
     for (k, (_, artifact)) in inputs.enumerate() {

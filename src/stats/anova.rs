@@ -172,6 +172,8 @@ fn settings_faults(sample: &Sample, settings: &Settings) -> Vec<Fault> {
     let mut faults: Vec<Fault> = settings.as_error.iter().filter_map(|name| sample.factor(name).err()).collect();
     if let Interactions::Named(pairs) = &settings.interactions {
         faults.extend(pairs.iter().flat_map(|(a, b)| [a, b]).filter_map(|name| sample.factor(name).err()));
+        let same = pairs.iter().filter(|(a, b)| a == b);
+        faults.extend(same.map(|(a, b)| Fault::Model { problem: format!("has the interaction `{a}*{b}`") }));
     }
     let levels = settings.significance.iter().map(|(level, _)| ("significance level", *level));
     let levels = levels.chain(settings.pool_above.map(|p| ("pooling level", p)));

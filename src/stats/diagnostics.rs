@@ -14,7 +14,7 @@ use super::columns::Matrix;
 use super::fit::Solution;
 use super::number::Real;
 use super::triangle::{BLOCK, Blocks};
-use crate::math::distribution::t_two_sided;
+use crate::math::distribution::t_for_tail;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -73,14 +73,14 @@ pub(crate) fn residuals<T: Real>(
         let left_out = r.weighted / r.free;
         (r.free > 1e-12).then_some(sum + left_out * left_out)
     });
-    let n = rows.len() as f64;
+    let df = solution.df_residual().saturating_sub(1);
+    let limit = t_for_tail(alpha / rows.len() as f64, df as f64);
     let judged = raw.iter().zip(rows.iter().zip(values)).map(|(raw, (&row, &observed))| {
         let mut residual = judge(raw, solution);
         residual.row = row + 1;
         residual.observed = observed;
-        let df = solution.df_residual().saturating_sub(1) as f64;
-        let alone = residual.standardized.is_some() && df > 0.0;
-        residual.outlier = residual.studentized.map_or(alone, |t| t_two_sided(t, df) * n < alpha);
+        let alone = residual.standardized.is_some() && df > 0;
+        residual.outlier = residual.studentized.map_or(alone, |t| t.abs() > limit);
         residual
     });
     (judged.collect(), press)

@@ -13,6 +13,7 @@ use super::number::Real;
 use super::sample::{Sample, Usable};
 use super::triangle::Triangle;
 use crate::math::distribution::{f_upper, t_two_sided};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// A table is computed in 31 digits as long as rows × columns² stays below this (some tens of milliseconds).
@@ -236,7 +237,7 @@ impl<T: Real> PureError<T> {
             factors.iter().map(compare).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
         };
         let mut sorted: Vec<usize> = (0..usable.rows.len()).collect();
-        sorted.sort_by(order);
+        sorted.par_sort_by(order);
         let mut pure = Self { df: 0, squares: T::zero() };
         for group in sorted.chunk_by(|a, b| order(a, b).is_eq()).filter(|group| group.len() > 1) {
             let weight = |i: usize| T::from(sample.weight(usable.rows[i]));

@@ -155,7 +155,7 @@ impl Store {
         walk(&self.disk, "journal", &mut |path, _| swept.segments += u64::from(!is_temporary(path)));
         if really {
             for path in doomed {
-                remove(&self.disk, &path)?;
+                self.disk.remove(&path)?;
             }
             self.compact()?;
         }
@@ -177,7 +177,7 @@ impl Store {
         }
         *segment = Default::default();
         for name in old {
-            remove(&self.disk, &journal::folder(&self.disk).join(name))?;
+            self.disk.remove(&journal::folder(&self.disk).join(name))?;
         }
         drop(segment);
         *locked(&self.presence) = Default::default();
@@ -268,13 +268,6 @@ fn is_temporary(path: &Path) -> bool {
 fn is_young(metadata: &fs::Metadata, grace: Duration) -> bool {
     let age = metadata.modified().ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
     age < grace
-}
-
-fn remove(disk: &Disk, path: &Path) -> Result<(), StoreError> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(disk.fail("remove", path, error)),
-        _ => Ok(()),
-    }
 }
 
 /// Calls `visit` with every file below a folder of the store and its size; a folder that is not there has none.

@@ -2,7 +2,7 @@
 
 use super::StoreError;
 use std::fs::{self, File};
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// Folder of a store on disk.
@@ -57,6 +57,41 @@ impl Disk {
         Ok(true)
     }
 
+    /// As [`Disk::write_new`], but into a file that is open and has the name `draft`; `path` becomes its second name.
+    pub(super) fn link_new(
+        &self,
+        draft: &Path,
+        file: &mut File,
+        path: &Path,
+        bytes: &[u8],
+        durable: bool,
+    ) -> Result<bool, StoreError> {
+        let written = file.rewind().and_then(|()| file.set_len(0)).and_then(|()| file.write_all(bytes));
+        written
+            .and_then(|()| if durable { file.sync_all() } else { Ok(()) })
+            .map_err(|e| self.fail("write", path, e))?;
+        self.read_back(draft, path, bytes)?;
+        let mut linked = fs::hard_link(draft, path);
+        if linked.as_ref().is_err_and(|error| error.kind() == ErrorKind::NotFound) {
+            self.make_dir(path.parent().unwrap_or(&self.root))?;
+            linked = fs::hard_link(draft, path);
+        }
+        match linked {
+            Ok(()) => {}
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => return Ok(false),
+            // A file system without links.
+            Err(_) => return self.write_new(path, bytes, durable),
+        }
+        if let Ok(mut permissions) = file.metadata().map(|data| data.permissions()) {
+            permissions.set_readonly(true);
+            let _ = file.set_permissions(permissions);
+        }
+        if durable && let Some(parent) = path.parent() {
+            self.sync_dir(parent)?;
+        }
+        Ok(true)
+    }
+
     /// As [`Disk::write_new`], but puts the file in place of an older one: for notes that can be made anew, not objects.
     pub(super) fn replace(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
         let temporary = self.write_temporary(path, bytes, false)?;
@@ -87,13 +122,24 @@ impl Disk {
         }
         let temporary = file.into_temp_path();
         // The file is closed: what a network file system refuses only then is noticed here, before it has a name.
-        let mut back = Vec::with_capacity(bytes.len() + 1);
-        let read = File::open(&temporary).and_then(|mut file| file.read_to_end(&mut back));
-        read.map_err(|error| self.fail("read back", path, error))?;
-        if back != bytes {
-            return Err(self.fail("write", path, ErrorKind::StorageFull.into()));
-        }
+        self.read_back(&temporary, path, bytes)?;
         Ok(temporary)
+    }
+
+    /// Reads a file that was just written, `path` to be, and compares.
+    fn read_back(&self, written: &Path, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+        let mut back = Vec::with_capacity(bytes.len() + 1);
+        let read = File::open(written).and_then(|mut file| file.read_to_end(&mut back));
+        read.map_err(|error| self.fail("read back", path, error))?;
+        if back == bytes { Ok(()) } else { Err(self.fail("write", path, ErrorKind::StorageFull.into())) }
+    }
+
+    /// Removes a file, if it is there.
+    pub(super) fn remove(&self, path: &Path) -> Result<(), StoreError> {
+        match fs::remove_file(path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(self.fail("remove", path, error)),
+            _ => Ok(()),
+        }
     }
 
     /// Makes the names in a folder survive a power cut.

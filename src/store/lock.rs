@@ -2,8 +2,12 @@
 //!
 //! A claim is a locked file `locks/<key>.lock` with the process and the machine of its holder inside. The kernel
 //! releases the lock when the process ends, however it ends, so there is no stale lock and nothing to unlock by hand.
-//! The holder removes the file before it lets go; whoever gets the lock of a file that is no longer the one in the
-//! folder tries again.
+//! The holder removes the name before it lets go. Whoever gets the lock of a file that somebody left behind removes it
+//! and begins anew, and whoever gets the lock of a file that is no longer the one in the folder tries again.
+//!
+//! The result is written into this very file, which then gets its name among the objects as a second link: a task
+//! costs one new file and not two. (ext4 does not hand out an inode again that was freed within the last seconds, and
+//! searches past all of these for each new file, so ten thousand lock files that come and go cost seconds.)
 //!
 //! Locks only save work: without them (some network file systems have none) two runs may compute the same task, and
 //! the store keeps one of the two equal results.
@@ -11,7 +15,7 @@
 use super::StoreError;
 use super::disk::Disk;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -36,8 +40,8 @@ impl std::fmt::Display for Holder {
 /// The right to compute a task; dropped, it is free again.
 #[derive(Debug)]
 pub struct Guard {
-    path: PathBuf,
-    _file: File,
+    pub(super) path: PathBuf,
+    pub(super) file: File,
 }
 
 impl Drop for Guard {
@@ -96,33 +100,47 @@ pub(super) enum Taken {
 pub(super) fn take(disk: &Disk, name: &str, machine: &str) -> Result<Taken, StoreError> {
     let folder = disk.root.join("locks");
     let path = folder.join(format!("{name}.lock"));
-    let open = || OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path);
     loop {
-        let file = match open() {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                disk.make_dir(&folder)?;
-                open()
+        match OpenOptions::new().create_new(true).read(true).write(true).open(&path) {
+            Ok(mut file) => {
+                // An error: a file system without locks, see the module's head.
+                let taken = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+                if taken && is_same_file(&path, &file) {
+                    let written = file.write_all(format!("{} {machine}\n", std::process::id()).as_bytes());
+                    let guard = Guard { path, file };
+                    written.map_err(|error| disk.fail("write the lock", &guard.path, error))?;
+                    return Ok(Taken::Mine(guard));
+                }
             }
-            other => other,
-        };
-        let mut file = file.map_err(|error| disk.fail("make the lock", &path, error))?;
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => {
-                let holder = read_holder(&mut file);
-                return Ok(Taken::Theirs(Waiting { path, file, holder }));
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                if let Some(waiting) = held(disk, &path)? {
+                    return Ok(Taken::Theirs(waiting));
+                }
             }
-            // A file system without locks: see the module's head.
-            Err(TryLockError::Error(_)) => return Ok(Taken::Mine(Guard { path, _file: file })),
-            Ok(()) if !is_same_file(&path, &file) => {}
-            Ok(()) => {
-                let line = format!("{} {machine}\n", std::process::id());
-                let written = file.set_len(0).and_then(|()| file.write_all(line.as_bytes()));
-                let guard = Guard { path, _file: file };
-                written.map_err(|error| disk.fail("write the lock", &guard.path, error))?;
-                return Ok(Taken::Mine(guard));
-            }
+            Err(error) if error.kind() == ErrorKind::NotFound => disk.make_dir(&folder)?,
+            Err(error) => return Err(disk.fail("make the lock", &path, error)),
         }
     }
+}
+
+/// Who holds an existing lock; nobody when it was left behind, and it is removed.
+fn held(disk: &Disk, path: &Path) -> Result<Option<Waiting>, StoreError> {
+    let open = OpenOptions::new().read(true).write(true).open(path).or_else(|_| File::open(path));
+    let mut file = match open {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        other => other.map_err(|error| disk.fail("open the lock", path, error))?,
+    };
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => {
+            let holder = read_holder(&mut file);
+            return Ok(Some(Waiting { path: path.to_owned(), file, holder }));
+        }
+        Ok(()) | Err(TryLockError::Error(_)) => {}
+    }
+    if is_same_file(path, &file) {
+        disk.remove(path)?;
+    }
+    Ok(None)
 }
 
 /// Says that this process uses the store, until the file is dropped; nothing is removed from a store in use. A store

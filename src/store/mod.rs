@@ -87,7 +87,7 @@ pub struct Timing {
 /// The answer to [`Store::claim`].
 #[derive(Debug)]
 pub enum Claim {
-    /// The task is the caller's to compute; keep the guard until its result is stored.
+    /// The task is the caller's to compute: hand the guard to [`Store::finish`], or drop it to give the task up.
     Mine(Guard),
     /// Another process, or another thread of this one, computes it.
     Theirs(Waiting),
@@ -199,12 +199,36 @@ impl Store {
         hdf5::task_text(image).map_err(|why| self.unreadable(record, why))
     }
 
-    /// Stores the result of a task. When the function returns, the result is recorded and can be found.
+    /// Stores the result of a claimed task and releases it. When the function returns, the result can be found.
     ///
     /// # Errors
     /// The result cannot be held by a file, or the disk refuses it.
+    pub fn finish(
+        &self,
+        mut claim: Guard,
+        task_text: &str,
+        artifact: Artifact,
+        timing: &Timing,
+    ) -> Result<(Record, Arc<Artifact>), StoreError> {
+        self.store(Some(&mut claim), task_text, artifact, timing)
+    }
+
+    /// Stores the result of a task that was not claimed.
+    ///
+    /// # Errors
+    /// As [`Store::finish`].
     pub fn put(
         &self,
+        task_text: &str,
+        artifact: Artifact,
+        timing: &Timing,
+    ) -> Result<(Record, Arc<Artifact>), StoreError> {
+        self.store(None, task_text, artifact, timing)
+    }
+
+    fn store(
+        &self,
+        claim: Option<&mut Guard>,
         task_text: &str,
         artifact: Artifact,
         timing: &Timing,
@@ -213,7 +237,7 @@ impl Store {
         let id = ObjectId { content: artifact.content_hash(), key: Key::of(task_text) };
         let image = hdf5::encode(&artifact, task_text).map_err(StoreError::Unstorable)?;
         let durable = timing.seconds >= object::SYNC_FROM;
-        let seal = object::write(&self.disk, &id, &image, durable)?;
+        let seal = object::write(&self.disk, &id, &image, durable, claim)?;
         let record = Record {
             key: id.key,
             content: id.content,

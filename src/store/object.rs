@@ -5,8 +5,8 @@
 //! the task text inside it does not depend on which of two tasks with equal results ended first, and two runs on two
 //! empty stores leave the same files.
 //!
-//! **Writing.** The image is made in memory, written under a temporary name in its folder, closed, read back, and
-//! renamed without replacing. If the name exists, the file there is kept when it is sound, and set aside when not.
+//! **Writing.** The image is made in memory, written under another name, read back, and only then given its name,
+//! without replacing. If the name exists, the file there is kept when it is sound, and set aside when not.
 //!
 //! **Reading.** Size and blake3 of the file are compared with the journal before the HDF5 library sees a byte. What
 //! differs is moved to `aside/`, reported, and counts as missing. Nothing is deleted here.
@@ -18,7 +18,7 @@
 
 use super::disk::Disk;
 use super::journal::FirstBytes;
-use super::{Damage, StoreError, hdf5};
+use super::{Damage, Guard, StoreError, hdf5};
 use crate::artifact::{ContentHash, Key};
 use std::collections::HashSet;
 use std::fs;
@@ -72,12 +72,22 @@ pub(super) fn path(disk: &Disk, id: &ObjectId) -> PathBuf {
     disk.root.join("objects").join(&name[..2]).join(name)
 }
 
-/// Writes an object and returns the seal of the file that now has its name.
-pub(super) fn write(disk: &Disk, id: &ObjectId, image: &[u8], durable: bool) -> Result<Seal, StoreError> {
+/// Writes an object, into the file of its claim if there is one; returns the seal of the file that now has its name.
+pub(super) fn write(
+    disk: &Disk,
+    id: &ObjectId,
+    image: &[u8],
+    durable: bool,
+    mut claim: Option<&mut Guard>,
+) -> Result<Seal, StoreError> {
     let path = path(disk, id);
     let seal = Seal::of(image);
     for _ in 0..3 {
-        if disk.write_new(&path, image, durable)? {
+        let written = match &mut claim {
+            Some(claim) => disk.link_new(&claim.path, &mut claim.file, &path, image, durable)?,
+            None => disk.write_new(&path, image, durable)?,
+        };
+        if written {
             return Ok(seal);
         }
         let Some(found) = disk.read(&path)? else { continue };

@@ -50,8 +50,7 @@ fn one_of_two_claims_waits() {
     assert_eq!(waiting.holder.process, std::process::id());
     assert!(!waiting.is_over());
     assert!(!waiting.wait(|| true));
-    let (record, _) = first.put("t", result(2.0), &timing(0.0)).unwrap();
-    drop(guard);
+    let (record, _) = first.finish(guard, "t", result(2.0), &timing(0.0)).unwrap();
     assert!(waiting.wait(|| false));
     let Claim::Done(found) = second.claim(&key).unwrap() else { panic!("it is finished") };
     assert_eq!(found, record);

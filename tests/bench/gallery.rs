@@ -2,7 +2,7 @@
 //!
 //!     cargo bench --bench gallery -- FOLDER [NAME…]
 
-#[path = "../figures/samples.rs"]
+#[path = "../figures/samples/mod.rs"]
 mod samples;
 
 use flow::figure::{pdf::pdf, png::png, svg::svg, table::csv};

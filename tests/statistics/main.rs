@@ -1,5 +1,7 @@
 //! The statistics against certified data, published tables and other programs.
 
+mod faults;
+mod identities;
 mod nist;
 mod other_code;
 mod su2021;

@@ -49,7 +49,7 @@ fn all_39_f_values_of_table_7() {
         let spread = table.f_rounding(line, step).unwrap();
         let off = (line.f.unwrap() - f).abs();
         assert!(off <= 0.005 + 2.0 * spread, "{response} {source}: {:?} for {f}, spread {spread}", line.f);
-        assert_eq!(line.significance, row[3], "{response} {source}");
+        assert_eq!(line.significance, row[4], "{response} {source}");
     }
     for table in &found {
         assert_eq!(table.lines[14].df, 35);

@@ -99,7 +99,7 @@ fn a_full_disk_is_an_error_and_the_next_run_goes_on() {
         put(&store, stored.len() as u64);
         assert_sound(folder.path());
     });
-    assert!(mounted(&format!("umount {root}")));
+    assert!(mounted(&format!("umount -l {root}")));
     outcome.unwrap();
 }
 
@@ -112,7 +112,7 @@ fn a_read_only_disk_can_be_read() {
         return eprintln!("no mounts here: not tried");
     }
     let said = std::panic::catch_unwind(|| probe("exec \"$0\" \"$@\"", folder.path()));
-    assert!(mounted(&format!("umount {root}")));
+    assert!(mounted(&format!("umount -l {root}")));
     let said = said.unwrap();
     assert!(said.contains("PROBE found: true") && said.contains("PROBE got: Ok(true)"), "{said}");
     assert!(said.contains("PROBE the store is read-only") && said.contains("--store"), "{said}");
@@ -132,7 +132,7 @@ fn a_damaged_object_on_a_read_only_disk_is_still_noticed() {
         return eprintln!("no mounts here: not tried");
     }
     let said = std::panic::catch_unwind(|| probe("exec \"$0\" \"$@\"", folder.path()));
-    assert!(mounted(&format!("umount {root}")));
+    assert!(mounted(&format!("umount -l {root}")));
     let said = said.unwrap();
     assert!(said.contains("aside: None") && said.contains("instead of"), "{said}");
 }

@@ -42,12 +42,14 @@ pub struct Sizes {
 const PRIORS: [(f64, f64); 5] = [(0.3, 1.0), (0.05, 1.0), (0.05, 1.0), (1.0, 0.5), (0.03, 1.5)];
 /// Ranges of the sizes, in logarithms' spreads of their priors.
 const RANGE: f64 = 4.0;
+/// How much smaller the effects of a correction are than those of a response.
+const CORRECTION: f64 = 0.3;
 /// Prior deviation of the level, which the data decide.
 const LEVEL: f64 = 3.0;
 
 impl Sizes {
-    fn from_prior(place: &[f64], smooth: bool) -> Self {
-        let of = |i: usize| PRIORS[i].0 * exp(PRIORS[i].1 * place[i]);
+    fn from_prior(place: &[f64], smooth: bool, effects: f64) -> Self {
+        let of = |i: usize| PRIORS[i].0 * exp(PRIORS[i].1 * place[i]) * if i < 3 { effects } else { 1.0 };
         Self {
             constant: LEVEL,
             linear: of(0),
@@ -97,15 +99,17 @@ impl Gaussian {
         Some(Self { points: points.to_vec(), sizes, factor, weights })
     }
 
-    /// The process with the most likely sizes.
-    pub fn fit(points: &[Vec<f64>], values: &[f64], smooth: bool) -> Option<Self> {
+    /// The process with the most likely sizes; `corrects` when it describes what a trend leaves, whose effects are
+    /// expected to be smaller.
+    pub fn fit(points: &[Vec<f64>], values: &[f64], smooth: bool, corrects: bool) -> Option<Self> {
+        let effects = if corrects { CORRECTION } else { 1.0 };
         let table = Table::new(points, values);
         let range = |i: usize| Factor { name: i.to_string(), low: -RANGE, high: RANGE };
         let place = Domain::new((0..PRIORS.len()).map(range).collect(), &[]).ok()?;
         let loss = |unit: &[f64]| {
             let place = place.natural(unit);
             let prior: f64 = place.iter().map(|p| 0.5 * p * p).sum();
-            prior - table.likelihood(Sizes::from_prior(&place, smooth)).unwrap_or(f64::NEG_INFINITY)
+            prior - table.likelihood(Sizes::from_prior(&place, smooth, effects)).unwrap_or(f64::NEG_INFINITY)
         };
         let start = vec![0.5; PRIORS.len()];
         let mut descent = Local::new(&place, &start, loss(&start));
@@ -117,7 +121,7 @@ impl Gaussian {
                 break;
             }
         }
-        Self::with(points, values, Sizes::from_prior(&place.natural(descent.best().0), smooth))
+        Self::with(points, values, Sizes::from_prior(&place.natural(descent.best().0), smooth, effects))
     }
 
     /// Mean and variance of the expected response (without the noise of a run).
@@ -167,5 +171,59 @@ impl Table {
         factor.l_dirty().solve_lower_triangular_mut(&mut white);
         let determinant: f64 = (0..n).map(|i| ln(factor.l_dirty()[(i, i)])).sum();
         Some(-0.5 * white.norm_squared() - determinant - 0.5 * n as f64 * ln(std::f64::consts::TAU))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reals(value: &toml::Value) -> Vec<f64> {
+        value.as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect()
+    }
+
+    /// Values of scikit-learn with the same covariance: `tests/reference/optim/gaussian_process.py`.
+    #[test]
+    fn values_are_those_of_scikit_learn() {
+        let text = include_str!("../../../tests/reference/optim/gaussian_process.toml");
+        let table: toml::Table = text.parse().unwrap();
+        let rows = |name: &str| -> Vec<Vec<f64>> { table[name].as_array().unwrap().iter().map(reals).collect() };
+        let (points, values, at) = (rows("points"), reals(&table["values"]), rows("at"));
+        for case in ["full", "quadratic"] {
+            let of = |name: &str| table[case][name].as_float().unwrap();
+            let sizes = Sizes {
+                constant: of("constant"),
+                linear: of("linear"),
+                quadratic: of("quadratic"),
+                smooth: of("smooth"),
+                length: of("length"),
+                noise: of("noise"),
+            };
+            let process = Gaussian::with(&points, &values, sizes).unwrap();
+            let (means, variances) = (reals(&table[case]["mean"]), reals(&table[case]["variance"]));
+            for (z, (mean, variance)) in at.iter().zip(means.iter().zip(&variances)) {
+                let own = process.predict(z);
+                assert!((own.0 - mean).abs() < 1e-9, "{case} {own:?} {mean}");
+                assert!((own.1 - variance).abs() < 1e-9, "{case} {own:?} {variance}");
+            }
+            let likelihood = Table::new(&points, &values).likelihood(sizes).unwrap();
+            assert!((likelihood - of("likelihood")).abs() < 1e-8, "{case} {likelihood}");
+        }
+    }
+
+    /// With plenty of runs the fit finds the scatter that was put in, and the function to within it.
+    #[test]
+    fn the_fit_finds_scatter_and_function() {
+        let mut random = crate::math::random::Stream::new(2, "gaussian test", 0);
+        let truth = |z: &[f64]| 0.4 * z[0] - 0.3 * z[1] + 0.1 * z[0] * z[1] - 0.05 * z[2] * z[2];
+        let points: Vec<Vec<f64>> = (0..60).map(|_| (0..3).map(|_| random.uniform_in(-1.0, 1.0)).collect()).collect();
+        let values: Vec<f64> = points.iter().map(|z| truth(z) + 0.03 * random.normal()).collect();
+        let process = Gaussian::fit(&points, &values, true, false).unwrap();
+        assert!((0.022..0.038).contains(&process.sizes().noise), "{:?}", process.sizes());
+        for z in [[0.5, 0.5, 0.5], [-0.7, 0.2, 0.0], [0.0, 0.0, -0.8]] {
+            let (mean, variance) = process.predict(&z);
+            let error = (mean - truth(&z)).abs();
+            assert!(error < 4.0 * variance.sqrt() && error < 0.03, "{error} {variance}");
+        }
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! Every response gets its own model ([`gaussian`]) over *all* runs, its own and those it was told to learn from, so
 //! that no single lucky run can win. A first design of two levels around the centre finds the directions; then every
-//! batch is placed around the point the models recommend, each point off by a little in a direction of its own, which
-//! measures the neighbourhood from all sides.
+//! batch takes the point the models recommend and points around it, each off by a little in a direction of its own,
+//! which measures the neighbourhood from all sides.
 //!
 //! The recommended point minimises the misfit with every deviation δ replaced by √(δ² + v), v the variance of the
 //! expected response: among the many points that meet the targets it takes the one that is known best.
@@ -16,17 +16,21 @@
 //! of a point, and multiplies its merit.
 //!
 //! Sources: Rasmussen & Williams 2006 (the models); Box & Wilson 1951, doi:10.1111/j.2517-6161.1951.tb00067.x
-//! (sequential response surfaces); Plumlee & Joseph 2018, doi:10.5705/ss.202015.0404 (quadratic trend and smooth rest).
+//! (sequential response surfaces).
 
 pub mod gaussian;
+pub mod models;
 
-use super::local::Local;
-use super::{Interval, Optimiser, Problem, Recommendation, Stop, Trial};
-use crate::math::elementary::{exp, ln};
+use super::{Optimiser, Problem, Recommendation, Stop, Trial};
 use crate::math::random::Stream;
-use gaussian::Gaussian;
+use models::Models;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// What is believed beforehand: responses at a point in natural units, from fitted surfaces for example. The models
+/// then describe the ratio (or difference) between runs and belief.
+pub type Trend = Arc<dyn Fn(&[f64]) -> Option<Vec<f64>> + Send + Sync>;
 
 /// What follows the responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -51,8 +55,9 @@ pub struct Settings {
     pub first: Option<usize>,
     /// Half width of the first design, in ranges.
     pub width: f64,
-    /// Standard deviation of the batch around the recommended point, in ranges.
-    pub jitter: f64,
+    /// Standard deviation of the batch around the recommended point, in ranges; twice the scatter of a run, at most a
+    /// tenth, when left out, so that runs without scatter go straight to the point.
+    pub jitter: Option<f64>,
     /// Most runs.
     pub runs: usize,
     /// Relative deviation that the 95 % interval of every response must stay within to end early.
@@ -66,12 +71,15 @@ impl Default for Settings {
             batch: 4,
             first: None,
             width: 0.3,
-            jitter: 0.08,
+            jitter: None,
             runs: 60,
             tolerance: 0.02,
         }
     }
 }
+
+/// Standard deviation of a batch where nothing is known of the scatter, in ranges.
+const LARGEST_JITTER: f64 = 0.1;
 
 /// The algorithm's state: all it knows are the runs.
 pub struct Surrogate {
@@ -81,19 +89,21 @@ pub struct Surrogate {
     /// Runs to learn from: earlier ones first, then its own.
     runs: Vec<Trial>,
     earlier: usize,
+    trend: Option<Trend>,
     models: Option<Models>,
     recommended: Option<Recommendation>,
 }
 
 impl Surrogate {
     /// A fresh search that already knows some runs.
-    pub fn new(settings: &Settings, problem: &Problem, seed: u64, earlier: Vec<Trial>) -> Self {
+    pub fn new(settings: &Settings, problem: &Problem, seed: u64, earlier: Vec<Trial>, trend: Option<Trend>) -> Self {
         let mut fresh = Self {
             settings: settings.clone(),
             problem: problem.clone(),
             seed,
             earlier: earlier.len(),
             runs: earlier,
+            trend,
             models: None,
             recommended: None,
         };
@@ -109,9 +119,9 @@ impl Surrogate {
         self.settings.first.unwrap_or((self.problem.domain.len() + 1).next_power_of_two())
     }
 
-    /// Whether there are runs enough to trust the models rather than a design.
+    /// Whether there is enough to go by without a design: a trend, or as many runs as the design has.
     fn designed(&self) -> bool {
-        self.runs.iter().filter(|run| run.succeeded()).count() >= self.first()
+        self.trend.is_some() || self.runs.iter().filter(|run| run.succeeded()).count() >= self.first()
     }
 
     fn stream(&self, purpose: &str) -> Stream {
@@ -119,10 +129,10 @@ impl Surrogate {
     }
 
     fn learn(&mut self) {
-        self.models = Models::fit(&self.runs, &self.problem, self.settings.model);
+        let smooth = self.settings.model == Model::GaussianProcess;
+        self.models = Models::fit(&self.runs, &self.problem, smooth, self.trend.as_ref());
         if let Some(models) = &self.models {
-            let point = models.recommend(&self.problem, &self.runs, &mut self.stream("surrogate recommend"));
-            self.recommended = Some(models.expect(&self.problem, point));
+            self.recommended = Some(models.recommend(&self.runs, &mut self.stream("surrogate recommend")));
         }
     }
 
@@ -143,18 +153,21 @@ impl Surrogate {
         rows.into_iter().map(|i| domain.repair(&row(i))).take(self.first()).collect()
     }
 
-    /// Points around the recommended one, in pairs on opposite sides of it.
+    /// The recommended point, and points around it in pairs on opposite sides.
     fn around(&self, centre: &[f64]) -> Vec<Vec<f64>> {
         let mut random = self.stream("surrogate batch");
-        let mut batch: Vec<Vec<f64>> = Vec::new();
-        while batch.len() < self.settings.batch.max(1) {
-            let step: Vec<f64> = centre.iter().map(|_| self.settings.jitter * random.normal()).collect();
+        let scatter = self.models.as_ref().and_then(Models::scatter).unwrap_or(LARGEST_JITTER);
+        let jitter = self.settings.jitter.unwrap_or((2.0 * scatter).min(LARGEST_JITTER));
+        let size = self.settings.batch.max(1);
+        let mut batch: Vec<Vec<f64>> = vec![centre.to_vec()];
+        while batch.len() < size {
+            let step: Vec<f64> = centre.iter().map(|_| jitter * random.normal()).collect();
             for sign in [1.0, -1.0] {
                 let moved: Vec<f64> = centre.iter().zip(&step).map(|(u, s)| u + sign * s).collect();
                 batch.push(self.problem.domain.repair(&moved));
             }
         }
-        batch.truncate(self.settings.batch.max(1));
+        batch.truncate(size);
         batch
     }
 }
@@ -188,153 +201,4 @@ impl Optimiser for Surrogate {
     fn recommended(&self) -> Option<Recommendation> {
         self.recommended.clone()
     }
-}
-
-/// How a coordinate is modelled.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Scale {
-    /// (x − centre) / width
-    Linear { centre: f64, width: f64 },
-    /// (ln x − centre) / width
-    Logarithm { centre: f64, width: f64 },
-}
-
-impl Scale {
-    /// Codes a factor's range to −1 … 1; by logarithms when its ends are positive and apart by a factor of two.
-    fn factor(low: f64, high: f64) -> Self {
-        if low > 0.0 && high / low >= 2.0 {
-            let (low, high) = (ln(low), ln(high));
-            Self::Logarithm { centre: 0.5 * (low + high), width: 0.5 * (high - low) }
-        } else {
-            Self::Linear { centre: 0.5 * (low + high), width: 0.5 * (high - low) }
-        }
-    }
-
-    /// Codes a response: by logarithms when all are positive, else by their mean and spread.
-    fn response(values: &[f64], target: f64) -> Self {
-        let n = values.len() as f64;
-        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / n;
-        if target > 0.0 && values.iter().all(|&v| v > 0.0) {
-            return Self::Logarithm { centre: mean(&mut values.iter().map(|&v| ln(v))), width: 1.0 };
-        }
-        let centre = mean(&mut values.iter().copied());
-        let width = mean(&mut values.iter().map(|v| (v - centre) * (v - centre))).sqrt();
-        Self::Linear { centre, width: if width > 0.0 { width } else { 1.0 } }
-    }
-
-    fn code(self, value: f64) -> f64 {
-        match self {
-            Self::Linear { centre, width } => (value - centre) / width,
-            Self::Logarithm { centre, width } => (ln(value) - centre) / width,
-        }
-    }
-
-    fn decode(self, coded: f64) -> f64 {
-        match self {
-            Self::Linear { centre, width } => centre + width * coded,
-            Self::Logarithm { centre, width } => exp(centre + width * coded),
-        }
-    }
-}
-
-/// The models of all responses, and of failure.
-struct Models {
-    factors: Vec<Scale>,
-    responses: Vec<(Scale, Gaussian)>,
-    failed: Vec<Vec<f64>>,
-    succeeded: Vec<Vec<f64>>,
-}
-
-/// Distance over which a failed run warns, in half ranges.
-const WARNING: f64 = 0.5;
-/// Random places from which the recommended point is sought.
-const STARTS: usize = 400;
-
-impl Models {
-    fn fit(runs: &[Trial], problem: &Problem, model: Model) -> Option<Self> {
-        let factors: Vec<Scale> = problem.domain.factors().iter().map(|f| Scale::factor(f.low, f.high)).collect();
-        let coded = |run: &Trial| code(&factors, &problem.domain.natural(&run.point));
-        let (good, bad): (Vec<&Trial>, Vec<&Trial>) = runs.iter().partition(|run| run.succeeded());
-        if good.is_empty() {
-            return None;
-        }
-        let succeeded: Vec<Vec<f64>> = good.iter().map(|run| coded(run)).collect();
-        let mut responses = Vec::new();
-        for (k, target) in problem.misfit.targets().iter().enumerate() {
-            let values: Vec<f64> = good.iter().map(|run| run.responses[k]).collect();
-            let scale = Scale::response(&values, target.value);
-            let coded: Vec<f64> = values.iter().map(|&v| scale.code(v)).collect();
-            responses.push((scale, Gaussian::fit(&succeeded, &coded, model == Model::GaussianProcess)?));
-        }
-        let failed = bad.iter().map(|run| coded(run)).collect();
-        Some(Self { factors, responses, failed, succeeded })
-    }
-
-    /// Chance of failure: the weight of failed neighbours against that of successful ones and a prior success.
-    fn failure(&self, z: &[f64]) -> f64 {
-        let near = |p: &Vec<f64>| {
-            let distance: f64 = p.iter().zip(z).map(|(a, b)| (a - b) * (a - b)).sum();
-            exp(-0.5 * distance / (WARNING * WARNING * z.len() as f64 / 2.0))
-        };
-        let bad: f64 = self.failed.iter().map(near).sum();
-        let good: f64 = self.succeeded.iter().map(near).sum();
-        bad / (bad + good + 1.0)
-    }
-
-    /// The misfit with the models' uncertainty counted in, and the chance of failure.
-    fn risk(&self, problem: &Problem, unit: &[f64]) -> f64 {
-        let z = code(&self.factors, &problem.domain.natural(unit));
-        let (mut expected, mut spread) = (Vec::new(), Vec::new());
-        for (scale, model) in &self.responses {
-            let (mean, variance) = model.predict(&z);
-            expected.push(scale.decode(mean));
-            spread.push(scale.decode(mean + variance.sqrt()) - scale.decode(mean));
-        }
-        let deviations = problem.misfit.deviations(&expected);
-        let off: Vec<f64> = expected.iter().zip(&spread).map(|(y, s)| y + s).collect();
-        let beyond = problem.misfit.deviations(&off);
-        let total: Vec<f64> = deviations.iter().zip(&beyond).map(|(d, b)| (d * d + (b - d) * (b - d)).sqrt()).collect();
-        problem.misfit.combine(&total) * (1.0 + 10.0 * self.failure(&z))
-    }
-
-    /// The point of least risk: the best of many, refined by descent.
-    fn recommend(&self, problem: &Problem, runs: &[Trial], random: &mut Stream) -> Vec<f64> {
-        let domain = &problem.domain;
-        let mut starts: Vec<Vec<f64>> = (0..STARTS).map(|_| domain.sample(random)).collect();
-        starts.extend(runs.iter().map(|run| domain.repair(&run.point)));
-        starts.push(domain.centre().to_vec());
-        let mut ranked: Vec<(f64, Vec<f64>)> = starts.into_iter().map(|u| (self.risk(problem, &u), u)).collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let refined = ranked.iter().take(3).map(|(risk, start)| {
-            let mut descent = Local::new(domain, start, *risk);
-            for _ in 0..60 {
-                let told = |point: Vec<f64>| Trial { misfit: self.risk(problem, &point), point, responses: Vec::new() };
-                let trials: Vec<Trial> = descent.ask().into_iter().map(told).collect();
-                descent.tell(&trials);
-                if descent.stop().is_some() {
-                    break;
-                }
-            }
-            (descent.best().1, descent.best().0.to_vec())
-        });
-        let first = ranked[0].clone();
-        refined.fold(first, |best, this| if this.0 < best.0 { this } else { best }).1
-    }
-
-    /// What is expected at a point.
-    fn expect(&self, problem: &Problem, point: Vec<f64>) -> Recommendation {
-        let z = code(&self.factors, &problem.domain.natural(&point));
-        let interval = |(scale, model): &(Scale, Gaussian)| {
-            let (mean, variance) = model.predict(&z);
-            let half = 1.96 * variance.sqrt();
-            Interval { mean: scale.decode(mean), low: scale.decode(mean - half), high: scale.decode(mean + half) }
-        };
-        let responses: Vec<Interval> = self.responses.iter().map(interval).collect();
-        let misfit = problem.misfit.of(&responses.iter().map(|y| y.mean).collect::<Vec<_>>());
-        Recommendation { point, responses, misfit }
-    }
-}
-
-fn code(scales: &[Scale], natural: &[f64]) -> Vec<f64> {
-    scales.iter().zip(natural).map(|(scale, &x)| scale.code(x)).collect()
 }

@@ -1,85 +1,102 @@
 //! Figures of designs and their results: main effects, ranges, points, agreement with other results.
 
 use super::super::StageError;
-use super::source::{Rows, Sources};
+use super::source::{Rows, Source, Sources};
 use super::{Label, Params};
 use crate::figure::agreement::{Agreement, Cloud, Pair};
 use crate::figure::axis::significant;
 use crate::figure::bars::{Bar, RankedBars};
 use crate::figure::effects::{FactorMeans, MainEffects};
 use crate::figure::points::DesignPoints;
-use crate::stats::range::{Range, range_analysis};
-use crate::stats::sample::{Factor, Response, Sample};
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {
     params.responses.first().ok_or_else(|| StageError::new("no response is named"))
 }
 
-/// Range analysis of one response for the factors that are drawn.
-fn ranges(rows: Rows<'_>, params: &Params, response: &Label) -> Result<Vec<Range>, StageError> {
-    let mut sample = Sample::default();
-    for factor in &params.factors {
-        sample.factors.push(Factor::new(&factor.key, rows.reals(&factor.key)?));
-    }
-    let values = rows.reals(&response.key)?.into_iter().map(|v| v.is_finite().then_some(v)).collect();
-    sample.responses.push(Response { name: response.key.clone(), values });
-    range_analysis(&sample).map_err(|e| StageError::new(e.to_string()))
+/// Range analysis of one factor for one response.
+struct Range {
+    factor: String,
+    levels: Vec<f64>,
+    means: Vec<f64>,
+    range: f64,
 }
 
-/// The same from the table to compare with, when there is one.
-fn compared(params: &Params, sources: &Sources, response: &Label) -> Result<Vec<Range>, StageError> {
-    match sources.compare.first() {
-        Some(source) => ranges(source.rows(&["runs"])?, params, response),
-        None => Ok(Vec::new()),
+/// The analysis of one response for the factors that are drawn, in their order.
+fn ranges(source: Source, params: &Params, response: &Label) -> Result<Vec<Range>, StageError> {
+    let (range, levels) = (source.rows(&["range"])?, source.rows(&["levels"])?);
+    let mine = range.where_is("response", &response.key)?;
+    let (factor, owner) = (range.texts("factor")?, levels.texts("factor")?);
+    let spans = range.reals("range")?;
+    let names: Vec<String> = (1..).map(|k| format!("level_{k}")).take_while(|name| range.has(name)).collect();
+    let read = |rows: Rows<'_>| names.iter().map(|name| rows.reals(name)).collect::<Result<Vec<_>, _>>();
+    let (means, values) = (read(range)?, read(levels)?);
+    let of = |columns: &[Vec<f64>], row: usize| -> Vec<f64> {
+        columns.iter().map(|c| c[row]).take_while(|v| v.is_finite()).collect()
+    };
+    let mut found = Vec::new();
+    for label in &params.factors {
+        let row = mine.iter().copied().find(|&i| factor[i] == label.key);
+        let place = owner.iter().position(|f| *f == label.key);
+        if let (Some(row), Some(place)) = (row, place) {
+            let (levels, means) = (of(&values, place), of(&means, row));
+            found.push(Range { factor: label.key.clone(), levels, means, range: spans[row] });
+        }
     }
+    Ok(found)
+}
+
+/// The same from the analysis to compare with, when there is one.
+fn compared(params: &Params, sources: &Sources, response: &Label) -> Result<Vec<Range>, StageError> {
+    sources.compare.first().map_or(Ok(Vec::new()), |source| ranges(*source, params, response))
+}
+
+fn label_of<'a>(params: &'a Params, range: &Range) -> Result<&'a Label, StageError> {
+    let found = params.factors.iter().find(|label| label.key == range.factor);
+    found.ok_or_else(|| StageError::new(format!("`{}` is not a factor", range.factor)))
 }
 
 pub(super) fn main_effects(params: &Params, sources: &Sources) -> Result<MainEffects, StageError> {
     let response = one_response(params)?;
-    let rows = sources.first()?.rows(&["runs"])?;
-    let computed = ranges(rows, params, response)?;
+    let computed = ranges(sources.first()?, params, response)?;
     let published = compared(params, sources, response)?;
-    let of = |list: &[Range], key: &str| list.iter().find(|r| r.factor == key).map(|r| r.means.clone());
-    let factor = |(label, range): (&Label, Range)| FactorMeans {
-        factor: named(label),
-        group: label.group.clone(),
-        levels: range.levels,
-        means: range.means,
-        half_width: Vec::new(),
-        published: of(&published, &label.key).unwrap_or_default(),
-    };
-    let values: Vec<f64> = rows.reals(&response.key)?.into_iter().filter(|v| v.is_finite()).collect();
-    Ok(MainEffects {
-        response: response.quantity(),
-        grand_mean: values.iter().sum::<f64>() / values.len().max(1) as f64,
-        factors: params.factors.iter().zip(computed).map(factor).collect(),
-    })
-}
-
-/// A factor with its key as name, so that data tables and descriptions can tell it.
-fn named(label: &Label) -> crate::figure::Quantity {
-    let name = if label.name.is_empty() { &label.key } else { &label.name };
-    crate::figure::Quantity::new(name, &label.symbol, &label.unit)
+    let some_set = params.factors.iter().any(|label| !label.group.is_empty());
+    let all: Vec<f64> = computed.iter().flat_map(|r| r.means.iter().copied()).collect();
+    let mut factors = Vec::new();
+    for range in computed {
+        let label = label_of(params, &range)?;
+        factors.push(FactorMeans {
+            factor: label.quantity(),
+            group: if some_set && label.group.is_empty() { "empty column".into() } else { label.group.clone() },
+            published: published.iter().find(|r| r.factor == label.key).map(|r| r.means.clone()).unwrap_or_default(),
+            levels: range.levels,
+            means: range.means,
+            half_width: Vec::new(),
+        });
+    }
+    let grand_mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+    Ok(MainEffects { response: response.quantity(), grand_mean, factors })
 }
 
 pub(super) fn range(params: &Params, sources: &Sources) -> Result<RankedBars, StageError> {
     let response = one_response(params)?;
-    let computed = ranges(sources.first()?.rows(&["runs"])?, params, response)?;
+    let computed = ranges(sources.first()?, params, response)?;
     let published = compared(params, sources, response)?;
     let (mut bars, mut references) = (Vec::new(), Vec::new());
-    for (label, range) in params.factors.iter().zip(&computed) {
-        // A column that sets nothing shows what chance alone does.
-        if label.group.is_empty() {
+    let some_set = params.factors.iter().any(|label| !label.group.is_empty());
+    for range in &computed {
+        let label = label_of(params, range)?;
+        // Where others set a parameter, a column that sets none shows what chance alone does.
+        if some_set && label.group.is_empty() {
             references.push(("empty column".to_owned(), range.range));
             continue;
         }
         let published = published.iter().find(|r| r.factor == label.key).map(|r| r.range);
-        bars.push(Bar { factor: named(label), group: label.group.clone(), value: range.range, published });
+        bars.push(Bar { factor: label.quantity(), group: label.group.clone(), value: range.range, published });
     }
     let quantity = response.quantity();
     Ok(RankedBars {
-        title: format!("Ranges of {}", if quantity.name.is_empty() { &response.key } else { &quantity.name }),
-        quantity: crate::figure::Quantity { name: "Range of".into(), ..quantity },
+        title: format!("Ranges of {}", quantity.words()),
+        quantity: quantity.worded("Range of"),
         bars,
         references,
     })
@@ -99,20 +116,15 @@ pub(super) fn points(params: &Params, sources: &Sources) -> Result<DesignPoints,
         within.unwrap_or(if inner_high > inner_low { [inner_low, inner_high] } else { [low, high] })
     };
     let sides = params.factors.iter().zip(&columns).map(side).collect();
-    let factors = params.factors.iter().map(named_plain).collect();
+    let factors = params.factors.iter().map(Label::quantity).collect();
     Ok(DesignPoints { title: "design".into(), factors, sides, points, kinds })
-}
-
-/// Symbol and unit only; the key when there is no symbol.
-fn named_plain(label: &Label) -> crate::figure::Quantity {
-    label.quantity()
 }
 
 pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement, StageError> {
     let mut pairs: Vec<Pair> = Vec::new();
     for response in &params.responses {
         let mut clouds = Vec::new();
-        for (i, (ours, theirs)) in sources.from.iter().zip(&sources.compare).enumerate() {
+        for (i, (ours, theirs)) in sources.of.iter().zip(&sources.compare).enumerate() {
             let (ours, theirs) = (ours.rows(&["runs"])?, theirs.rows(&["runs"])?);
             if !ours.has(&response.key) || !theirs.has(&response.key) {
                 continue;

@@ -1,25 +1,27 @@
 //! `kind = "figure"`: a picture of the results of other stages, as SVG, PDF and PNG, with its numbers as a table.
 //!
-//! `show` names the figure, `from` the stages it takes its data from, and `compare` the stages with values to set
+//! `show` names the figure, `of` the stages it takes its data from, and `compare` the stages with values to set
 //! beside them (published ones, as a rule). What each figure reads:
 //!
-//! | `show` | `from` | tables read |
+//! | `show` | `of` | tables read |
 //! |---|---|---|
 //! | `stress-strain` | runs | `curve`, `cracks` |
 //! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces` |
 //! | `specimen` | a specimen | its arrays |
-//! | `main-effects`, `range` | results (`compare`: results) | `runs`: factors and `response` |
+//! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
 //! | `points` | a design or results | `design` or `runs`: two or three factors |
 //! | `agreement` | results (`compare`: as many results) | `runs`; rows are matched by their factors |
-//! | `contour`, `surface` | surfaces | `coefficients` (`response`, `term`, `estimate`) |
-//! | `residuals`, `observed-predicted` | anova, regression, surfaces | `residuals` |
-//! | `pareto`, `half-normal` | a screening | `effects` |
-//! | `convergence`, `solutions` | solutions | `history`, `solution_set` |
-//! | `verification` | verifications | `runs`, `targets` |
+//! | `contour`, `surface` | surfaces (`compare`: a design or results, whose points are marked) | `coefficients`, `domain` |
+//! | `residuals`, `observed-predicted` | anova, screening, surfaces | `residuals` |
+//! | `pareto` | a screening, or an anova | `effects` and `limits`, or `anova` |
+//! | `half-normal` | a screening | `effects`, `limits` |
+//! | `convergence`, `solutions` | solutions | `history`; `solution`, `solution_set` |
+//! | `verification` | a verification | `summary`, `runs` |
 //!
 //! A picture depends on the numbers it draws, on its labels (symbols and units of the factors and responses it draws)
 //! and on its style: on nothing else, so it is drawn anew when, and only when, one of these changed.
 
+mod config;
 mod design;
 mod model;
 mod run;
@@ -29,189 +31,12 @@ mod source;
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
 use crate::figure::palette::Map;
-use crate::figure::{self, DOUBLE, Figure as Picture, SINGLE, Style, column, text};
-use crate::unit::Length;
-use schemars::JsonSchema;
+use crate::figure::{self, Figure as Picture, Style, column, text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Settings of a `figure` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Figure {
-    /// What is drawn.
-    pub show: Show,
-    /// The stages it is drawn from.
-    pub from: Names,
-    /// Stages with values to set beside them.
-    #[serde(default)]
-    pub compare: Names,
-    /// The response that is drawn, or several where the figure has a panel for each.
-    #[serde(default)]
-    pub response: Names,
-    /// The factors that are drawn; all of them when not given.
-    #[serde(default)]
-    pub factors: Vec<String>,
-    /// Values of the factors that are held constant, in their units; the middle of the range when not given.
-    #[serde(default)]
-    pub at: BTreeMap<String, f64>,
-    /// Words for what has a symbol only: `{ UCS = "Peak strength" }`; for series, names in the legend by stage.
-    #[serde(default)]
-    pub names: BTreeMap<String, String>,
-    /// Half width of the band around the line of equality, as a share of the value.
-    pub band: Option<f64>,
-    /// `single` (90 mm), `double` (190 mm) or a length.
-    #[serde(default)]
-    pub width: Width,
-    /// Size of the text in points; 8 when not given.
-    pub points: Option<f64>,
-    /// Colours of surfaces.
-    #[serde(default)]
-    pub colors: Map,
-}
-
-/// One name or several.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Names {
-    /// None.
-    #[default]
-    #[serde(skip)]
-    None,
-    /// One.
-    One(String),
-    /// Several.
-    Many(Vec<String>),
-}
-
-impl Names {
-    pub(super) fn list(&self) -> Vec<String> {
-        match self {
-            Names::None => Vec::new(),
-            Names::One(name) => vec![name.clone()],
-            Names::Many(names) => names.clone(),
-        }
-    }
-}
-
-/// Width of the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Preset {
-    /// One column of a journal: 90 mm.
-    #[default]
-    Single,
-    /// Two columns: 190 mm.
-    Double,
-}
-
-/// A named width or a length.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Width {
-    /// By name.
-    Preset(Preset),
-    /// By length.
-    Length(Length),
-}
-
-impl Default for Width {
-    fn default() -> Self {
-        Width::Preset(Preset::Single)
-    }
-}
-
-impl Width {
-    fn millimetres(self) -> f64 {
-        match self {
-            Width::Preset(Preset::Single) => SINGLE,
-            Width::Preset(Preset::Double) => DOUBLE,
-            Width::Length(length) => length.get() * 1e3,
-        }
-    }
-}
-
-/// The figures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Show {
-    /// Stress–strain curves with crack counts.
-    StressStrain,
-    /// Crack patterns by mode at several moments.
-    Cracks,
-    /// Orientation of the cracks.
-    CrackRose,
-    /// Force chains.
-    ForceChains,
-    /// Particles by group, with the aggregate.
-    Specimen,
-    /// Mean response per level of each factor.
-    MainEffects,
-    /// Ranked ranges of a range analysis.
-    Range,
-    /// Points of a design in two or three factors.
-    Points,
-    /// Computed against compared values, matched by their factors.
-    Agreement,
-    /// A response surface as filled contours.
-    Contour,
-    /// A response surface in space.
-    Surface,
-    /// Four views of the residuals of a model.
-    Residuals,
-    /// Observed values against those of the model.
-    ObservedPredicted,
-    /// Ranked standardized effects.
-    Pareto,
-    /// Half-normal plot of effects.
-    HalfNormal,
-    /// Misfit against effort of a calibration.
-    Convergence,
-    /// Parameter sets over parallel axes.
-    Solutions,
-    /// Targets against verified values.
-    Verification,
-}
-
-/// What one kind of figure takes.
-struct Needs {
-    from: &'static [&'static str],
-    compare: &'static [&'static str],
-    /// Least and greatest number of responses.
-    responses: [usize; 2],
-    /// Least and greatest number of factors named; factors are drawn when the second is not 0.
-    factors: [usize; 2],
-}
-
-const MANY: usize = usize::MAX;
-
-impl Show {
-    fn needs(self) -> Needs {
-        let needs = |from, compare, responses, factors| Needs { from, compare, responses, factors };
-        const RESULTS: &[&str] = &["results"];
-        const MODELS: &[&str] = &["anova", "regression", "surfaces"];
-        match self {
-            Show::StressStrain => needs(&["run"], &[], [0, 0], [0, 0]),
-            Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&["run"], &["specimen"], [0, 0], [0, 0]),
-            Show::Specimen => needs(&["specimen"], &[], [0, 0], [0, 0]),
-            Show::MainEffects | Show::Range => needs(RESULTS, RESULTS, [1, 1], [0, MANY]),
-            Show::Points => needs(&["design", "results"], &[], [0, 0], [2, 3]),
-            Show::Agreement => needs(RESULTS, RESULTS, [1, MANY], [0, MANY]),
-            Show::Contour | Show::Surface => needs(&["surfaces"], &[], [1, 1], [2, 2]),
-            Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
-            Show::ObservedPredicted => needs(MODELS, &[], [1, MANY], [0, 0]),
-            Show::Pareto | Show::HalfNormal => needs(&["anova", "screening", "regression"], &[], [1, 1], [0, 0]),
-            Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),
-            Show::Solutions => needs(&["solution"], &[], [0, 0], [0, MANY]),
-            Show::Verification => needs(&["verification"], &[], [0, MANY], [0, 0]),
-        }
-    }
-
-    fn name(self) -> String {
-        json!(self).as_str().unwrap_or_default().to_owned()
-    }
-}
+pub use config::{Figure, Names, Preset, Show, Width};
 
 /// A factor or response as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -233,7 +58,7 @@ struct Label {
 impl Label {
     fn quantity(&self) -> figure::Quantity {
         let name = if self.name.is_empty() && self.symbol.is_empty() { &self.key } else { &self.name };
-        figure::Quantity::new(name, &self.symbol, &self.unit)
+        figure::Quantity::new(name, &self.symbol, &self.unit).keyed(&self.key)
     }
 }
 
@@ -261,7 +86,7 @@ struct Params {
 impl Stage for Figure {
     fn inputs(&self) -> Vec<Port> {
         let needs = self.show.needs();
-        let mut ports = vec![Port { key: "from", stages: self.from.list(), accepts: needs.from }];
+        let mut ports = vec![Port { key: "of", stages: self.of.list(), accepts: needs.from }];
         if !self.compare.list().is_empty() {
             ports.push(Port { key: "compare", stages: self.compare.list(), accepts: needs.compare });
         }
@@ -306,7 +131,7 @@ impl Stage for Figure {
 
     fn settings(&self) -> Value {
         json!({
-            "show": self.show, "from": self.from.list(), "compare": self.compare.list(),
+            "show": self.show, "of": self.of.list(), "compare": self.compare.list(),
             "response": self.response.list(), "factors": self.factors, "at": self.at, "names": self.names,
             "band": self.band, "width": self.width.millimetres(), "points": self.points, "colors": self.colors,
         })
@@ -325,7 +150,7 @@ impl Stage for Figure {
             band: self.band,
         };
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
-        for port in ["from", "compare"] {
+        for port in ["of", "compare"] {
             for input in known.port(port) {
                 task = task.input(port, input.content);
             }
@@ -344,15 +169,15 @@ impl Figure {
     fn check_counts(&self) -> Vec<Complaint> {
         let needs = self.show.needs();
         let mut found = Vec::new();
-        if self.from.list().is_empty() {
-            found.push(Complaint::new("from", "no stage is named"));
+        if self.of.list().is_empty() {
+            found.push(Complaint::new("of", "no stage is named"));
         }
         if needs.compare.is_empty() && !self.compare.list().is_empty() {
             found.push(self.without_effect("compare"));
         }
-        let (from, compare) = (self.from.list().len(), self.compare.list().len());
+        let (from, compare) = (self.of.list().len(), self.compare.list().len());
         if self.show == Show::Agreement && from != compare {
-            let message = format!("`from` names {from} stages and `compare` {compare}; they are compared in pairs");
+            let message = format!("`of` names {from} stages and `compare` {compare}; they are compared in pairs");
             found.push(Complaint::new("compare", message));
         }
         if !self.at.is_empty() && !matches!(self.show, Show::Contour | Show::Surface) {
@@ -389,16 +214,13 @@ impl Figure {
             return Ok(Vec::new());
         }
         let mut keys = self.factors.clone();
-        keys.extend(self.at.keys().cloned());
-        if matches!(self.show, Show::Contour | Show::Surface) {
-            keys.extend(known.context.factors.keys().filter(|key| !keys.contains(key)).cloned().collect::<Vec<_>>());
-        } else if keys.is_empty() {
-            let artifact = known.load(known.one("from")?)?;
-            let tables = artifact.tables();
-            let columns = tables.iter().flat_map(|(_, table)| &table.columns).map(|column| &column.name);
-            for name in columns.filter(|name| known.context.factors.contains_key(*name)) {
-                if !keys.contains(name) {
-                    keys.push(name.clone());
+        // A surface is drawn over two factors and its note tells the others; any other figure shows those named, or all.
+        if keys.is_empty() || matches!(self.show, Show::Contour | Show::Surface) {
+            let artifact = known.load(known.one("of")?)?;
+            let found = source::words(&artifact, self.response.list().first().map(String::as_str));
+            for name in found.into_iter().filter(|name| known.context.factors.contains_key(name)) {
+                if !keys.contains(&name) {
+                    keys.push(name);
                 }
             }
         }
@@ -419,7 +241,7 @@ impl Figure {
 
     /// Names in the legend: given ones, or those of the stages, where several are drawn together.
     fn series(&self) -> Vec<String> {
-        let stages = self.from.list();
+        let stages = self.of.list();
         if stages.len() < 2 {
             return Vec::new();
         }
@@ -506,3 +328,6 @@ pub(super) fn stored(columns: Vec<column::Column>) -> Table {
     }
     table
 }
+
+#[cfg(test)]
+mod tests;

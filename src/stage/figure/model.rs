@@ -1,7 +1,7 @@
 //! Figures of fitted models: surfaces, residuals, effects.
 
 use super::super::StageError;
-use super::source::{Rows, Sources, pick};
+use super::source::{Rows, Source, Sources, pick};
 use super::{Label, Params};
 use crate::figure::Quantity;
 use crate::figure::agreement::{Agreement, Cloud, Pair};
@@ -63,8 +63,10 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
             return Err(StageError::new(message).hint(format!("it depends on {}", used.join(", "))));
         }
     }
+    let domain = Domain::read(source, &response.key);
     let range = |label: &Label| {
-        label.range.ok_or_else(|| StageError::new(format!("[factor.{}] has neither levels nor range", label.key)))
+        let own = domain.of(&label.key).or(label.range);
+        own.ok_or_else(|| StageError::new(format!("[factor.{}] has neither levels nor range", label.key)))
     };
     let nodes = |[low, high]: [f64; 2]| {
         (0..NODES).map(|i| low + (high - low) * i as f64 / (NODES - 1) as f64).collect::<Vec<_>>()
@@ -94,7 +96,50 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
         format!("{} = {}{unit}", l.quantity().sign(), short(*v))
     });
     let note = note.collect::<Vec<_>>().join(", ");
-    Ok(Contour { x: x.quantity(), y: y.quantity(), z: response.quantity(), xs, ys, values, points: Vec::new(), note })
+    Ok(Contour {
+        x: x.quantity(),
+        y: y.quantity(),
+        z: response.quantity(),
+        xs,
+        ys,
+        values,
+        points: marks(sources, &x.key, &y.key)?,
+        note,
+    })
+}
+
+/// The ranges over which a response was fitted.
+struct Domain(Vec<(String, [f64; 2])>);
+
+impl Domain {
+    /// Nothing where the artifact does not tell.
+    fn read(source: Source, response: &str) -> Self {
+        let read = || {
+            let rows = source.rows(&["domain"])?;
+            let (factors, low, high) = (rows.texts("factor")?, rows.reals("low")?, rows.reals("high")?);
+            let which = rows.where_is("response", response)?;
+            Ok::<_, StageError>(which.into_iter().map(|i| (factors[i].clone(), [low[i], high[i]])).collect())
+        };
+        Self(read().unwrap_or_default())
+    }
+
+    fn of(&self, factor: &str) -> Option<[f64; 2]> {
+        self.0.iter().find(|(name, [low, high])| name == factor && low < high).map(|(_, range)| *range)
+    }
+}
+
+/// Places of the runs on which a surface rests, in its two factors.
+fn marks(sources: &Sources, x: &str, y: &str) -> Result<Vec<[f64; 2]>, StageError> {
+    let mut marks: Vec<[f64; 2]> = Vec::new();
+    for source in &sources.compare {
+        let rows = source.rows(&["design", "runs"])?;
+        for (u, v) in rows.reals(x)?.into_iter().zip(rows.reals(y)?) {
+            if !marks.contains(&[u, v]) {
+                marks.push([u, v]);
+            }
+        }
+    }
+    Ok(marks)
 }
 
 /// As few decimals as tell the number.
@@ -193,7 +238,7 @@ fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
     };
     let margin = limit("margin");
     Ok(Effects {
-        names: pick(&rows.texts("term")?, &which).iter().map(|t| t.replace('*', "·")).collect(),
+        names: pick(&rows.texts("term")?, &which).iter().map(|t| term_label(t, params)).collect(),
         quantiles: pick(&rows.reals("half_normal")?, &which),
         active: sizes.iter().map(|s| margin.is_some_and(|m| *s > m)).collect(),
         sizes,
@@ -219,7 +264,41 @@ pub(super) fn half_normal(params: &Params, sources: &Sources) -> Result<HalfNorm
     })
 }
 
+/// A term with the symbols of its factors: `Ec*kn_ks` → E_c · k_n/k_s.
+fn term_label(term: &str, params: &Params) -> String {
+    let part = |part: &str| {
+        let (key, power) = part.split_once('^').unwrap_or((part, ""));
+        let label = params.factors.iter().find(|l| l.key == key.trim());
+        let sign = label.map_or_else(|| key.to_owned(), |l| l.quantity().sign());
+        if power.is_empty() { sign } else { format!("{sign}$^{{{power}}}$") }
+    };
+    term.split('*').map(part).collect::<Vec<_>>().join(" · ")
+}
+
+/// Shares of the sources of an analysis of variance in its total sum of squares.
+fn shares(params: &Params, source: Source) -> Result<RankedBars, StageError> {
+    let response = one_response(params)?;
+    let rows = source.rows(&["anova"])?;
+    let which = rows.where_is("response", &response.key)?;
+    let (names, squares) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("eta2")?, &which));
+    let mut bars = Vec::new();
+    for (name, share) in names.iter().zip(squares).filter(|(name, share)| *name != "total" && share.is_finite()) {
+        let label = params.factors.iter().find(|l| l.key == *name);
+        let group = if name == "residual" { "residual" } else { label.map_or("", |l| l.group.as_str()) };
+        let factor = Quantity::new(&term_label(name, params), "", "");
+        bars.push(Bar { factor, group: group.to_owned(), value: 100.0 * share, published: None });
+    }
+    let sign = response.quantity().sign();
+    let name = format!("Share of the sum of squares of {sign}");
+    let title = format!("Contributions to {}", response.key);
+    Ok(RankedBars { title, quantity: Quantity::new(&name, r"\eta^2", "%"), bars, references: Vec::new() })
+}
+
 pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, StageError> {
+    let source = sources.first()?;
+    if source.rows(&["anova"]).is_ok() {
+        return shares(params, source);
+    }
     let response = one_response(params)?;
     let found = effects(params, sources)?;
     let bar = |i: usize| Bar {
@@ -231,7 +310,7 @@ pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, S
     let limits = [("margin of error", found.margin), ("simultaneous margin", found.simultaneous)];
     Ok(RankedBars {
         title: format!("Effects on {}", response.key),
-        quantity: Quantity { name: "Absolute effect on".into(), ..response.quantity() },
+        quantity: response.quantity().worded("Absolute effect on"),
         bars: (0..found.sizes.len()).map(bar).collect(),
         references: limits.into_iter().filter_map(|(name, v)| v.map(|v| (name.to_owned(), v))).collect(),
     })

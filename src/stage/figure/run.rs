@@ -15,17 +15,17 @@ const MM: f64 = 1e3;
 
 pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<StressStrain, StageError> {
     let mut curves = Vec::new();
-    for (k, source) in sources.from.iter().enumerate() {
+    for (k, source) in sources.of.iter().enumerate() {
         let rows = source.rows(&["curve"])?;
-        let axial = rows.reals("axial")?;
+        let axial = rows.reals("axial_strain")?;
         let cracks = match source.rows(&["cracks"]) {
             Ok(cracks) => counts(cracks, &axial)?,
             Err(_) => Vec::new(),
         };
-        let several = sources.from.len() > 1;
+        let several = sources.of.len() > 1;
         curves.push(Curve {
             name: params.series.get(k).cloned().unwrap_or_default(),
-            lateral: if several { Vec::new() } else { rows.reals("lateral").unwrap_or_default() },
+            lateral: if several { Vec::new() } else { lateral(rows) },
             stress: rows.reals("stress")?.into_iter().map(|s| s / 1e6).collect(),
             cracks,
             modulus: if several { None } else { response(*source, "E").map(|e| e / 1e9) },
@@ -33,6 +33,11 @@ pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<Stress
         });
     }
     Ok(StressStrain { curves })
+}
+
+/// Lateral strain, negative when the specimen widens; empty when there is none.
+fn lateral(rows: Rows<'_>) -> Vec<f64> {
+    rows.reals("lateral_strain").map(|strain| strain.into_iter().map(|e| -e).collect()).unwrap_or_default()
 }
 
 /// A response of a run in SI units.
@@ -56,7 +61,7 @@ fn modes(cracks: Rows<'_>) -> Result<(Vec<String>, Vec<usize>), StageError> {
 /// Number of cracks of each mode up to each axial strain of the curve.
 fn counts(cracks: Rows<'_>, axial: &[f64]) -> Result<Vec<(String, Vec<f64>)>, StageError> {
     let (names, mode) = modes(cracks)?;
-    let strain = cracks.reals("strain")?;
+    let strain = cracks.reals("axial_strain")?;
     let of_mode = |(k, name): (usize, String)| {
         let mut at: Vec<f64> = strain.iter().zip(&mode).filter(|(_, m)| **m == k).map(|(s, _)| *s).collect();
         at.sort_by(f64::total_cmp);
@@ -126,7 +131,7 @@ fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<([f64; 2], [f64; 2],
 fn crack_list(cracks: Rows<'_>) -> Result<(Vec<String>, Vec<(f64, Crack)>), StageError> {
     let (names, mode) = modes(cracks)?;
     let read = |name: &str| cracks.reals(name);
-    let (strain, x, y, size) = (read("strain")?, read("x")?, read("y")?, read("size")?);
+    let (strain, x, y, size) = (read("axial_strain")?, read("x")?, read("y")?, read("size")?);
     let (nx, ny) = (read("normal_x")?, read("normal_y")?);
     // The line of a crack is across its normal.
     let crack = |i: usize| Crack {
@@ -143,7 +148,7 @@ pub(super) fn cracks(sources: &Sources) -> Result<Cracks, StageError> {
     let source = sources.first()?;
     let (names, list) = crack_list(source.rows(&["cracks"])?)?;
     let curve = source.rows(&["curve"])?;
-    let (axial, stress) = (curve.reals("axial")?, curve.reals("stress")?);
+    let (axial, stress) = (curve.reals("axial_strain")?, curve.reals("stress")?);
     let pairs = stress.iter().copied().enumerate().filter(|(_, s)| s.is_finite());
     let peak = pairs.max_by(|a, b| a.1.total_cmp(&b.1)).ok_or_else(|| StageError::new("the curve has no stress"))?;
     let reached = |share: f64| {

@@ -1,7 +1,7 @@
 //! Figures of a calibration: convergence, parameter sets, verification.
 
 use super::super::StageError;
-use super::source::{Source, Sources, pick};
+use super::source::{Rows, Source, Sources, pick};
 use super::{Label, Params};
 use crate::figure::convergence::{Convergence, Descent};
 use crate::figure::solutions::{SolutionSet, Solutions};
@@ -33,79 +33,81 @@ fn prefixed(params: &Params, input: usize, name: &str) -> String {
     }
 }
 
+/// The set that each row belongs to.
+fn sets_of(rows: Rows<'_>) -> Result<Vec<String>, StageError> {
+    if rows.has("set") { rows.texts("set") } else { Ok(vec![String::new(); rows.len()]) }
+}
+
 pub(super) fn convergence(params: &Params, sources: &Sources) -> Result<Convergence, StageError> {
     let mut runs = Vec::new();
-    let mut effort_word = "Evaluations";
-    for (k, source) in sources.from.iter().enumerate() {
+    for (k, source) in sources.of.iter().enumerate() {
         let rows = source.rows(&["history"])?;
-        let counter = ["simulations", "evaluations", "generation"].into_iter().find(|c| rows.has(c));
-        let effort = rows.reals(counter.unwrap_or("evaluations"))?;
-        effort_word = match counter {
-            Some("simulations") => "Simulations",
-            Some("generation") => "Generation",
-            Some(_) | None => "Evaluations",
-        };
-        let best = rows.reals("best")?;
-        let median = if rows.has("median") { rows.reals("median")? } else { Vec::new() };
-        let targets = if rows.has("target") { rows.texts("target")? } else { vec![String::new(); rows.len()] };
-        for (target, group) in by_target(&targets) {
+        let (effort, best) = (rows.reals("evaluation")?, rows.reals("best")?);
+        for (target, group) in by_target(&sets_of(rows)?) {
             let name = prefixed(params, k, &target_name(&target));
-            let [effort, best, median] = [&effort, &best, &median].map(|v| pick(v, &group));
-            runs.push(Descent { name, effort, best, median });
+            let [effort, best] = [&effort, &best].map(|v| pick(v, &group));
+            runs.push(Descent { name, effort, best, median: Vec::new() });
         }
     }
-    Ok(Convergence { effort: effort_word.into(), misfit: "Misfit $f$ / –".into(), runs })
+    Ok(Convergence { effort: "Evaluations of the model".into(), misfit: "Misfit $f$ / –".into(), runs })
 }
 
 pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions, StageError> {
-    let mut sets: Vec<SolutionSet> = Vec::new();
-    let first = sources.first()?.rows(&["solution_set", "solution"])?;
+    let first = sources.first()?.rows(&["solution"])?;
     let labels: Vec<&Label> = params.factors.iter().filter(|f| first.has(&f.key)).collect();
     if labels.is_empty() {
         return Err(StageError::new("the solutions hold no factor of the workflow"));
     }
-    let mut bounds: Vec<Option<[f64; 2]>> = labels.iter().map(|l| l.range).collect();
-    for (k, source) in sources.from.iter().enumerate() {
-        let rows = source.rows(&["solution_set", "solution"])?;
-        let columns = labels.iter().map(|l| rows.reals(&l.key)).collect::<Result<Vec<_>, _>>()?;
-        for (bound, column) in bounds.iter_mut().zip(&columns).filter(|(b, _)| b.is_none()) {
-            let (low, high) = crate::figure::axis::extent(column.iter().copied());
-            *bound = Some(if high > low { [low, high] } else { [low - 1.0, low + 1.0] });
-        }
-        let misfit = rows.reals("misfit")?;
-        let targets = if rows.has("target") { rows.texts("target")? } else { vec![String::new(); rows.len()] };
-        for (target, mut group) in by_target(&targets) {
-            group.sort_by(|&a, &b| misfit[a].total_cmp(&misfit[b]));
-            let values = group.iter().map(|&i| columns.iter().map(|c| c[i]).collect()).collect();
-            let name = prefixed(params, k, &target_name(&target));
-            sets.push(SolutionSet { name, rows: values, misfit: pick(&misfit, &group) });
+    let mut sets: Vec<SolutionSet> = Vec::new();
+    for (k, source) in sources.of.iter().enumerate() {
+        let best = source.rows(&["solution"])?;
+        let further = source.rows(&["solution_set"]).ok();
+        let others = further.map(sets_of).transpose()?.unwrap_or_default();
+        let point = |rows: Rows<'_>, i: usize| -> Result<Vec<f64>, StageError> {
+            labels.iter().map(|l| Ok(rows.reals(&l.key)?[i])).collect()
+        };
+        for (i, target) in sets_of(best)?.into_iter().enumerate() {
+            let mut rows = vec![point(best, i)?];
+            for j in (0..others.len()).filter(|&j| others[j] == target) {
+                rows.extend(further.map(|f| point(f, j)).transpose()?);
+            }
+            sets.push(SolutionSet { name: prefixed(params, k, &target_name(&target)), rows, misfit: Vec::new() });
         }
     }
-    let factors = labels.iter().map(|l| l.quantity()).collect();
-    Ok(Solutions { factors, bounds: bounds.into_iter().map(|b| b.unwrap_or([0.0, 1.0])).collect(), sets })
+    let bound = |(k, label): (usize, &&Label)| {
+        let (low, high) = crate::figure::axis::extent(sets.iter().flat_map(|s| s.rows.iter().map(|r| r[k])));
+        label.range.unwrap_or(if high > low { [low, high] } else { [low - 1.0, low + 1.0] })
+    };
+    let bounds = labels.iter().enumerate().map(bound).collect();
+    Ok(Solutions { factors: labels.iter().map(|l| l.quantity()).collect(), bounds, sets })
 }
 
-/// Values of the runs in long form, and the target of each set and response.
+/// Values of the runs, and the target of each set and response.
 pub(super) fn verification(params: &Params, sources: &Sources) -> Result<Verification, StageError> {
     let source: Source = sources.first()?;
-    let (runs, targets) = (source.rows(&["runs"])?, source.rows(&["targets"])?);
-    let sets = targets.texts("target")?;
-    let of_run = runs.texts("target")?;
+    let (runs, summary) = (source.rows(&["runs"])?, source.rows(&["summary"])?);
+    let (of_run, of_line) = (sets_of(runs)?, sets_of(summary)?);
+    let (responses, targets) = (summary.texts("response")?, summary.reals("target")?);
+    let sets: Vec<String> = by_target(&of_line).into_iter().map(|(set, _)| set).collect();
     let mut checks = Vec::new();
-    for response in params.responses.iter().filter(|r| runs.has(&r.key) && targets.has(&r.key)) {
+    for response in params.responses.iter().filter(|r| runs.has(&r.key) && responses.contains(&r.key)) {
         let values = runs.reals(&response.key)?;
-        let of = |set: &String| {
+        let of = |set: &String| -> Vec<f64> {
             let hits = (0..values.len()).filter(|&i| of_run[i] == *set && values[i].is_finite());
-            hits.map(|i| values[i]).collect::<Vec<f64>>()
+            hits.map(|i| values[i]).collect()
+        };
+        let target = |set: &String| {
+            let line = (0..responses.len()).find(|&i| of_line[i] == *set && responses[i] == response.key);
+            line.map_or(f64::NAN, |i| targets[i])
         };
         checks.push(Check {
             response: response.quantity(),
-            target: targets.reals(&response.key)?,
+            target: sets.iter().map(target).collect(),
             runs: sets.iter().map(of).collect(),
         });
     }
     if checks.is_empty() {
-        return Err(StageError::new("no response is in both tables `runs` and `targets`"));
+        return Err(StageError::new("no response is in both tables `runs` and `summary`"));
     }
     Ok(Verification { sets, checks })
 }

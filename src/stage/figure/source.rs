@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// The inputs of a figure by port.
 pub(super) struct Sources<'a> {
-    pub from: Vec<Source<'a>>,
+    pub of: Vec<Source<'a>>,
     pub compare: Vec<Source<'a>>,
 }
 
@@ -27,11 +27,11 @@ impl<'a> Sources<'a> {
             let named = job.inputs.iter().filter(|(name, _)| name == port);
             named.map(|(_, artifact): &(String, Arc<Artifact>)| Source(artifact)).collect()
         };
-        Self { from: pick("from"), compare: pick("compare") }
+        Self { of: pick("of"), compare: pick("compare") }
     }
 
     pub(super) fn first(&self) -> Result<Source<'a>, StageError> {
-        self.from.first().copied().ok_or_else(|| StageError::new("`from` names no stage"))
+        self.of.first().copied().ok_or_else(|| StageError::new("`of` names no stage"))
     }
 }
 
@@ -81,6 +81,26 @@ impl<'a> Source<'a> {
         StageError::new(format!("the artifact `{}` holds no `{name}`", self.0.kind))
             .hint(format!("it holds {}", there.join(", ")))
     }
+}
+
+/// Names that occur in an artifact: of columns, and in its columns `factor`, `source` and `term` in the rows of the
+/// response, in the order of first sight.
+pub(super) fn words(artifact: &Artifact, response: Option<&str>) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for (_, table) in artifact.tables() {
+        found.extend(table.columns.iter().map(|column| column.name.clone()));
+        let texts = |name: &str| match table.column(name).map(|column| &column.values) {
+            Some(Values::Texts(texts)) => Some(texts),
+            Some(_) | None => None,
+        };
+        let mine = |i: usize| texts("response").is_none_or(|r| response.is_none_or(|wanted| r[i] == wanted));
+        for column in ["factor", "source", "term"] {
+            let rows = texts(column).into_iter().flatten().enumerate().filter(|(i, _)| mine(*i));
+            let parts = rows.flat_map(|(_, text)| text.split('*').map(|part| part.split('^').next().unwrap_or(part)));
+            found.extend(parts.map(|part| part.trim().to_owned()));
+        }
+    }
+    found
 }
 
 impl Rows<'_> {

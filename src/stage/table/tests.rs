@@ -41,7 +41,7 @@ fn rows_and_columns_are_chosen_and_heads_have_symbols() {
     let params = json!({
         "columns": ["source", "F"], "only": { "response": "UCS" }, "digits": 3, "symbols": { "F": "F_{2,36}" },
     });
-    let made = run(params, &[("from", anova("anova", [3003.4242, f64::NAN, 1.0]))]).unwrap();
+    let made = run(params, &[("of", anova("anova", [3003.4242, f64::NAN, 1.0]))]).unwrap();
     assert_eq!(text(&made, "csv"), "source,F\nEc,3003.4242\nerror,\n");
     assert_eq!(text(&made, "markdown"), "| source | $F_{2,36}$ |\n| :-- | --: |\n| Ec | 3003 |\n| error | – |\n");
     assert!(text(&made, "latex").contains("source & $F_{2,36}$ \\\\\n\\midrule\nEc & 3003 \\\\\nerror & -- \\\\"));
@@ -52,7 +52,7 @@ fn rows_and_columns_are_chosen_and_heads_have_symbols() {
 fn published_values_stand_beside_ours_with_the_deviation() {
     let params = json!({ "by": ["response", "source"], "digits": 4 });
     let ours = anova("anova", [110.0, 2.0, 50.0]);
-    let made = run(params, &[("from", ours), ("compare", anova("results", [100.0, f64::NAN, 50.0]))]).unwrap();
+    let made = run(params, &[("of", ours), ("compare", anova("results", [100.0, f64::NAN, 50.0]))]).unwrap();
     let table = made.table("table").unwrap();
     assert_eq!(table.reals("F published").unwrap()[..1], [100.0]);
     let deviation = table.reals("F deviation").unwrap();
@@ -64,13 +64,13 @@ fn published_values_stand_beside_ours_with_the_deviation() {
 fn several_stages_are_stacked() {
     let params = json!({ "columns": ["source"], "digits": 4, "stages": ["a", "b"] });
     let one = anova("anova", [1.0; 3]);
-    let made = run(params, &[("from", one.clone()), ("from", one)]).unwrap();
+    let made = run(params, &[("of", one.clone()), ("of", one)]).unwrap();
     assert_eq!(text(&made, "csv").lines().nth(4), Some("b,Ec"));
 }
 
 #[test]
 fn what_is_missing_is_named() {
-    let said = |params: Value| match run(params, &[("from", anova("anova", [1.0; 3]))]) {
+    let said = |params: Value| match run(params, &[("of", anova("anova", [1.0; 3]))]) {
         Err(Failure::Failed(error)) => format!("{} ({})", error.message, error.hint.unwrap_or_default()),
         other => panic!("{other:?}"),
     };

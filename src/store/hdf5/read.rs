@@ -8,6 +8,8 @@ use std::collections::HashMap;
 
 /// Deflate packs at most about 1032 bytes into one; more than that is a damaged shape.
 const MOST_PACKED: u64 = 1100;
+/// No group or dataset takes fewer bytes of a file: its name, its link and its header.
+const LEAST_NODE: u64 = 24;
 /// No stored object is this large.
 const MOST_BYTES: u64 = 1 << 36;
 
@@ -21,7 +23,8 @@ pub(in crate::store) fn decode(image: Vec<u8>) -> Result<(Artifact, String), Hdf
     let version = attribute_whole(&attributes, "version")?;
     let version = u32::try_from(version).map_err(|_| unexpected("version", "a version", &version.to_string()))?;
     let task = attribute_text(&attributes, "", "task")?;
-    let mut walk = Walk { file: file.file_size(), left: Cell::new(allowance(file.file_size())) };
+    let size = file.file_size();
+    let mut walk = Walk { file: size, left: Cell::new(allowance(size)), nodes: Cell::new(size / LEAST_NODE) };
     let root = walk.group(&file.root(), "", 0)?;
     Ok((Artifact::new(&kind, version, root), task))
 }
@@ -57,6 +60,8 @@ struct Walk {
     file: u64,
     /// Bytes that may still be read: the sum over all datasets is bounded, not only each.
     left: Cell<u64>,
+    /// Nodes that may still be met: a group may hold others that it is itself a part of.
+    nodes: Cell<u64>,
 }
 
 impl Walk {
@@ -67,11 +72,13 @@ impl Walk {
         let mut nodes = Group::new();
         for link in group.datasets()? {
             let place = format!("{place}/{link}");
+            self.count(&place)?;
             let node = self.dataset(&group.dataset(&link)?, &place)?;
             insert(&mut nodes, &link, &place, node)?;
         }
         for link in group.groups()? {
             let place = format!("{place}/{link}");
+            self.count(&place)?;
             let inner = group.group(&link)?;
             let attributes = inner.attrs()?;
             let node = match attributes.get("class").and_then(AttrValue::as_str) {
@@ -89,6 +96,7 @@ impl Walk {
         let mut columns: Vec<Column> = Vec::new();
         for name in names {
             let place = format!("{place}/{name}");
+            self.count(&place)?;
             let dataset = group.dataset(&super::link_name(name))?;
             let Node::Array(Array { shape, unit, about, values }) = self.array(&dataset, &place)? else {
                 return Err(unexpected(&place, "a column", "bytes"));
@@ -156,8 +164,14 @@ impl Walk {
         if bytes > most {
             return Err(Hdf5Error::Oversized { place: place.to_owned(), bytes, file: self.file });
         }
-        // Every node costs something, so that a file of a million links to one dataset ends too.
-        self.left.set(self.left.get() - bytes.max(1));
+        self.left.set(self.left.get() - bytes);
+        Ok(())
+    }
+
+    /// Takes one node from those that a file of this size can hold.
+    fn count(&self, place: &str) -> Result<(), Hdf5Error> {
+        let left = self.nodes.get().checked_sub(1);
+        self.nodes.set(left.ok_or_else(|| unexpected(place, "a value", "more values than the file has room for"))?);
         Ok(())
     }
 }

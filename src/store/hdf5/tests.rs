@@ -113,23 +113,22 @@ fn foreign_and_newer_files_are_refused() {
     assert!(matches!(decode(vec![]), Err(Hdf5Error::Library(_))));
 }
 
+/// Valid files of another program that ask for more than there is: see tests/reference/hostile/make.py.
 #[test]
-fn a_shape_that_asks_for_too_much_is_refused_before_it_is_read() {
-    let mut file = ::hdf5::FileBuilder::new();
-    for (name, value) in [("layout", 1), ("version", 1)] {
-        file.set_attr(name, ::hdf5::AttrValue::I64(value));
+fn files_that_ask_for_too_much_are_refused_before_anything_is_read() {
+    let refused = |image: &[u8]| decode(image.to_vec()).err().expect("an error");
+    let huge = [
+        &include_bytes!("../../../tests/reference/hostile/contiguous.h5")[..],
+        include_bytes!("../../../tests/reference/hostile/chunked.h5"),
+        include_bytes!("../../../tests/reference/hostile/texts.h5"),
+    ];
+    for image in huge {
+        assert!(matches!(refused(image), Hdf5Error::Oversized { bytes, .. } if bytes >= 1 << 47));
     }
-    file.set_attr("kind", ::hdf5::AttrValue::String("a".to_owned()));
-    file.set_attr("task", ::hdf5::AttrValue::String("t".to_owned()));
-    // A compressed array of zeros: three chunks of it would be sound, a hundred thousand are not.
-    file.create_dataset("x").with_f64_data(&vec![0.0; 1 << 20]).with_chunks(&[1 << 20]).with_deflate(9);
-    let image = file.finish().unwrap();
-    let place = image.windows(8).position(|word| word == (1_u64 << 20).to_le_bytes()).unwrap();
-    let mut damaged = image.clone();
-    damaged[place + 5] = 1;
-    // Whether the library or the walk refuses it, nothing of the asked size is allocated.
-    assert!(decode(image).is_ok());
-    assert!(decode(damaged).is_err());
+    let cycle = refused(include_bytes!("../../../tests/reference/hostile/cycle.h5"));
+    assert!(cycle.to_string().contains("nested too deeply"), "{cycle}");
+    let paths = refused(include_bytes!("../../../tests/reference/hostile/many_paths.h5"));
+    assert!(paths.to_string().contains("more values than the file has room for"), "{paths}");
 }
 
 /// Damage of every kind: whatever comes out, it comes out, and soon. (In the store the digest is checked before.)

@@ -1,13 +1,15 @@
 """Reference values for the designs, from programs that share nothing with ours.
 
-Run with numpy 2.4.6, scipy 1.17.1, statsmodels 0.15.0:  python3 generate.py
+Run with numpy 2.4.6, scipy 1.17.1, statsmodels 0.15.0, pyDOE3 1.6.2:  python3 generate.py
 """
 
 import pathlib
 from itertools import permutations
 
 import numpy as np
+import pyDOE3
 import scipy
+from scipy import stats
 from scipy.stats import qmc
 
 here = pathlib.Path(__file__).parent
@@ -36,5 +38,43 @@ def maximin():
         print(n, best)
 
 
+def power():
+    """Upper tails of the non-central F distribution, and power of balanced one-way layouts."""
+    with open(here / "power.csv", "w") as f:
+        f.write(head("scipy.stats: alpha, df1, df2, lambda, F with upper tail alpha (f.isf), upper tail of ncf there"))
+        for alpha in [0.05, 0.01]:
+            for df1, df2 in [(1, 1), (1, 12), (2, 35), (3, 8), (2, 1000)]:
+                for nc in [0.5, 4.0, 20.0, 80.0]:
+                    c = stats.f.isf(alpha, df1, df2)
+                    f.write(f"{alpha},{df1},{df2},{nc},{float(c)!r},{float(stats.ncf.sf(c, df1, df2, nc))!r}\n")
+
+
+def discrepancy():
+    """Centred L2 discrepancy of the first 16 Sobol points in 3 dimensions."""
+    points = qmc.Sobol(3, scramble=False).random(16)
+    print("CD:", repr(float(qmc.discrepancy(points, method="CD"))))
+
+
+def surface():
+    """Variance inflation and condition of second-order designs, with statsmodels."""
+    from statsmodels.stats.outliers_influence import variance_inflation_factor
+
+    def second_order(x):
+        n, k = x.shape
+        columns = [np.ones(n)] + [x[:, j] for j in range(k)] + [x[:, j] ** 2 for j in range(k)]
+        return np.column_stack(columns + [x[:, a] * x[:, b] for a in range(k) for b in range(a + 1, k)])
+
+    a = 2**0.5
+    ccd = np.array([[-1, -1], [1, -1], [-1, 1], [1, 1], [-a, 0], [a, 0], [0, -a], [0, a]] + [[0, 0]] * 5)
+    bbd = pyDOE3.bbdesign(4, center=3)
+    for name, x in [("ccd", ccd), ("bbd", bbd)]:
+        m = second_order(x)
+        vif = max(variance_inflation_factor(m, j) for j in range(1, m.shape[1]))
+        print(name, "largest VIF", repr(float(vif)), "condition", repr(float(np.linalg.cond(m / np.linalg.norm(m, axis=0)))))
+
+
 sobol()
 maximin()
+power()
+discrepancy()
+surface()

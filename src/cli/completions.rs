@@ -1,0 +1,19 @@
+//! `flow completions`: what a shell needs to complete commands and options.
+
+use super::{Arguments, Exit};
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+/// Print the completions of a shell, to be sourced by it.
+#[derive(Args)]
+pub(super) struct Completions {
+    /// The shell.
+    shell: Shell,
+}
+
+impl Completions {
+    pub(super) fn go(self) -> Exit {
+        clap_complete::generate(self.shell, &mut Arguments::command(), "flow", &mut std::io::stdout());
+        Exit::Done
+    }
+}

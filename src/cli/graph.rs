@@ -1,0 +1,154 @@
+//! `flow graph`: the stages of a workflow, what they take from one another, and what is done of them.
+
+use super::Exit;
+use super::common::Campaign;
+use crate::figure::dag::{Dag, Stage};
+use crate::figure::{DOUBLE, Figure, Style, svg::svg};
+use crate::plan::{StageNode, Workflow};
+use crate::run::{Settings, StageStatus, run};
+use clap::{Args, ValueEnum};
+use std::sync::atomic::AtomicBool;
+
+/// Show the stages of a workflow, what they take from one another, and what is done of them.
+#[derive(Args)]
+pub(super) struct Graph {
+    #[command(flatten)]
+    campaign: Campaign,
+    /// How to show it.
+    #[arg(long, value_enum, default_value_t = Form::Text)]
+    format: Form,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Form {
+    /// A line for each stage.
+    Text,
+    /// A picture.
+    Svg,
+    /// For Mermaid, as in Markdown files.
+    Mermaid,
+    /// For Graphviz.
+    Dot,
+}
+
+/// What is done of a stage.
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    Done,
+    ToRun,
+    Failed,
+}
+
+impl State {
+    const ALL: [Self; 3] = [Self::Done, Self::ToRun, Self::Failed];
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::ToRun => "to run",
+            Self::Failed => "cannot run",
+        }
+    }
+
+    fn colour(self) -> &'static str {
+        match self {
+            Self::Done => "#c7e3d4",
+            Self::ToRun => "#f6e3b4",
+            Self::Failed => "#f2c4bc",
+        }
+    }
+}
+
+impl Graph {
+    pub(super) fn go(self) -> Exit {
+        self.print().unwrap_or_else(|exit| exit)
+    }
+
+    fn print(&self) -> Result<Exit, Exit> {
+        let workflow = self.campaign.load(&[])?;
+        let store = self.campaign.open()?;
+        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
+        let report = run(&workflow, &store, &settings, &super::progress::Silent, &AtomicBool::new(false));
+        let state = |stage: &StageNode| {
+            let found = report.stages.iter().find(|report| report.name == stage.name);
+            found.map_or(State::ToRun, |report| match report.status {
+                StageStatus::Done(_) => State::Done,
+                StageStatus::Open => State::ToRun,
+                StageStatus::Failed(_) | StageStatus::Skipped(_) => State::Failed,
+            })
+        };
+        let states: Vec<State> = workflow.stages.iter().map(state).collect();
+        let drawn = match self.format {
+            Form::Text => text(&workflow, &states),
+            Form::Svg => svg(&dag(&workflow, &states).scene(&Style::wide(DOUBLE))),
+            Form::Mermaid => mermaid(&workflow, &states),
+            Form::Dot => dot(&workflow, &states),
+        };
+        out!("{}", drawn.trim_end());
+        Ok(Exit::Done)
+    }
+}
+
+/// Arrows by place, each once: from the stage that gives to the one that takes.
+fn arrows(workflow: &Workflow) -> Vec<(usize, usize)> {
+    let stages = workflow.stages.iter().enumerate();
+    let mut arrows: Vec<_> = stages.flat_map(|(i, stage)| stage.inputs.iter().map(move |input| (input.1, i))).collect();
+    arrows.sort_unstable();
+    arrows.dedup();
+    arrows
+}
+
+fn text(workflow: &Workflow, states: &[State]) -> String {
+    let widest = |column: &dyn Fn(&StageNode) -> usize| workflow.stages.iter().map(column).max().unwrap_or(0);
+    let (names, kinds) = (widest(&|stage| stage.name.len()), widest(&|stage| stage.kind.len()));
+    let mut text = String::new();
+    for (i, stage) in workflow.stages.iter().enumerate() {
+        let from = arrows(workflow).into_iter().filter(|arrow| arrow.1 == i);
+        let from: Vec<&str> = from.map(|arrow| workflow.stages[arrow.0].name.as_str()).collect();
+        let from = if from.is_empty() { String::new() } else { format!("  ← {}", from.join(", ")) };
+        line(&mut text, &format!("{:names$}  {:kinds$}  {:10}{from}", stage.name, stage.kind, states[i].words()));
+    }
+    text
+}
+
+fn dag(workflow: &Workflow, states: &[State]) -> Dag {
+    let class = |state: State| State::ALL.iter().position(|other| *other == state).unwrap_or(0);
+    let stages = workflow.stages.iter().zip(states);
+    Dag {
+        stages: stages
+            .map(|(stage, &state)| Stage { name: stage.name.clone(), note: stage.kind.to_owned(), class: class(state) })
+            .collect(),
+        edges: arrows(workflow),
+        classes: State::ALL.iter().map(|state| state.words().to_owned()).collect(),
+    }
+}
+
+fn mermaid(workflow: &Workflow, states: &[State]) -> String {
+    let mut text = String::from("flowchart LR\n");
+    for (i, (stage, state)) in workflow.stages.iter().zip(states).enumerate() {
+        line(&mut text, &format!("  s{i}[\"{}<br><i>{}</i>\"]", stage.name, stage.kind));
+        line(&mut text, &format!("  style s{i} fill:{}", state.colour()));
+    }
+    for (from, to) in arrows(workflow) {
+        line(&mut text, &format!("  s{from} --> s{to}"));
+    }
+    text
+}
+
+fn dot(workflow: &Workflow, states: &[State]) -> String {
+    let mut text = String::from("digraph workflow {\n  rankdir=LR\n  node [shape=box, style=\"rounded,filled\"]\n");
+    for (stage, state) in workflow.stages.iter().zip(states) {
+        let colour = state.colour();
+        line(&mut text, &format!("  \"{0}\" [label=\"{0}\\n{1}\", fillcolor=\"{colour}\"]", stage.name, stage.kind));
+    }
+    for (from, to) in arrows(workflow) {
+        line(&mut text, &format!("  \"{}\" -> \"{}\"", workflow.stages[from].name, workflow.stages[to].name));
+    }
+    text.push_str("}\n");
+    text
+}
+
+fn line(text: &mut String, line: &str) {
+    text.push_str(line);
+    text.push('\n');
+}

@@ -1,0 +1,231 @@
+//! Calibration through the stage, with a simulator and a library that live in memory.
+
+use super::*;
+use crate::artifact::{Artifact, ContentHash, Group, Node};
+use crate::math::random::Stream;
+use crate::stage::rows::response_table;
+use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+/// Runs tasks on first sight; `patience` tasks, then it says that nothing is known of others.
+struct Laboratory {
+    objects: RefCell<Vec<Arc<Artifact>>>,
+    done: RefCell<Vec<(Task, Outcome)>>,
+    patience: usize,
+    model: fn(&Point, u64) -> Result<[f64; 2], String>,
+}
+
+impl Laboratory {
+    fn new(patience: usize, model: fn(&Point, u64) -> Result<[f64; 2], String>) -> Self {
+        Self { objects: RefCell::default(), done: RefCell::default(), patience, model }
+    }
+
+    fn put(&self, artifact: Artifact) -> ContentHash {
+        let content = artifact.content_hash();
+        self.objects.borrow_mut().push(Arc::new(artifact));
+        content
+    }
+
+    fn run(&self, task: &Task) -> Outcome {
+        let point: Point = serde_json::from_value(task.params["point"].clone()).unwrap();
+        let number = task.params["number"].as_u64().unwrap();
+        let (responses, failure) = match (self.model)(&point, number) {
+            Ok([strength, modulus]) => (vec![("UCS", strength, "Pa"), ("E", modulus, "Pa")], String::new()),
+            Err(failure) if failure == "crash" => return Outcome::Failed(failure),
+            Err(failure) => (Vec::new(), failure),
+        };
+        let root = Group::new()
+            .with("failure", Node::Text(failure))
+            .with("responses", Node::Table(response_table(&responses)));
+        Outcome::Done(self.put(Artifact::new("run", 1, root)))
+    }
+
+    fn simulations(&self) -> usize {
+        self.done.borrow().len()
+    }
+}
+
+impl Library for Laboratory {
+    fn load(&self, content: &ContentHash) -> Result<Arc<Artifact>, StageError> {
+        let objects = self.objects.borrow();
+        let found = objects.iter().find(|object| object.content_hash() == *content);
+        found.cloned().ok_or_else(|| StageError::new("no such object"))
+    }
+
+    fn outcome(&self, task: &Task) -> Option<Outcome> {
+        if let Some((_, outcome)) = self.done.borrow().iter().find(|(known, _)| known == task) {
+            return Some(outcome.clone());
+        }
+        if self.simulations() >= self.patience {
+            return None;
+        }
+        let outcome = self.run(task);
+        self.done.borrow_mut().push((task.clone(), outcome.clone()));
+        Some(outcome)
+    }
+
+    fn file(&self, _name: &str, path: &str) -> Result<FileInput, StageError> {
+        Err(StageError::new(path))
+    }
+}
+
+fn context() -> Context {
+    let factor = |unit: &str, low, high| Factor { unit: unit.into(), range: Some([low, high]), ..Factor::default() };
+    let response = |unit: &str| Response { unit: unit.into(), ..Response::default() };
+    Context {
+        seed: 4,
+        factors: [
+            ("sigma_c", factor("MPa", 10.0, 30.0)),
+            ("Ec", factor("GPa", 10.0, 30.0)),
+            ("mu", factor("", 0.1, 1.0)),
+        ]
+        .map(|(name, factor)| (name.to_owned(), factor))
+        .into(),
+        responses: [("UCS", response("MPa")), ("E", response("GPa"))].map(|(n, r)| (n.to_owned(), r)).into(),
+        materials: BTreeMap::new(),
+    }
+}
+
+fn known<'a>(context: &'a Context, laboratory: &'a Laboratory) -> Known<'a> {
+    let sample = |point: &Point, number: u64| Ok(Task::new("run", json!({ "point": point, "number": number })));
+    let content = ContentHash([0; 32]);
+    let replicate = Box::new(|_| None);
+    let input = Input { key: "simulator", stage: "lab", content, replicate, sample: Box::new(sample) };
+    Known { context, inputs: vec![input], library: laboratory }
+}
+
+fn stage(text: &str) -> Calibrate {
+    toml::from_str(text).unwrap()
+}
+
+const COLD: &str = r#"
+    simulator = "lab"
+    factors = ["sigma_c", "Ec", "mu"]
+    targets = [{ UCS = "38 MPa", E = "31 GPa" }, { UCS = "30 MPa" }]
+    evaluations = 24
+    surrogate = { tolerance = 0.0 }
+"#;
+
+/// UCS = 2 σc, E = 1.5 Ec, each with 3 % scatter of its specimen.
+fn scattering(point: &Point, number: u64) -> Result<[f64; 2], String> {
+    let mut random = Stream::new(number, "lab", (point["mu"] * 1e6) as u64);
+    let mut scatter = || 1.0 + 0.03 * random.normal();
+    Ok([2e6 * point["sigma_c"] * scatter(), 1.5e9 * point["Ec"] * scatter()])
+}
+
+/// What the work makes of a finishing task.
+fn finished(laboratory: &Laboratory, task: &Task) -> Result<Artifact, String> {
+    let inputs: Vec<(String, Arc<Artifact>)> = task
+        .inputs
+        .iter()
+        .map(|(name, source)| match source {
+            crate::stage::Source::Task(task) => match laboratory.outcome(task) {
+                Some(Outcome::Done(content)) => (name.clone(), laboratory.load(&content).unwrap()),
+                other => panic!("{other:?}"),
+            },
+            crate::stage::Source::Content(content) => (name.clone(), laboratory.load(content).unwrap()),
+        })
+        .collect();
+    let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: Progress| ());
+    let (params, seed) = (&task.params, task.seed);
+    let job = Job { params, seed, inputs: &inputs, files: &[], threads: 1, time_limit: None, say: &say, stop: &stop };
+    solve::solve(&job).map_err(|failure| failure.to_string())
+}
+
+#[test]
+fn simulations_in_the_loop_find_the_parameters_and_their_interval() {
+    let (context, laboratory) = (context(), Laboratory::new(usize::MAX, scattering));
+    let stage = stage(COLD);
+    assert_eq!(stage.check(&context), Vec::new());
+    let Step::Finish(task) = stage.next(&known(&context, &laboratory)).unwrap() else { panic!("it can go on") };
+    assert_eq!(laboratory.simulations(), 48);
+    let artifact = finished(&laboratory, &task).unwrap();
+    let solution = artifact.table("solution").unwrap();
+    let first = |name: &str| solution.reals(name).unwrap()[0];
+    assert!((first("sigma_c") / 19.0 - 1.0).abs() < 0.03, "{}", first("sigma_c"));
+    assert!((first("Ec") / (31.0 / 1.5) - 1.0).abs() < 0.03, "{}", first("Ec"));
+    assert_eq!((first("evaluations"), first("free")), (24.0, 1.0));
+    let prediction = artifact.table("prediction").unwrap();
+    let at = |name: &str| prediction.reals(name).unwrap();
+    assert!((0..3).all(|i| at("low")[i] < at("expected")[i] && at("expected")[i] < at("high")[i]));
+    assert_eq!(artifact.table("history").unwrap().rows(), 48);
+    assert!(artifact.table("solution_set").unwrap().rows() >= 50);
+}
+
+/// Killed after any number of simulations, a calibration asks on as if nothing had happened.
+#[test]
+fn an_interrupted_calibration_goes_on_where_it_stood() {
+    let (context, stage) = (context(), stage(COLD));
+    let whole = Laboratory::new(usize::MAX, scattering);
+    let Step::Finish(end) = stage.next(&known(&context, &whole)).unwrap() else { panic!("it can go on") };
+    let mut broken = Laboratory::new(0, scattering);
+    loop {
+        let step = stage.next(&known(&context, &broken)).unwrap();
+        match step {
+            Step::Ask(tasks) => {
+                assert!(!tasks.is_empty());
+                assert!(tasks.iter().all(|task| whole.done.borrow().iter().any(|(known, _)| known == task)));
+                broken.patience += 7;
+            }
+            Step::Finish(task) => {
+                assert_eq!(task, end);
+                break;
+            }
+        }
+    }
+    assert_eq!(finished(&broken, &end).unwrap(), finished(&whole, &end).unwrap());
+}
+
+#[test]
+fn failed_simulations_are_recorded_and_when_all_fail_it_says_so() {
+    let some = |point: &Point, number: u64| match number % 6 {
+        2 => Err("no peak".to_owned()),
+        4 => Err("crash".to_owned()),
+        _ => scattering(point, number),
+    };
+    let (context, laboratory) = (context(), Laboratory::new(usize::MAX, some));
+    let Step::Finish(task) = stage(COLD).next(&known(&context, &laboratory)).unwrap() else { panic!("it can go on") };
+    let artifact = finished(&laboratory, &task).unwrap();
+    let failed = artifact.table("solution").unwrap().reals("failed").unwrap();
+    assert_eq!(failed, [8.0, 8.0]);
+    let all = Laboratory::new(usize::MAX, |_, _| Err("no peak".to_owned()));
+    let Step::Finish(task) = stage(COLD).next(&known(&context, &all)).unwrap() else { panic!("it can go on") };
+    assert_eq!(finished(&all, &task).unwrap_err(), "all 24 simulations failed; the first: no peak");
+}
+
+#[test]
+fn every_fault_of_the_settings_is_named() {
+    let complaints = |text: &str| -> Vec<String> {
+        stage(text).check(&context()).into_iter().map(|complaint| complaint.message).collect()
+    };
+    let nothing = "factors = [\"Ed\"]\npreference = { mu = 1 }\ngenetic = {}\nmethod = \"annealing\"";
+    assert_eq!(
+        complaints(nothing),
+        [
+            "unknown factor `Ed`",
+            "unknown calibrated factor `mu`",
+            "`genetic` has no effect with method `annealing`",
+            "neither `surfaces` nor `simulator` is given",
+            "no targets are given",
+        ]
+    );
+    let units = "surfaces = \"s\"\nfactors = [\"Ec\"]\ntargets = [{ UCS = 30, E = \"3 kN\" }]";
+    assert_eq!(
+        complaints(units),
+        ["set 1: target of `E`: \"3 kN\" is not a value in `GPa`; write for example \"30 GPa\""]
+    );
+    let zero = "surfaces = \"s\"\nfactors = [\"Ec\"]\ntargets = [{ UCS = \"0 MPa\" }]\nranges = { Ec = [3, 2] }";
+    let found = complaints(zero);
+    assert!(found[0].contains("the range of `Ec` is empty") && found[1].contains("target of `UCS` is 0"), "{found:?}");
+    let apart = r#"surfaces = "s"
+        factors = ["Ec", "sigma_c"]
+        targets = [{ UCS = "30 MPa" }]
+        constraints = [{ terms = { Ec = 1.0 }, at_most = 12 }, { terms = { Ec = -1.0, sigma_c = 1.0 }, at_most = -5 }]"#;
+    assert!(complaints(apart)[0].contains("no point of the box meets"), "{:?}", complaints(apart));
+    let curve = "surfaces = \"s\"\nfactors = [\"Ec\"]\ncurve = { strain = [0.001], stress = [\"5 MPa\"] }";
+    assert_eq!(
+        complaints(curve),
+        ["surfaces give no curve; name a simulator", "surfaces give no curve; leave them out"]
+    );
+}

@@ -1,0 +1,187 @@
+//! `kind = "design"`: the runs of an experiment, and what they can tell.
+//!
+//! `method` picks the design; the other keys are its options, and an option of another method is refused. The factors are
+//! those of the workflow, in the order named. Orthogonal, factorial designs take a factor's levels (its range if it
+//! has none); two-level and sampled designs its range (the extreme levels if it has none); central composite and
+//! Box–Behnken designs its range, or up to three levels. Rows come from the workflow (`rows`) or a CSV file beside it (`file`) with
+//! `method = "given"`.
+//!
+//! The result has the tables `design` (run, standard order, point type, factors in their units), `coded` and `report`.
+
+mod config;
+mod tables;
+#[cfg(test)]
+mod tests;
+
+pub use config::Design;
+
+use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
+use crate::artifact::{Artifact, Table};
+use crate::design::given::Given;
+use crate::design::report::power::Question;
+use crate::design::{Domain, Factor, Fault, Layout, Method, Order, build, check, report};
+use crate::unit::Unit;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+/// Parameters of the task: all that decides the table.
+#[derive(Serialize, Deserialize)]
+struct Params {
+    design: Method,
+    factors: Vec<Factor>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    layout: Layout,
+    #[serde(default, skip_serializing_if = "is_default")]
+    power: Question,
+    /// Given rows hold numbers of levels, from 1.
+    #[serde(default, skip_serializing_if = "is_default")]
+    by_level: bool,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+impl Stage for Design {
+    fn inputs(&self) -> Vec<Port> {
+        Vec::new()
+    }
+
+    fn gives(&self) -> &'static str {
+        "design"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = self.option_complaints();
+        found.extend(self.factor_complaints(context));
+        if !found.is_empty() {
+            return found;
+        }
+        match self.method() {
+            // rows of a file are checked when it is read
+            Ok(Method::Given(given)) if given.rows.is_empty() => found,
+            Ok(method) => {
+                let faults = check(&method, &self.factors(context));
+                faults.iter().map(complaint).collect()
+            }
+            Err(complaint) => vec![complaint],
+        }
+    }
+
+    fn settings(&self) -> Value {
+        json!({
+            "design": self.method().ok(), "factors": self.factors, "file": self.file,
+            "replicates": self.replicates, "order": self.order, "power": self.power, "by_level": self.by_level,
+        })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let design = self.method().map_err(|c| StageError { message: c.message, hint: c.hint })?;
+        let layout = Layout { replicates: self.replicates, order: self.order };
+        let draws = design.draws() || layout.order == Order::Random;
+        let factors = self.factors(known.context);
+        let by_level = self.by_level.unwrap_or(false);
+        let params = Params { design, factors, layout, power: self.power, by_level };
+        let mut task = Task::new("design", json!(params));
+        if draws {
+            task = task.seed(known.context.seed);
+        }
+        if let Some(file) = &self.file {
+            task.files.push(known.library.file("rows", file)?);
+        }
+        Ok(Step::Finish(task))
+    }
+}
+
+impl Kind for Design {
+    const NAME: &'static str = "design";
+    const ABOUT: &'static str =
+        "the runs of an experiment: factorial, orthogonal, screening, surface or sampled designs";
+    const WORKS: &'static [Work] = &[Work { name: "design", version: 1, run }];
+}
+
+/// A fault of the design, at the key it concerns.
+fn complaint(fault: &Fault) -> Complaint {
+    let path = match fault {
+        Fault::BadOption { option, .. } => option.split(',').next().unwrap_or(""),
+        Fault::BadRow { .. } => "rows",
+        Fault::NoConstruction { .. } => "method",
+        Fault::NoFactors
+        | Fault::NoName { .. }
+        | Fault::DuplicateName { .. }
+        | Fault::TooFewLevels { .. }
+        | Fault::DuplicateLevel { .. }
+        | Fault::NotFinite { .. }
+        | Fault::EmptyRange { .. }
+        | Fault::WrongLevels { .. }
+        | Fault::UnevenLevels { .. } => "factors",
+    };
+    let text = fault.to_string();
+    // what was found; what to do
+    match text.rsplit_once("; ") {
+        Some((found, remedy)) => Complaint::new(path, found).hint(remedy),
+        None => Complaint::new(path, text),
+    }
+}
+
+fn run(job: &Job) -> Result<Artifact, Failure> {
+    let mut params: Params = job.params()?;
+    if let (Method::Given(given), Some(_)) = (&mut params.design, job.files.first()) {
+        given.rows = rows(&data::parse(&job.file("rows")?)?, &params.factors, params.by_level)?;
+    }
+    if let (Method::Given(given), true) = (&mut params.design, params.by_level) {
+        given.rows.iter_mut().enumerate().try_for_each(|(i, row)| levels(row, i, &params.factors))?;
+    }
+    let table = build(&params.design, &params.factors, params.layout, job.seed.unwrap_or(0))
+        .map_err(|error| StageError::new(error.to_string()))?;
+    let report = report(&table, params.power);
+    Ok(tables::artifact(&table, &report))
+}
+
+/// Replaces the numbers of levels in a row by the levels.
+fn levels(row: &mut [f64], index: usize, factors: &[Factor]) -> Result<(), StageError> {
+    for (value, factor) in row.iter_mut().zip(factors) {
+        let Domain::Levels(levels) = &factor.domain else {
+            let message = format!("factor `{}` has a range, and `by_level` needs levels", factor.name);
+            return Err(StageError::new(message).hint("give [factor] its levels, or leave `by_level` out"));
+        };
+        let level = (1..=levels.len()).find(|&n| n as f64 == *value).ok_or_else(|| {
+            let message = format!("row {}: `{}` has no level {value}", index + 1, factor.name);
+            StageError::new(message).hint(format!("its levels are numbered 1 to {}", levels.len()))
+        })?;
+        *value = levels[level - 1];
+    }
+    Ok(())
+}
+
+/// The columns of a file that are the factors, converted to the factors' units unless they are numbers of levels.
+fn rows(table: &Table, factors: &[Factor], by_level: bool) -> Result<Vec<Vec<f64>>, StageError> {
+    let columns = factors.iter().map(|factor| {
+        let name = &factor.name;
+        let known = || table.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
+        let column = table.column(name).ok_or_else(|| {
+            StageError::new(format!("the file has no column `{name}`")).hint(format!("its columns are {}", known()))
+        })?;
+        let values = table.reals(name).ok_or_else(|| {
+            StageError::new(format!("column `{name}` holds texts")).hint("a factor needs a number in every row")
+        })?;
+        let unit = |text: &str| Unit::parse(text).map_err(|e| StageError::new(format!("factor `{name}`: {e}")));
+        let (from, to) = (unit(&column.unit)?, unit(&factor.unit)?);
+        if by_level {
+            return Ok(values);
+        }
+        if from.dimension != to.dimension {
+            let message = format!("column `{name}` is in `{}`, the factor in `{}`", column.unit, factor.unit);
+            return Err(StageError::new(message).hint("name the unit in the head of the column: `Ec [GPa]`"));
+        }
+        let scale = from.factor / to.factor;
+        Ok(values.into_iter().map(move |v| if scale == 1.0 { v } else { v * scale }).collect())
+    });
+    let columns: Vec<Vec<f64>> = columns.collect::<Result<_, StageError>>()?;
+    Ok((0..table.rows()).map(|i| columns.iter().map(|c| c[i]).collect()).collect())
+}
+
+/// A design whose rows are still in a file.
+fn in_file() -> Method {
+    Method::Given(Given { rows: Vec::new(), source: String::new() })
+}

@@ -1,0 +1,295 @@
+//! The table of a `design` stage: `method`, the options of every method, and which of them go together.
+
+use super::in_file;
+use crate::design::box_behnken::BoxBehnken;
+use crate::design::central_composite::{Alpha, CentralComposite, Corners, Extent};
+use crate::design::factorial::FullFactorial;
+use crate::design::fractional::FractionalFactorial;
+use crate::design::given::Given;
+use crate::design::latin_hypercube::{Criterion, LatinHypercube, Position};
+use crate::design::orthogonal::Orthogonal;
+use crate::design::plackett_burman::PlackettBurman;
+use crate::design::report::power::Question;
+use crate::design::sobol::Sobol;
+use crate::design::{Domain, Factor, Method, Order};
+use crate::stage::{Complaint, Context};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Which design.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Name {
+    /// Every combination of levels.
+    FullFactorial,
+    /// A regular fraction of the two-level factorial.
+    FractionalFactorial,
+    /// An orthogonal table.
+    Orthogonal,
+    /// Two-level screening.
+    PlackettBurman,
+    /// Cube, axial and centre points.
+    CentralComposite,
+    /// Edge midpoints and centre points.
+    BoxBehnken,
+    /// A stratified sample.
+    LatinHypercube,
+    /// A low-discrepancy sample.
+    Sobol,
+    /// Rows of the workflow or of a file.
+    Given,
+}
+
+/// Settings of a `design` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// Which design.
+    pub method: Name,
+    /// The factors it varies, in column order.
+    pub factors: Vec<String>,
+    /// Order of the runs: `standard`, or `random` by the workflow's seed.
+    #[serde(default)]
+    pub order: Order,
+    /// How often the whole design is run, each time on its own packing.
+    #[serde(default = "once")]
+    pub replicates: usize,
+    /// The effect, noise and level that the report computes the power for.
+    #[serde(default)]
+    pub power: Question,
+    /// Orthogonal: the table, such as `L64(4^21)`; the smallest that fits if left out.
+    pub table: Option<String>,
+    /// Orthogonal: the column of each factor, from 1.
+    pub columns: Option<Vec<usize>>,
+    /// Orthogonal, where a factor has fewer levels than its column: the level met most often, from 1.
+    pub doubled: Option<usize>,
+    /// Orthogonal: strength 2 or 3.
+    pub strength: Option<usize>,
+    /// Fractional factorial: the generators, such as `E=ABCD` or `mu=Ec*kn_ks`.
+    pub generators: Option<Vec<String>>,
+    /// Fractional factorial: the least resolution.
+    pub resolution: Option<usize>,
+    /// Number of runs (fractional factorial, Plackett–Burman) or of points (samples).
+    pub runs: Option<usize>,
+    /// Plackett–Burman: add the mirror image of every run.
+    pub fold: Option<bool>,
+    /// Number of centre points; factorial and screening designs have none, surface designs their published number if left out.
+    pub centre_points: Option<usize>,
+    /// Central composite: `rotatable`, `orthogonal`, `spherical`, `face` or a number.
+    pub alpha: Option<Alpha>,
+    /// Central composite: whether ranges stand for the `cube` or the `axial` points.
+    pub extent: Option<Extent>,
+    /// Central composite: `fraction` (from five factors on) or `full`.
+    pub corners: Option<Corners>,
+    /// Latin hypercube: `maximin` or `random`.
+    pub criterion: Option<Criterion>,
+    /// Latin hypercube: points at the `centre` of their strata or at `random`.
+    pub position: Option<Position>,
+    /// Sobol: scramble by the workflow's seed.
+    pub scramble: Option<bool>,
+    /// Sobol: points left out from the start.
+    pub skip: Option<usize>,
+    /// Given: the rows, one value a factor, in the factors' units.
+    pub rows: Option<Vec<Vec<f64>>>,
+    /// Given: a CSV file beside the workflow with a column for every factor.
+    pub file: Option<String>,
+    /// Given: the rows hold numbers of the factors' levels, from 1, as published tables do, not their values.
+    pub by_level: Option<bool>,
+}
+
+fn once() -> usize {
+    1
+}
+
+/// The options of each method.
+const OPTIONS: &[(&str, &[Name])] = &[
+    ("table", &[Name::Orthogonal]),
+    ("columns", &[Name::Orthogonal]),
+    ("doubled", &[Name::Orthogonal]),
+    ("strength", &[Name::Orthogonal]),
+    ("generators", &[Name::FractionalFactorial]),
+    ("resolution", &[Name::FractionalFactorial]),
+    ("runs", &[Name::FractionalFactorial, Name::PlackettBurman, Name::LatinHypercube, Name::Sobol]),
+    ("fold", &[Name::PlackettBurman]),
+    (
+        "centre_points",
+        &[
+            Name::FullFactorial,
+            Name::FractionalFactorial,
+            Name::PlackettBurman,
+            Name::CentralComposite,
+            Name::BoxBehnken,
+        ],
+    ),
+    ("alpha", &[Name::CentralComposite]),
+    ("extent", &[Name::CentralComposite]),
+    ("corners", &[Name::CentralComposite]),
+    ("criterion", &[Name::LatinHypercube]),
+    ("position", &[Name::LatinHypercube]),
+    ("scramble", &[Name::Sobol]),
+    ("skip", &[Name::Sobol]),
+    ("rows", &[Name::Given]),
+    ("file", &[Name::Given]),
+    ("by_level", &[Name::Given]),
+];
+
+impl Design {
+    /// Whether the option is there, in the order of [`OPTIONS`].
+    fn said(&self) -> [bool; 19] {
+        [
+            self.table.is_some(),
+            self.columns.is_some(),
+            self.doubled.is_some(),
+            self.strength.is_some(),
+            self.generators.is_some(),
+            self.resolution.is_some(),
+            self.runs.is_some(),
+            self.fold.is_some(),
+            self.centre_points.is_some(),
+            self.alpha.is_some(),
+            self.extent.is_some(),
+            self.corners.is_some(),
+            self.criterion.is_some(),
+            self.position.is_some(),
+            self.scramble.is_some(),
+            self.skip.is_some(),
+            self.rows.is_some(),
+            self.file.is_some(),
+            self.by_level.is_some(),
+        ]
+    }
+
+    fn word(&self) -> String {
+        serde_json::to_value(self.method).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
+    }
+
+    /// Options that have no effect with this method, and settings that make no sense with any.
+    pub(super) fn option_complaints(&self) -> Vec<Complaint> {
+        let method = self.word();
+        let mut known: Vec<&str> = Vec::new();
+        known.extend(OPTIONS.iter().filter(|(_, names)| names.contains(&self.method)).map(|(option, _)| *option));
+        let stray = OPTIONS.iter().zip(self.said()).filter(|((_, names), said)| *said && !names.contains(&self.method));
+        let mut found: Vec<Complaint> = stray
+            .map(|((option, _), _)| {
+                Complaint::new(option, format!("`{option}` has no effect with the method `{method}`"))
+                    .hint(format!("its options are {}", known.join(", ")))
+            })
+            .collect();
+        if self.replicates == 0 {
+            found.push(Complaint::new("replicates", "the design would be run 0 times").hint("give 1 or more"));
+        }
+        let Question { effect, noise, alpha } = self.power;
+        for (key, value) in [("effect", effect), ("noise", noise)] {
+            if !(value > 0.0 && value.is_finite()) {
+                let complaint = Complaint::new(&format!("power.{key}"), format!("the {key} is {value}"));
+                found.push(complaint.hint("give a number above 0, in the unit of the response"));
+            }
+        }
+        if !(alpha > 0.0 && alpha < 1.0) {
+            let complaint = Complaint::new("power.alpha", format!("the level of significance is {alpha}"));
+            found.push(complaint.hint("give a number between 0 and 1, such as 0.05"));
+        }
+        found
+    }
+
+    /// Names that are no factors of the workflow.
+    pub(super) fn factor_complaints(&self, context: &Context) -> Vec<Complaint> {
+        let unknown = self.factors.iter().filter(|name| !context.factors.contains_key(*name));
+        let known: Vec<&str> = context.factors.keys().map(String::as_str).collect();
+        unknown
+            .map(|name| {
+                Complaint::new("factors", format!("`{name}` is not a factor of this workflow"))
+                    .hint(format!("its factors are {}", known.join(", ")))
+            })
+            .collect()
+    }
+
+    /// The design with its options.
+    pub(super) fn method(&self) -> Result<Method, Complaint> {
+        let centre_points = self.centre_points.unwrap_or(0);
+        let points = || {
+            let complaint = Complaint::new("runs", "the number of points is missing");
+            self.runs.ok_or_else(|| complaint.hint("say `runs = 64`, or any other number"))
+        };
+        Ok(match self.method {
+            Name::FullFactorial => Method::FullFactorial(FullFactorial { centre_points }),
+            Name::FractionalFactorial => Method::FractionalFactorial(FractionalFactorial {
+                generators: self.generators.clone().unwrap_or_default(),
+                resolution: self.resolution,
+                runs: self.runs,
+                centre_points,
+            }),
+            Name::Orthogonal => Method::Orthogonal(Orthogonal {
+                table: self.table.clone(),
+                columns: self.columns.clone(),
+                doubled: self.doubled,
+                strength: self.strength,
+            }),
+            Name::PlackettBurman => Method::PlackettBurman(PlackettBurman {
+                runs: self.runs,
+                fold: self.fold.unwrap_or(false),
+                centre_points,
+            }),
+            Name::CentralComposite => Method::CentralComposite(CentralComposite {
+                alpha: self.alpha.unwrap_or_default(),
+                centre_points: self.centre_points,
+                extent: self.extent.unwrap_or_default(),
+                corners: self.corners.unwrap_or_default(),
+            }),
+            Name::BoxBehnken => Method::BoxBehnken(BoxBehnken { centre_points: self.centre_points }),
+            Name::LatinHypercube => Method::LatinHypercube(LatinHypercube {
+                runs: points()?,
+                criterion: self.criterion.unwrap_or_default(),
+                position: self.position.unwrap_or_default(),
+            }),
+            Name::Sobol => Method::Sobol(Sobol {
+                runs: points()?,
+                scramble: self.scramble.unwrap_or(true),
+                skip: self.skip.unwrap_or(0),
+            }),
+            Name::Given => match (&self.rows, &self.file) {
+                (Some(rows), None) => Method::Given(Given { rows: rows.clone(), source: String::new() }),
+                (None, Some(_)) => in_file(),
+                _ => {
+                    let complaint = Complaint::new("method", "given rows need `rows` or `file`, and only one of them");
+                    return Err(complaint.hint("say `file = \"rows.csv\"`, or `rows = [[10, 2.5], [20, 1]]`"));
+                }
+            },
+        })
+    }
+
+    /// The factors of the workflow as this design sets them; unknown ones are left out.
+    pub(super) fn factors(&self, context: &Context) -> Vec<Factor> {
+        let found = self.factors.iter().filter_map(|name| context.factors.get(name).map(|f| (name, f)));
+        found
+            .map(|(name, factor)| {
+                let levels = || Domain::Levels(factor.levels.clone());
+                let range = factor.range.map(|[low, high]| Domain::Range { low, high });
+                let ends = || {
+                    let ends = Factor { name: name.clone(), unit: String::new(), domain: levels() };
+                    // a single level is no range; the design says what is wrong with it
+                    if factor.levels.len() < 2 {
+                        levels()
+                    } else {
+                        Domain::Range { low: ends.low(), high: ends.high() }
+                    }
+                };
+                let domain = match self.method {
+                    Name::FullFactorial | Name::Orthogonal => {
+                        if factor.levels.is_empty() {
+                            range.unwrap_or_else(levels)
+                        } else {
+                            levels()
+                        }
+                    }
+                    Name::CentralComposite | Name::BoxBehnken if factor.levels.len() <= 3 => {
+                        range.unwrap_or_else(levels)
+                    }
+                    Name::Given => range.unwrap_or_else(levels),
+                    _ => range.unwrap_or_else(ends),
+                };
+                Factor { name: name.clone(), unit: factor.unit.clone(), domain }
+            })
+            .collect()
+    }
+}

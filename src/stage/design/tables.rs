@@ -1,0 +1,51 @@
+//! The artifact of a design.
+
+use crate::artifact::{Artifact, Group, Node, Table};
+use crate::design::{DesignTable, Report};
+
+/// The tables `design`, `coded` and `report`.
+pub(super) fn artifact(table: &DesignTable, report: &Report) -> Artifact {
+    let root = Group::new()
+        .with("design", Node::Table(design(table)))
+        .with("coded", Node::Table(coded(table)))
+        .with("report", Node::Table(lines(table, report)));
+    Artifact::new("design", 1, root)
+}
+
+fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
+    numbers.into_iter().map(|n| n as i64).collect()
+}
+
+fn design(table: &DesignTable) -> Table {
+    let types = table.point_type.iter().map(|p| p.word().to_owned()).collect();
+    let mut found = Table { about: table.construction.clone(), columns: Vec::new() }
+        .ints_column("run", "order of the runs", counted(1..=table.runs()))
+        .ints_column("standard_order", "place in the order of the construction", counted(table.standard_order.clone()))
+        .ints_column("replicate", "which of the equal rows it is", counted(table.replicate()))
+        .texts_column("point_type", "centre, cube, axial, edge, grid, sample or given", types);
+    for (j, factor) in table.factors.iter().enumerate() {
+        let values = table.natural.iter().map(|row| row[j]).collect();
+        found = found.reals_column(&factor.name, &factor.unit, "", values);
+    }
+    found
+}
+
+fn coded(table: &DesignTable) -> Table {
+    let about = "-1 and +1 are the ends of the range".to_owned();
+    let mut found = Table { about, columns: Vec::new() }.ints_column("run", "", counted(1..=table.runs()));
+    for (j, factor) in table.factors.iter().enumerate() {
+        found = found.reals_column(&factor.name, "", "", table.coded.iter().map(|row| row[j]).collect());
+    }
+    found
+}
+
+fn lines(table: &DesignTable, report: &Report) -> Table {
+    let lines = report.lines(table);
+    let texts = |pick: &dyn Fn(&crate::design::report::Line) -> String| lines.iter().map(pick).collect();
+    Table { about: "what the design can tell, judged by its rows".to_owned(), columns: Vec::new() }
+        .texts_column("section", "", texts(&|l| l.section.to_owned()))
+        .texts_column("subject", "factor, term or model", texts(&|l| l.subject.clone()))
+        .texts_column("quantity", "", texts(&|l| l.quantity.clone()))
+        .reals_column("value", "", "missing where words say it", lines.iter().map(|l| l.value).collect())
+        .texts_column("text", "", texts(&|l| l.text.clone()))
+}

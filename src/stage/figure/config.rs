@@ -1,0 +1,188 @@
+//! Settings of a `figure` stage, and what each figure takes.
+
+use crate::figure::palette::Map;
+use crate::figure::{DOUBLE, SINGLE};
+use crate::unit::Length;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::collections::BTreeMap;
+
+/// Settings of a `figure` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Figure {
+    /// What is drawn.
+    pub show: Show,
+    /// The stages it is drawn from.
+    pub of: Names,
+    /// Stages with values to set beside them.
+    #[serde(default)]
+    pub compare: Names,
+    /// The response that is drawn, or several where the figure has a panel for each.
+    #[serde(default)]
+    pub response: Names,
+    /// The factors that are drawn; all of them when not given.
+    #[serde(default)]
+    pub factors: Vec<String>,
+    /// Values of the factors that are held constant, in their units; the middle of the range when not given.
+    #[serde(default)]
+    pub at: BTreeMap<String, f64>,
+    /// Words for what has a symbol only: `{ UCS = "Peak strength" }`; for series, names in the legend by stage.
+    #[serde(default)]
+    pub names: BTreeMap<String, String>,
+    /// Half width of the band around the line of equality, as a share of the value.
+    pub band: Option<f64>,
+    /// `single` (90 mm), `double` (190 mm) or a length.
+    #[serde(default)]
+    pub width: Width,
+    /// Size of the text in points; 8 when not given.
+    pub points: Option<f64>,
+    /// Colours of surfaces.
+    #[serde(default)]
+    pub colors: Map,
+}
+
+/// One name or several.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Names {
+    /// None.
+    #[default]
+    #[serde(skip)]
+    None,
+    /// One.
+    One(String),
+    /// Several.
+    Many(Vec<String>),
+}
+
+impl Names {
+    pub(in crate::stage) fn list(&self) -> Vec<String> {
+        match self {
+            Names::None => Vec::new(),
+            Names::One(name) => vec![name.clone()],
+            Names::Many(names) => names.clone(),
+        }
+    }
+}
+
+/// Width of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// One column of a journal: 90 mm.
+    #[default]
+    Single,
+    /// Two columns: 190 mm.
+    Double,
+}
+
+/// A named width or a length.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Width {
+    /// By name.
+    Preset(Preset),
+    /// By length.
+    Length(Length),
+}
+
+impl Default for Width {
+    fn default() -> Self {
+        Width::Preset(Preset::Single)
+    }
+}
+
+impl Width {
+    pub(super) fn millimetres(self) -> f64 {
+        match self {
+            Width::Preset(Preset::Single) => SINGLE,
+            Width::Preset(Preset::Double) => DOUBLE,
+            Width::Length(length) => length.get() * 1e3,
+        }
+    }
+}
+
+/// The figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Show {
+    /// Stress–strain curves with crack counts.
+    StressStrain,
+    /// Crack patterns by mode at several moments.
+    Cracks,
+    /// Orientation of the cracks.
+    CrackRose,
+    /// Force chains.
+    ForceChains,
+    /// Particles by group, with the aggregate.
+    Specimen,
+    /// Mean response per level of each factor.
+    MainEffects,
+    /// Ranked ranges of a range analysis.
+    Range,
+    /// Points of a design in two or three factors.
+    Points,
+    /// Computed against compared values, matched by their factors.
+    Agreement,
+    /// A response surface as filled contours.
+    Contour,
+    /// A response surface in space.
+    Surface,
+    /// Four views of the residuals of a model.
+    Residuals,
+    /// Observed values against those of the model.
+    ObservedPredicted,
+    /// Ranked standardized effects.
+    Pareto,
+    /// Half-normal plot of effects.
+    HalfNormal,
+    /// Misfit against effort of a calibration.
+    Convergence,
+    /// Parameter sets over parallel axes.
+    Solutions,
+    /// Targets against verified values.
+    Verification,
+}
+
+/// What one kind of figure takes.
+pub(super) struct Needs {
+    pub(super) from: &'static [&'static str],
+    pub(super) compare: &'static [&'static str],
+    /// Least and greatest number of responses.
+    pub(super) responses: [usize; 2],
+    /// Least and greatest number of factors named; factors are drawn when the second is not 0.
+    pub(super) factors: [usize; 2],
+}
+
+const MANY: usize = usize::MAX;
+
+impl Show {
+    pub(super) fn needs(self) -> Needs {
+        let needs = |from, compare, responses, factors| Needs { from, compare, responses, factors };
+        const RESULTS: &[&str] = &["results"];
+        const MODELS: &[&str] = &["anova", "screening", "surfaces"];
+        const PLACES: &[&str] = &["design", "results"];
+        match self {
+            Show::StressStrain => needs(&["run"], &[], [0, 0], [0, 0]),
+            Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&["run"], &["specimen"], [0, 0], [0, 0]),
+            Show::Specimen => needs(&["specimen"], &[], [0, 0], [0, 0]),
+            Show::MainEffects | Show::Range => needs(&["range"], &["range"], [1, 1], [0, MANY]),
+            Show::Points => needs(PLACES, &[], [0, 0], [2, 3]),
+            Show::Agreement => needs(RESULTS, RESULTS, [1, MANY], [0, MANY]),
+            Show::Contour | Show::Surface => needs(&["surfaces"], PLACES, [1, 1], [2, 2]),
+            Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
+            Show::ObservedPredicted => needs(MODELS, &[], [1, MANY], [0, 0]),
+            Show::Pareto => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
+            Show::HalfNormal => needs(&["screening"], &[], [1, 1], [0, MANY]),
+            Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),
+            Show::Solutions => needs(&["solution"], &[], [0, 0], [0, MANY]),
+            Show::Verification => needs(&["verification"], &[], [0, MANY], [0, 0]),
+        }
+    }
+
+    pub(super) fn name(self) -> String {
+        json!(self).as_str().unwrap_or_default().to_owned()
+    }
+}

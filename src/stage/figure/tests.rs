@@ -1,0 +1,375 @@
+use super::*;
+use crate::artifact::{Array, ContentHash, Values};
+use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+fn words<const N: usize>(values: [&str; N]) -> Vec<String> {
+    values.map(String::from).to_vec()
+}
+
+fn artifact(kind: &str, tables: Vec<(&str, Table)>) -> Artifact {
+    let root = tables.into_iter().fold(Group::new(), |group, (name, table)| group.with(name, Node::Table(table)));
+    Artifact::new(kind, 1, root)
+}
+
+fn table() -> Table {
+    Table::default()
+}
+
+fn range_analysis() -> Artifact {
+    let range = table()
+        .texts_column("response", "", words(["UCS", "UCS", "UCS"]))
+        .texts_column("factor", "", words(["Ec", "mu", "null"]))
+        .reals_column("level_1", "", "", vec![30.0, 34.0, 34.5])
+        .reals_column("level_2", "", "", vec![40.0, 35.0, 35.0])
+        .reals_column("level_3", "", "", vec![f64::NAN, 36.0, 34.6])
+        .reals_column("range", "", "", vec![10.0, 2.0, 0.5]);
+    let levels = table()
+        .texts_column("factor", "", words(["Ec", "mu", "null"]))
+        .reals_column("level_1", "", "", vec![10.0, 0.5, 1.0])
+        .reals_column("level_2", "", "", vec![20.0, 1.0, 2.0])
+        .reals_column("level_3", "", "", vec![f64::NAN, 1.5, 3.0]);
+    artifact("range", vec![("range", range), ("levels", levels)])
+}
+
+fn results(shift: f64) -> Artifact {
+    let ec = vec![10.0, 20.0, 10.0, 20.0, 15.0, 15.0];
+    let mu = vec![0.5, 0.5, 1.5, 1.5, 1.0, 1.0];
+    let ucs = ec.iter().zip(&mu).map(|(a, b)| a + 4.0 * b + shift).collect();
+    let runs =
+        table().reals_column("Ec", "GPa", "", ec).reals_column("mu", "", "", mu).reals_column("UCS", "MPa", "", ucs);
+    artifact("results", vec![("runs", runs)])
+}
+
+fn run() -> Artifact {
+    let strain: Vec<f64> = (0..40).map(|i| f64::from(i) * 5e-5).collect();
+    let stress = strain.iter().map(|e| 3e10 * e * (1.0 - e / 2e-3)).collect();
+    let curve = table()
+        .reals_column("axial_strain", "", "", strain.clone())
+        .reals_column("stress", "Pa", "", stress)
+        .reals_column("lateral_strain", "", "", strain.iter().map(|e| 0.2 * e).collect());
+    let n = 30;
+    let count = |f: fn(f64) -> f64| (0..n).map(|i| f(f64::from(i))).collect::<Vec<f64>>();
+    let cracks = table()
+        .reals_column("axial_strain", "", "", count(|i| 5e-5 * i))
+        .texts_column("mode", "", (0..n).map(|i| if i % 3 == 0 { "shear" } else { "tension" }.to_owned()).collect())
+        .reals_column("x", "m", "", count(|i| 1e-3 * (i - 15.0)))
+        .reals_column("y", "m", "", count(|i| 2e-3 * (15.0 - i)))
+        .reals_column("normal_x", "", "", count(|_| 1.0))
+        .reals_column("normal_y", "", "", count(|_| 0.0))
+        .reals_column("size", "m", "", count(|_| 1e-3));
+    let forces = table()
+        .reals_column("x1", "m", "", count(|i| 1e-3 * (i - 15.0)))
+        .reals_column("y1", "m", "", count(|_| 0.0))
+        .reals_column("x2", "m", "", count(|i| 1e-3 * (i - 15.0)))
+        .reals_column("y2", "m", "", count(|_| 1e-3))
+        .reals_column("normal_force", "N", "", count(|i| 100.0 * (i - 4.0)));
+    let responses = table()
+        .texts_column("response", "", words(["E"]))
+        .reals_column("value", "", "", vec![3e10])
+        .texts_column("unit", "", words(["Pa"]));
+    artifact("run", vec![("curve", curve), ("cracks", cracks), ("forces", forces), ("responses", responses)])
+}
+
+fn specimen() -> Artifact {
+    let vectors = |values: Vec<f64>| {
+        Node::Array(Array {
+            shape: vec![values.len() / 2, 2],
+            unit: "m".into(),
+            about: String::new(),
+            values: Values::Reals(values),
+        })
+    };
+    let ints = |values: Vec<i64>| {
+        Node::Array(Array {
+            shape: vec![values.len()],
+            unit: String::new(),
+            about: String::new(),
+            values: Values::Ints(values),
+        })
+    };
+    let radii = Array { shape: vec![3], unit: "m".into(), about: String::new(), values: Values::Reals(vec![1e-3; 3]) };
+    let metre = |value: f64| Node::Real { value, unit: "m".into() };
+    let root = Group::new()
+        .with("width", metre(0.05))
+        .with("height", metre(0.1))
+        .with("centres", vectors(vec![0.0, 0.0, 0.002, 0.0, 0.004, 0.01]))
+        .with("radii", Node::Array(radii))
+        .with("clump_of", ints(vec![-1, 0, 0]))
+        .with("polygon_of", ints(vec![0, 0, 0]))
+        .with("vertices", vectors(vec![0.0, 0.0, 0.005, 0.0, 0.0, 0.005]));
+    Artifact::new("specimen", 1, root)
+}
+
+fn surfaces() -> Artifact {
+    let coefficients = table()
+        .texts_column("response", "", words(["UCS", "UCS", "UCS", "UCS", "E"]))
+        .texts_column("term", "", words(["const", "Ec", "mu", "Ec*mu", "const"]))
+        .reals_column("estimate", "", "", vec![1.0, 2.0, -3.0, 0.5, 7.0]);
+    let domain = table()
+        .texts_column("response", "", words(["UCS", "UCS"]))
+        .texts_column("factor", "", words(["Ec", "mu"]))
+        .reals_column("low", "", "", vec![8.0, 0.4])
+        .reals_column("high", "", "", vec![22.0, 1.6]);
+    artifact("surfaces", vec![("coefficients", coefficients), ("domain", domain), ("residuals", residual_table())])
+}
+
+fn residual_table() -> Table {
+    let n = 12;
+    let count = |f: fn(f64) -> f64| (0..n).map(|i| f(f64::from(i))).collect::<Vec<f64>>();
+    table()
+        .texts_column("response", "", vec!["UCS".into(); 12])
+        .ints_column("row", "", (1..=12).collect())
+        .reals_column("observed", "", "", count(|i| 20.0 + i))
+        .reals_column("fitted", "", "", count(|i| 20.0 + 1.01 * i))
+        .reals_column("leverage", "", "", count(|i| 0.25 + 0.01 * (i % 3.0)))
+        .reals_column("studentized", "", "", count(|i| if i == 5.0 { 4.0 } else { (i * 1.7) % 2.0 - 1.0 }))
+}
+
+fn screening() -> Artifact {
+    let effects = table()
+        .texts_column("response", "", vec!["UCS".into(); 3])
+        .texts_column("term", "", words(["Ec", "mu", "Ec*mu"]))
+        .reals_column("effect", "", "", vec![9.0, -3.0, 0.4])
+        .reals_column("half_normal", "", "", vec![1.38, 0.67, 0.21]);
+    let limits = table()
+        .texts_column("response", "", words(["UCS"]))
+        .reals_column("pse", "", "", vec![0.6])
+        .reals_column("margin", "", "", vec![2.3])
+        .reals_column("simultaneous", "", "", vec![f64::NAN]);
+    artifact("screening", vec![("effects", effects), ("limits", limits), ("residuals", residual_table())])
+}
+
+fn anova() -> Artifact {
+    let lines = table()
+        .texts_column("response", "", vec!["UCS".into(); 4])
+        .texts_column("source", "", words(["Ec", "mu", "residual", "total"]))
+        .reals_column("eta2", "", "", vec![0.8, 0.15, 0.05, f64::NAN]);
+    artifact("anova", vec![("anova", lines)])
+}
+
+fn solution() -> Artifact {
+    let set = || vec![1, 2];
+    let solution = table()
+        .ints_column("set", "", set())
+        .reals_column("Ec", "GPa", "", vec![12.0, 18.0])
+        .reals_column("mu", "", "", vec![0.7, 1.2])
+        .reals_column("misfit", "", "", vec![1e-4, 2e-3]);
+    let further = table().ints_column("set", "", set()).reals_column("Ec", "GPa", "", vec![13.0, 17.0]).reals_column(
+        "mu",
+        "",
+        "",
+        vec![0.8, 1.1],
+    );
+    let history = table()
+        .ints_column("set", "", vec![1, 1, 2])
+        .ints_column("evaluation", "", vec![1, 20, 1])
+        .reals_column("best", "", "", vec![0.5, 1e-4, 2e-3]);
+    artifact("solution", vec![("solution", solution), ("solution_set", further), ("history", history)])
+}
+
+fn verification() -> Artifact {
+    let runs = table().ints_column("set", "", vec![1, 1, 2, 2]).reals_column(
+        "UCS",
+        "MPa",
+        "",
+        vec![30.0, 31.0, 40.0, f64::NAN],
+    );
+    let summary = table()
+        .ints_column("set", "", vec![1, 2])
+        .texts_column("response", "", words(["UCS", "UCS"]))
+        .reals_column("target", "", "", vec![30.2, 41.0]);
+    artifact("verification", vec![("runs", runs), ("summary", summary)])
+}
+
+fn context() -> Context {
+    let mut context = Context::default();
+    let mut add = |name: &str, sets: &str, symbol: &str, levels: &[f64]| {
+        let factor = Factor { sets: sets.into(), symbol: symbol.into(), levels: levels.to_vec(), ..Factor::default() };
+        context.factors.insert(name.into(), factor);
+    };
+    add("Ec", "mortar.Ec", "E_c", &[10.0, 20.0]);
+    add("mu", "mortar.mu", r"\mu", &[0.5, 1.0, 1.5]);
+    add("null", "", "", &[1.0, 2.0, 3.0]);
+    context.responses.insert("UCS".into(), Response { unit: "MPa".into(), symbol: r"\sigma_u".into() });
+    context
+}
+
+/// A library of the artifacts themselves: an input's content is its place in the list.
+struct Shelf(Vec<Arc<Artifact>>);
+
+impl Library for Shelf {
+    fn load(&self, content: &ContentHash) -> Result<Arc<Artifact>, StageError> {
+        Ok(self.0[usize::from(content.0[0])].clone())
+    }
+    fn outcome(&self, _: &Task) -> Option<Outcome> {
+        None
+    }
+    fn file(&self, name: &str, _: &str) -> Result<FileInput, StageError> {
+        Err(StageError::new(name))
+    }
+}
+
+fn settings(text: &str) -> Figure {
+    toml::from_str(text).unwrap()
+}
+
+/// The task that the stage asks for, given its inputs port by port.
+fn task_of(figure: &Figure, context: &Context, from: &[Artifact], compare: &[Artifact]) -> Task {
+    let all: Vec<Arc<Artifact>> = from.iter().chain(compare).map(|a| Arc::new(a.clone())).collect();
+    let shelf = Shelf(all);
+    let input = |i: usize| Input {
+        key: if i < from.len() { "of" } else { "compare" },
+        stage: "s",
+        content: ContentHash([i as u8; 32]),
+        replicate: Box::new(|_| None),
+        sample: Box::new(|_, _| Err(StageError::new("none"))),
+    };
+    let known = Known { context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
+    match figure.next(&known).unwrap() {
+        Step::Finish(task) => task,
+        Step::Ask(_) => panic!("a figure asks for nothing"),
+    }
+}
+
+fn made(text: &str, from: &[Artifact], compare: &[Artifact]) -> Result<Artifact, Failure> {
+    let figure = settings(text);
+    assert_eq!(figure.check(&context()), [], "{text}");
+    let task = task_of(&figure, &context(), from, compare);
+    let inputs: Vec<(String, Arc<Artifact>)> = (from.iter().map(|a| ("of".to_owned(), Arc::new(a.clone()))))
+        .chain(compare.iter().map(|a| ("compare".to_owned(), Arc::new(a.clone()))))
+        .collect();
+    let (stop, say) = (AtomicBool::new(false), |_: crate::stage::Progress| ());
+    draw(&Job {
+        params: &task.params,
+        seed: None,
+        inputs: &inputs,
+        files: &[],
+        threads: 1,
+        time_limit: None,
+        say: &say,
+        stop: &stop,
+    })
+}
+
+fn text(artifact: &Artifact, name: &str) -> String {
+    match artifact.root.get(name) {
+        Some(Node::Text(text)) => text.clone(),
+        _ => panic!("no text {name}"),
+    }
+}
+
+#[test]
+fn every_figure_is_drawn_from_what_its_stages_give() {
+    type Case<'a> = (&'a str, &'a str, Vec<Artifact>, Vec<Artifact>);
+    let cases: Vec<Case> = vec![
+        ("stress-strain", "", vec![run()], vec![]),
+        ("cracks", "compare = 'b'", vec![run()], vec![specimen()]),
+        ("crack-rose", "", vec![run()], vec![]),
+        ("force-chains", "compare = 'b'", vec![run()], vec![specimen()]),
+        ("specimen", "", vec![specimen()], vec![]),
+        ("main-effects", "response = 'UCS'\ncompare = 'b'", vec![range_analysis()], vec![range_analysis()]),
+        ("range", "response = 'UCS'", vec![range_analysis()], vec![]),
+        ("points", "factors = ['Ec', 'mu']", vec![results(0.0)], vec![]),
+        ("agreement", "response = 'UCS'\ncompare = 'b'", vec![results(0.0)], vec![results(1.0)]),
+        ("contour", "response = 'UCS'\nfactors = ['Ec', 'mu']\ncompare = 'b'", vec![surfaces()], vec![results(0.0)]),
+        ("surface", "response = 'UCS'\nfactors = ['Ec', 'mu']", vec![surfaces()], vec![]),
+        ("residuals", "response = 'UCS'", vec![surfaces()], vec![]),
+        ("observed-predicted", "response = 'UCS'", vec![surfaces()], vec![]),
+        ("pareto", "response = 'UCS'", vec![screening()], vec![]),
+        ("pareto", "response = 'UCS'", vec![anova()], vec![]),
+        ("half-normal", "response = 'UCS'", vec![screening()], vec![]),
+        ("convergence", "", vec![solution()], vec![]),
+        ("solutions", "", vec![solution()], vec![]),
+        ("verification", "", vec![verification()], vec![]),
+    ];
+    for (show, more, from, compare) in cases {
+        let picture = made(&format!("show = '{show}'\nof = 'a'\n{more}"), &from, &compare);
+        let picture = picture.unwrap_or_else(|e| panic!("{show}: {e}"));
+        assert!(text(&picture, "svg").starts_with("<svg") && !text(&picture, "title").is_empty(), "{show}");
+        let starts = |name: &str, with: &[u8]| match picture.root.get(name) {
+            Some(Node::Bytes(bytes)) => bytes.starts_with(with),
+            _ => false,
+        };
+        assert!(starts("pdf", b"%PDF-") && starts("png", b"\x89PNG"), "{show}");
+        assert!(picture.table("data").unwrap().rows() > 0, "{show}");
+    }
+}
+
+#[test]
+fn the_numbers_are_those_of_the_inputs() {
+    let ranges = made("show = 'range'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
+    let data = ranges.table("data").unwrap();
+    assert_eq!(data.reals("value").unwrap(), [10.0, 2.0]);
+    assert_eq!(data.reals("empty column").unwrap(), [0.5, 0.5]);
+
+    let means = made("show = 'main-effects'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
+    assert_eq!(means.table("data").unwrap().reals("mean").unwrap(), [30.0, 40.0, 34.0, 35.0, 36.0, 34.5, 35.0, 34.6]);
+
+    let pairs = "show = 'agreement'\nof = 'a'\nresponse = 'UCS'\ncompare = 'b'";
+    let agreement = made(pairs, &[results(1.0)], &[results(0.0)]).unwrap();
+    let data = agreement.table("data").unwrap();
+    let (x, y) = (data.reals("published").unwrap(), data.reals("computed").unwrap());
+    assert_eq!(x.len(), 6);
+    assert!(x.iter().zip(&y).all(|(x, y)| y - x == 1.0));
+
+    let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['mu', 'Ec']";
+    let field = made(contour, &[surfaces()], &[]).unwrap();
+    let data = field.table("data").unwrap();
+    let z = data.reals("UCS").unwrap();
+    // At mu = 0.4, Ec = 8: 1 + 16 − 1.2 + 1.6.
+    assert!((z[0] - 17.4).abs() < 1e-12, "{}", z[0]);
+}
+
+#[test]
+fn only_what_is_drawn_decides_the_picture() {
+    let figure = settings("show = 'main-effects'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec']");
+    let task = |context: &Context| task_of(&figure, context, &[range_analysis()], &[]).params;
+    let before = task(&context());
+    let mut other = context();
+    other.factors.get_mut("mu").unwrap().symbol = r"\mu_m".into();
+    other.seed = 7;
+    assert_eq!(task(&other), before);
+    other.factors.get_mut("Ec").unwrap().symbol = "E_m".into();
+    assert_ne!(task(&other), before);
+}
+
+#[test]
+fn faults_of_the_settings_are_told_before_anything_runs() {
+    let said = |text: &str| {
+        let found = settings(text).check(&context());
+        found.into_iter().map(|c| c.message).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(
+        said("show = 'range'\nof = 'a'\nresponse = 'UCS'\nband = 0.1"),
+        "`band` has no effect on a figure that shows `range`"
+    );
+    assert_eq!(said("show = 'range'\nof = 'a'"), "`response` names 0, but `range` shows 1");
+    assert_eq!(
+        said("show = 'specimen'\nof = 'a'\nresponse = 'UCS'"),
+        "`response` has no effect on a figure that shows `specimen`"
+    );
+    assert_eq!(
+        said("show = 'contour'\nof = 'a'\nresponse = 'x'\nfactors = ['Ec', 'y']"),
+        "there is no [response.x]; there is no [factor.y]"
+    );
+    assert_eq!(
+        said("show = 'agreement'\nof = ['a', 'b']\nresponse = 'UCS'\ncompare = 'c'"),
+        "`of` names 2 stages and `compare` 1; they are compared in pairs"
+    );
+    assert!(said("show = 'specimen'\nof = 'a'\nwidth = '9 mm'").contains("9 mm is no width"));
+    assert!(said("show = 'specimen'\nof = 'a'\nnames = { UCS = '$\\\\sgma$' }").contains("unknown command"));
+}
+
+#[test]
+fn what_an_input_lacks_is_named() {
+    let said = |text: &str, from: Artifact| match made(text, &[from], &[]) {
+        Err(Failure::Failed(e)) => format!("{} ({})", e.message, e.hint.unwrap_or_default()),
+        other => panic!("{other:?}"),
+    };
+    let residuals = "show = 'residuals'\nof = 'a'\nresponse = 'UCS'";
+    assert_eq!(said(residuals, anova()), "the artifact `anova` holds no table `residuals` (it holds anova)");
+    let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec', 'null']";
+    assert_eq!(said(contour, surfaces()), "the surface of `UCS` does not depend on `null` (it depends on Ec, mu)");
+}

@@ -1,0 +1,96 @@
+//! What fitted models say of chosen points, and the way up and down from the centre of each surface.
+
+use super::super::columns::Rows;
+use super::super::{Complaint, Context};
+use super::{Fitting, named};
+use crate::artifact::Table;
+use crate::stats::canonical::steepest_path;
+use crate::stats::model::Prediction;
+use crate::stats::regression::Regression;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Points at which models are asked, and how sure the intervals are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Predict {
+    /// Points as values of factors in their units; a response is predicted where all factors of its model are given.
+    pub at: Vec<BTreeMap<String, f64>>,
+    /// Coverage of confidence and prediction intervals.
+    #[serde(default = "confidence")]
+    pub confidence: f64,
+}
+
+fn confidence() -> f64 {
+    0.95
+}
+
+/// Complaints about unknown factors and impossible coverages.
+pub(in super::super) fn check_predict(predict: Option<&Predict>, context: &Context) -> Vec<Complaint> {
+    let Some(predict) = predict else { return Vec::new() };
+    let factors: Vec<String> = predict.at.iter().flat_map(|point| point.keys().cloned()).collect();
+    let mut found = super::super::columns::check_names(context, &factors, &[]);
+    found.extend(super::super::columns::check_probability("confidence", predict.confidence));
+    for complaint in &mut found {
+        complaint.path.insert(0, "predict".to_owned());
+    }
+    found
+}
+
+/// One row per response and point.
+pub(super) fn prediction_table(found: &[(&Fitting, Regression)], predict: &Predict) -> Table {
+    let ask = |(fitting, regression): &'_ (&Fitting, Regression), number: usize| {
+        let point: Option<Vec<f64>> =
+            regression.model.axes.iter().map(|axis| predict.at[number].get(&axis.name).copied()).collect();
+        Some((fitting.response.clone(), number, regression.model.predict(&point?, predict.confidence)))
+    };
+    let all: Vec<(String, usize, Prediction)> =
+        found.iter().flat_map(|own| (0..predict.at.len()).filter_map(move |number| ask(own, number))).collect();
+    let rows = Rows(&all);
+    let beyond = |(_, _, p): &(String, usize, Prediction)| match (p.outside.is_empty(), p.far) {
+        (false, _) => format!("{} outside the domain", p.outside.join(", ")),
+        (true, true) => "farther out than any run".to_owned(),
+        (true, false) => String::new(),
+    };
+    named("predictions with intervals; extrapolation is flagged")
+        .texts_column("response", "", rows.texts(|(response, ..)| response.as_str()))
+        .ints_column("point", "counted from 1", rows.ints(|(_, number, _)| number + 1))
+        .reals_column("value", "", "of the model", rows.reals(|(_, _, p)| Some(p.value)))
+        .reals_column("std_error", "", "of the mean response", rows.reals(|(_, _, p)| p.std_error))
+        .reals_column("confidence_low", "", "of the mean response", rows.reals(|(_, _, p)| Some(p.confidence?.0)))
+        .reals_column("confidence_high", "", "of the mean response", rows.reals(|(_, _, p)| Some(p.confidence?.1)))
+        .reals_column("prediction_low", "", "of one new run", rows.reals(|(_, _, p)| Some(p.prediction?.0)))
+        .reals_column("prediction_high", "", "of one new run", rows.reals(|(_, _, p)| Some(p.prediction?.1)))
+        .reals_column("leverage", "", "of the point", rows.reals(|(_, _, p)| Some(p.leverage)))
+        .texts_column("extrapolation", "", rows.texts(beyond))
+}
+
+/// Radii of the steepest paths, in coded units.
+const RADII: [f64; 7] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5];
+
+/// The steepest way up and down from the centre, factor by factor.
+pub(super) fn path_table(found: &[(&Fitting, Regression)]) -> Table {
+    let ways = |(fitting, regression): &(&Fitting, Regression)| {
+        let way = |up: bool| {
+            let points = steepest_path(&regression.model, up, &RADII).unwrap_or_default();
+            let axes: Vec<String> = regression.model.axes.iter().map(|axis| axis.name.clone()).collect();
+            let response = fitting.response.clone();
+            points.into_iter().flat_map(move |point| {
+                let (response, names) = (response.clone(), axes.clone());
+                names.into_iter().enumerate().map(move |(i, factor)| (response.clone(), up, factor, i, point.clone()))
+            })
+        };
+        way(true).chain(way(false)).collect::<Vec<_>>()
+    };
+    let all: Vec<_> = found.iter().flat_map(ways).collect();
+    let rows = Rows(&all);
+    named("best points on spheres about the centre, in coded units")
+        .texts_column("response", "", rows.texts(|(response, ..)| response.as_str()))
+        .texts_column("way", "", rows.texts(|(_, up, ..)| if *up { "up" } else { "down" }))
+        .reals_column("radius", "", "in coded units", rows.reals(|(.., point)| Some(point.radius)))
+        .reals_column("value", "", "the surface there", rows.reals(|(.., point)| Some(point.value)))
+        .texts_column("factor", "", rows.texts(|(_, _, factor, ..)| factor.as_str()))
+        .reals_column("natural", "", "in the factor's unit", rows.reals(|(_, _, _, i, point)| Some(point.natural[*i])))
+        .reals_column("coded", "", "in coded units", rows.reals(|(_, _, _, i, point)| Some(point.coded[*i])))
+}
