@@ -1,7 +1,7 @@
 //! Direct tension by grips: the balls in a layer at each end move apart at a prescribed speed without turning.
 //!
 //! ```text
-//! layer  = one tenth of the height at each end; L = height − 2 layers
+//! layer  = one tenth of the height at each end; L = distance of the innermost gripped balls
 //! stress = force across the edge of the grips / W, mean of both grips           (tension positive)
 //! strain = separation of the grips / L
 //! lateral: side gauges over the middle half of the height, here contraction positive, so that ν > 0
@@ -41,6 +41,7 @@ pub(super) fn run(
     let rate = test.speed / half;
     set_velocities(&mut engine, |x| [0.0, test.speed * (x[1] / half).clamp(-1.0, 1.0)]);
     let grips = grips(specimen, half);
+    let length = free_length(specimen, &grips);
     for (i, _) in grips.iter().enumerate().filter(|(_, side)| **side != 0) {
         engine.fix(i, true, true);
     }
@@ -49,7 +50,7 @@ pub(super) fn run(
     let marks = [-1, 1].map(|side| grips.iter().position(|&s| s == side));
     let start = separation(&engine, marks);
     let measure = |engine: &Engine<D2>| {
-        let strain = (separation(engine, marks) - start) / (2.0 * half);
+        let strain = (separation(engine, marks) - start) / length;
         [strain, -gauges.strain(|i| engine.position(i)[0]), pull(engine, &grips) / width]
     };
     let run = drive(&mut engine, rate, &test.rule, measure, watch);
@@ -64,6 +65,12 @@ fn grips(specimen: &Specimen, half: f64) -> Vec<i8> {
     let side = |y: f64| if y <= -half { -1 } else { i8::from(y >= half) };
     let of = specimen.clump_of_balls();
     specimen.centres.iter().zip(of).map(|(x, clump)| if clump.is_some() { 0 } else { side(x[1]) }).collect()
+}
+
+/// Distance along y of the innermost balls of the grips (m).
+fn free_length(specimen: &Specimen, grips: &[i8]) -> f64 {
+    let of = |side: i8| specimen.centres.iter().zip(grips).filter(move |(_, grip)| **grip == side).map(|(x, _)| x[1]);
+    of(1).fold(f64::INFINITY, f64::min) - of(-1).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// Distance along y between a ball of each grip (m).

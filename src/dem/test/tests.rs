@@ -52,22 +52,21 @@ fn loading(kind: TestKind, speed: f64) -> Loading {
 
 /// E = 2√3 k_n (k_n + k_s) / (3 k_n + k_s) per unit thickness; for k_s = k_n that is √3 k_n with ν = 0, so that rows
 /// across the load stay unstrained and only one branch of the bilinear contact acts: spring and cement (k_n = 2 E_c) in
-/// compression, cement alone (k_n = E_c) in tension. The free sides cost O(R/W).
+/// compression, cement alone (k_n = E_c) in tension. At the platens a ball of width 2R bears on a spring 2 E_c, which
+/// adds R / E_c to the compliance at each end. Between two rows of n and n − 1 balls stand 2 (n − 1) contacts, not 2 n;
+/// the balls at the free sides turn, which is the tolerance.
 #[test]
 fn a_hexagonal_lattice_has_its_modulus_in_compression_and_in_tension() {
-    let (modulus, specimen) = (1e9, hexagon(24, 41));
+    let (modulus, specimen) = (1e9, hexagon(40, 41));
     let material = material(modulus, 1.0, 1e6);
-    let compressed = run(&loading(TestKind::Uniaxial, 0.5), &specimen, &material);
-    let expected = 2.0 * 3.0_f64.sqrt() * modulus;
-    assert!((compressed.values.modulus_secant / expected - 1.0).abs() < 0.04, "{:?}", compressed.values);
-    assert!(compressed.values.poisson_secant.abs() < 0.02, "{:?}", compressed.values);
-    let mut pulled = loading(TestKind::Tension, 0.5);
-    pulled.rule.seating_stress = 1e5;
-    let pulled = run(&pulled, &specimen, &material);
-    assert!((pulled.values.modulus_secant / (0.5 * expected) - 1.0).abs() < 0.04, "{:?}", pulled.values);
-    // First break of a perfect lattice: σ_c 2√3 (k_n + k_s)/(2 k_n + k_s) · ½ … here by the pull on inclined bonds alone,
-    // whose shear limits it: an upper and a lower bound of the peak.
-    assert!(pulled.values.strength > 0.5e6 && pulled.values.strength < 2.4e6, "{:?}", pulled.values);
+    let height = specimen.region.extent()[1];
+    let lattice = 2.0 * 3.0_f64.sqrt() * modulus * 39.0 / 40.0;
+    let mounted = height / ((height - 2.0) / lattice + 2.0 / modulus);
+    let compressed = run(&loading(TestKind::Uniaxial, 0.02), &specimen, &material).values;
+    assert!((compressed.modulus_secant / mounted - 1.0).abs() < 0.03, "{compressed:?} {mounted}");
+    assert!(compressed.poisson_secant.abs() < 0.05, "{compressed:?}");
+    let pulled = run(&loading(TestKind::Tension, 0.02), &specimen, &material).values;
+    assert!((pulled.modulus_secant / (0.5 * lattice) - 1.0).abs() < 0.03, "{pulled:?}");
 }
 
 #[test]
@@ -87,15 +86,16 @@ fn a_random_specimen_fails_with_a_record_and_the_same_bits_every_time() {
     assert!(a.judgement.warnings(test.speed).len() == 2, "{:?}", a.judgement);
 }
 
-/// Moduli and strengths scaled together scale E and strength alike (quasi-static, so at equal speed over wave speed).
+/// With moduli and strengths times 4 and speed times 2 every number of the run scales by a power of two: the time step
+/// halves, forces grow fourfold, and the results follow to the last bit.
 #[test]
 fn strength_and_modulus_scale_with_their_microparameters() {
     let specimen = small();
     let base = run(&loading(TestKind::Uniaxial, 0.2), &specimen, &material(20e9, 2.5, 20e6)).values;
-    let twice = run(&loading(TestKind::Uniaxial, 0.2 * 2.0_f64.sqrt()), &specimen, &material(40e9, 2.5, 40e6)).values;
-    assert!((twice.strength / base.strength / 2.0 - 1.0).abs() < 1e-3, "{base:?} {twice:?}");
-    assert!((twice.modulus_tangent / base.modulus_tangent / 2.0 - 1.0).abs() < 1e-3);
-    assert!((twice.poisson_secant / base.poisson_secant - 1.0).abs() < 1e-3);
+    let scaled = run(&loading(TestKind::Uniaxial, 0.4), &specimen, &material(80e9, 2.5, 80e6)).values;
+    assert_eq!(scaled.strength, 4.0 * base.strength);
+    assert_eq!(scaled.modulus_tangent, 4.0 * base.modulus_tangent);
+    assert_eq!(scaled.poisson_secant, base.poisson_secant);
 }
 
 #[test]
@@ -114,7 +114,9 @@ fn an_outline_that_does_not_fit_names_the_remedy() {
     assert!(matches!(error.unwrap_err(), TestError::Outline { wanted: "rectangle", .. }));
 }
 
-/// Centre of an elastic disc: compression 6F/(πD) along the load, tension 2F/(πD) across it.
+/// Elastic disc under point loads: at the centre compression 3 along the load and tension 1 across it, in units of
+/// 2F/(πD); the mean of that field over the inner 0.4 D is 2.84 and 0.84. The packing's noise and its lower stiffness in
+/// tension are the tolerance.
 #[test]
 fn an_unbroken_disc_has_the_elastic_stresses_at_its_centre() {
     let diameter = 0.1;
@@ -127,9 +129,8 @@ fn an_unbroken_disc_has_the_elastic_stresses_at_its_centre() {
     let unit = 2.0 * force / (std::f64::consts::PI * diameter);
     let region = measure::Region::<D2>::Ball { centre: [0.0, 0.0], radius: 0.2 * diameter };
     let found = stress(&engine, &region);
-    // Mean over a disc of 0.4 D: Hondros' field is within 10 % of the centre's there; the packing adds its noise.
-    assert!((found[1][1] / (3.0 * unit) - 1.0).abs() < 0.2, "{} {}", found[1][1] / unit, found[0][0] / unit);
-    assert!((found[0][0] / -unit - 1.0).abs() < 0.35, "{} {}", found[1][1] / unit, found[0][0] / unit);
+    let (along, across) = (found[1][1] / unit, -found[0][0] / unit);
+    assert!((along - 2.84).abs() < 0.25 && (across - 0.84).abs() < 0.25, "{along} {across}");
 }
 
 #[test]
