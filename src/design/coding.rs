@@ -97,7 +97,8 @@ impl Factor {
         if (coded - whole).abs() < SNAP { whole + 0.0 } else { coded }
     }
 
-    /// Natural value of a coded one. Exactly the declared level or end of the range where it is one up to rounding.
+    /// Natural value of a coded one: exactly the declared level or end of the range where it is one up to rounding, else rounded to
+    /// twelve digits, so that a table reads 3.025 and not 3.0250000000000004.
     pub fn natural(&self, coded: f64) -> f64 {
         let value = self.centre() + self.half() * coded;
         let near = |known: &f64| (value - known).abs() <= SNAP * self.half().max(known.abs());
@@ -105,7 +106,7 @@ impl Factor {
             Domain::Levels(levels) => levels.iter().copied().find(near),
             Domain::Range { low, high } => [*low, *high].into_iter().find(near),
         };
-        known.unwrap_or(value) + 0.0
+        known.unwrap_or_else(|| format!("{value:.11e}").parse().unwrap_or(value)) + 0.0
     }
 
     /// Faults of this factor alone.
@@ -209,6 +210,7 @@ mod tests {
         let f = Factor::levels("kn_ks", "", &[1.0, 2.5, 4.0]);
         assert_eq!([f.coded(1.0), f.coded(2.5), f.coded(4.0), f.coded(1.75)], [-1.0, 0.0, 1.0, -0.5]);
         assert_eq!(f.natural(0.0).to_bits(), 2.5_f64.to_bits());
+        assert_eq!(Factor::range("kn_ks", "", 1.0, 4.0).natural(0.35), 3.025);
     }
 
     #[test]

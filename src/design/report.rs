@@ -92,7 +92,13 @@ pub fn report(table: &DesignTable, question: Question) -> Report {
 /// At most this many terms are named in a line of words.
 const NAMED: usize = 12;
 /// At most so many aliases of one main effect are listed, the largest first.
-const ALIASES: usize = 20;
+const ALIASES: usize = 8;
+
+/// Rounds to twelve decimals: beyond them stands the rounding of the sums, and 1 should read as 1.
+fn tidy(x: f64) -> f64 {
+    let rounded = (x * 1e12).round() / 1e12;
+    if x.abs() < 1e3 { rounded + 0.0 } else { x }
+}
 
 /// `a, b, c … (9 in all)`.
 fn named(names: &[String]) -> String {
@@ -129,7 +135,13 @@ impl Report {
         };
         let pairs = b.disproportional_pairs.map_or(f64::NAN, |n| n as f64);
         line("orthogonality", "", "pairs without proportional frequencies", pairs, words);
-        line("orthogonality", "", "strength", b.strength.map_or(f64::NAN, |s| s as f64), String::new());
+        let words = match b.strength {
+            None => "not asked of a sample",
+            Some(0) => "the levels of some factor are not met equally often",
+            Some(1) => "levels are met equally often, pairs of them are not",
+            Some(_) => "so many factors together are a full factorial, equally often",
+        };
+        line("orthogonality", "", "strength", b.strength.map_or(f64::NAN, |s| s as f64), words.into());
         for m in &self.models {
             m.lines(&mut line);
         }

@@ -189,6 +189,40 @@ fn the_64_run_table_of_three_levels_is_exactly_proportional() {
     assert!(t.construction.ends_with("merged levels, level 1 met most often"));
 }
 
+/// Third element of the generalized word-length pattern of the tables as others print them (`generate.py`, from the files of
+/// pyDOE3, which took them from Taguchi's and Sloane's collections).
+#[test]
+fn word_lengths_are_those_of_the_published_tables() {
+    let published = [
+        ("L8(2^7)", 7.0),
+        ("L9(3^4)", 8.0),
+        ("L12(2^11)", 55.0 / 3.0),
+        ("L16(2^15)", 35.0),
+        ("L16(4^5)", 30.0),
+        ("L18(3^6 6^1)", 40.0),
+        ("L25(5^6)", 80.0),
+        ("L32(2^1 4^9)", 104.0),
+        ("L36(2^11 3^12)", 583.0 / 3.0),
+        ("L50(2^1 5^11)", 280.0),
+        ("L54(2^1 3^25)", 400.0),
+        ("L64(4^21)", 630.0),
+        ("L81(3^40)", 1040.0),
+    ];
+    for (table, a3) in published {
+        let (_, columns) = parse(table).unwrap();
+        let levels: Vec<usize> = columns.unwrap().iter().flat_map(|(s, n)| vec![*s; *n]).collect();
+        let array = named(table).table(&factors(&levels)).unwrap().array;
+        let c = &array.columns;
+        let mut sum = 0.0;
+        for i in 0..c.len() {
+            for j in 0..i {
+                sum += (0..j).map(|k| array::entanglement(&c[i], &c[j], &c[k])).sum::<f64>();
+            }
+        }
+        assert!((sum - a3).abs() < 1e-9, "{table}: {sum}");
+    }
+}
+
 #[test]
 fn surplus_levels_are_dealt_out_evenly() {
     let balance = |t: &DesignTable, levels: usize| -> Vec<usize> {

@@ -6,6 +6,7 @@
 //! ±1/3 and the like.
 
 use super::model::{Kind, Model};
+use super::tidy;
 use crate::design::table::DesignTable;
 
 /// One entry of the alias matrix.
@@ -40,6 +41,7 @@ pub fn aliases(table: &DesignTable) -> Option<Vec<Alias>> {
             let column: Vec<f64> = table.coded.iter().map(|r| r[a] * r[b]).collect();
             let with = || if a == b { format!("{}^2", name(a)) } else { format!("{}*{}", name(a), name(b)) };
             for (&term, coefficient) in model.independent.iter().zip(model.fit(&column)) {
+                let coefficient = tidy(coefficient);
                 if coefficient.abs() > NOTHING && term > 0 {
                     found[term].push(Alias { main: model.terms[term].clone(), with: with(), coefficient });
                 }

@@ -1,6 +1,6 @@
 //! How often levels stand, alone and together.
 
-use crate::design::table::DesignTable;
+use crate::design::table::{DesignTable, PointType};
 
 /// How often each value of a factor stands.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,11 +20,13 @@ pub struct Balance {
     pub largest_correlation: f64,
     /// The pair that has it.
     pub worst: Option<(String, String)>,
-    /// Number of pairs of factors without proportional frequencies; none for a sample, where every value is its own level.
+    /// Number of pairs of factors without proportional frequencies, centre points left aside; none for a sample, where every value is its own
+    /// level.
     pub disproportional_pairs: Option<usize>,
     /// The first such pair.
     pub disproportional: Option<(String, String)>,
-    /// Any so many factors together show all combinations of their levels equally often; none where it was too much to count.
+    /// Any so many factors together show all combinations of their levels equally often, centre points left aside; none for a sample
+    /// and where it was too much to count.
     pub strength: Option<usize>,
 }
 
@@ -34,30 +36,49 @@ pub(super) const MOST_LEVELS: usize = 32;
 const MOST_CELLS: u64 = 50_000_000;
 
 /// The level (by ascending value) of a factor in each run, and the values.
-pub(super) fn levels(table: &DesignTable, factor: usize) -> (Vec<usize>, Vec<f64>) {
-    let mut values: Vec<f64> = table.natural.iter().map(|r| r[factor]).collect();
+type Levels = (Vec<usize>, Vec<f64>);
+
+/// The levels of a factor.
+pub(super) fn levels(table: &DesignTable, factor: usize) -> Levels {
+    classes(table.natural.iter().map(|r| r[factor]).collect())
+}
+
+/// The levels of a factor over the runs that are no centre points.
+fn without_centre(table: &DesignTable, factor: usize) -> Levels {
+    let runs = table.natural.iter().zip(&table.point_type).filter(|(_, p)| **p != PointType::Centre);
+    classes(runs.map(|(r, _)| r[factor]).collect())
+}
+
+fn classes(cells: Vec<f64>) -> Levels {
+    let mut values = cells.clone();
     values.sort_by(f64::total_cmp);
     values.dedup();
-    let place = |r: &Vec<f64>| values.partition_point(|v| v.total_cmp(&r[factor]).is_lt());
-    (table.natural.iter().map(place).collect(), values)
+    let place = |x: f64| values.partition_point(|v| v.total_cmp(&x).is_lt());
+    (cells.into_iter().map(place).collect(), values)
 }
 
 /// Balance and orthogonality.
 pub fn balance(table: &DesignTable) -> Balance {
-    let columns: Vec<(Vec<usize>, Vec<f64>)> = (0..table.factors.len()).map(|j| levels(table, j)).collect();
-    let counts = |(cells, values): &(Vec<usize>, Vec<f64>)| {
+    let all_runs: Vec<Levels> = (0..table.factors.len()).map(|j| levels(table, j)).collect();
+    let columns: Vec<Levels> = (0..table.factors.len()).map(|j| without_centre(table, j)).collect();
+    let counts = |(cells, values): &Levels| {
         let mut counts: Vec<(f64, usize)> = values.iter().map(|&v| (v, 0)).collect();
         cells.iter().for_each(|&level| counts[level].1 += 1);
         counts
     };
     let name = |j: usize| table.factors[j].name.clone();
-    let all: Vec<Vec<(f64, usize)>> = columns.iter().map(counts).collect();
+    let of_columns: Vec<Vec<(f64, usize)>> = columns.iter().map(counts).collect();
     let (largest_correlation, worst) = correlation(table);
-    let discrete = columns.iter().all(|(_, values)| values.len() <= MOST_LEVELS);
-    let bad = discrete.then(|| disproportional(&columns, &all));
+    let sampled = table.point_type.contains(&PointType::Sample);
+    let discrete = !sampled && columns.iter().all(|(_, values)| values.len() <= MOST_LEVELS);
+    let bad = discrete.then(|| disproportional(&columns, &of_columns));
     let first = bad.as_ref().and_then(|b| b.first()).map(|&(a, b)| (name(a), name(b)));
     Balance {
-        factors: all.iter().enumerate().map(|(j, c)| FactorBalance { factor: name(j), counts: c.clone() }).collect(),
+        factors: all_runs
+            .iter()
+            .enumerate()
+            .map(|(j, c)| FactorBalance { factor: name(j), counts: counts(c) })
+            .collect(),
         largest_correlation,
         worst: worst.map(|(a, b)| (name(a), name(b))),
         disproportional_pairs: bad.map(|b| b.len()),
@@ -90,7 +111,7 @@ fn correlation(table: &DesignTable) -> (f64, Option<(usize, usize)>) {
 }
 
 /// Pairs of factors for which some n_ab N differs from n_a n_b.
-fn disproportional(columns: &[(Vec<usize>, Vec<f64>)], counts: &[Vec<(f64, usize)>]) -> Vec<(usize, usize)> {
+fn disproportional(columns: &[Levels], counts: &[Vec<(f64, usize)>]) -> Vec<(usize, usize)> {
     let runs = columns.first().map_or(0, |c| c.0.len());
     let proportional = |a: usize, b: usize| {
         let wide = counts[b].len();
@@ -103,7 +124,7 @@ fn disproportional(columns: &[(Vec<usize>, Vec<f64>)], counts: &[Vec<(f64, usize
 }
 
 /// Largest t such that every t factors are a full factorial, equally often. Stops where it would take too long.
-fn strength(columns: &[(Vec<usize>, Vec<f64>)]) -> Option<usize> {
+fn strength(columns: &[Levels]) -> Option<usize> {
     let runs = columns.first().map_or(0, |c| c.0.len());
     let mut work = runs as u64;
     for t in 1..=columns.len() {
@@ -118,7 +139,7 @@ fn strength(columns: &[(Vec<usize>, Vec<f64>)]) -> Option<usize> {
     Some(columns.len())
 }
 
-fn is_factorial(columns: &[(Vec<usize>, Vec<f64>)], chosen: &[usize], runs: usize) -> bool {
+fn is_factorial(columns: &[Levels], chosen: &[usize], runs: usize) -> bool {
     let cells = chosen.iter().fold(1_usize, |cells, &c| cells.saturating_mul(columns[c].1.len()));
     if cells == 0 || !runs.is_multiple_of(cells) {
         return false;

@@ -10,8 +10,8 @@
 //!   doi:10.1002/0471725153), by one-sided Jacobi rotations of R (Hestenes 1958, doi:10.1137/0106005)
 
 use super::balance::{MOST_LEVELS, levels};
-use super::named;
-use crate::design::table::DesignTable;
+use super::{named, tidy};
+use crate::design::table::{DesignTable, PointType};
 
 /// A kind of model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,13 +37,16 @@ impl Kind {
         }
     }
 
-    /// Whether the model means something for this table: classes need few values, other than two somewhere; a product needs two factors;
-    /// squares need a third value of some factor.
+    /// Whether the model means something for this table: classes need a table of levels; a product needs two factors; squares need a
+    /// third value of some factor.
     pub fn applies(self, table: &DesignTable) -> bool {
         let counts = || (0..table.factors.len()).map(|j| levels(table, j).1.len());
+        let of_levels = |p: &PointType| matches!(p, PointType::Cube | PointType::Grid | PointType::Given);
         match self {
             Self::Main => true,
-            Self::Levels => counts().all(|n| n <= MOST_LEVELS) && counts().any(|n| n > 2),
+            Self::Levels => {
+                table.point_type.iter().all(of_levels) && counts().all(|n| n <= MOST_LEVELS) && counts().any(|n| n > 2)
+            }
             Self::Interactions => table.factors.len() > 1,
             Self::SecondOrder => counts().any(|n| n > 2),
         }
@@ -217,7 +220,7 @@ impl Model {
     pub fn report(&self) -> ModelReport {
         let mut largest: Option<(String, f64)> = None;
         for (i, &term) in self.independent.iter().enumerate().skip(1) {
-            let inflation = self.covariance(i, i) * self.about_mean[i];
+            let inflation = tidy(self.covariance(i, i) * self.about_mean[i]);
             if largest.as_ref().is_none_or(|(_, most)| inflation > *most) {
                 largest = Some((self.terms[term].clone(), inflation));
             }
@@ -230,7 +233,7 @@ impl Model {
             residual_df: if self.judged { self.runs - self.independent.len() } else { 0 },
             missing: missing.map(|t| self.terms[t].clone()).collect(),
             largest_inflation: largest,
-            condition: condition(&self.scaled),
+            condition: tidy(condition(&self.scaled)),
         }
     }
 }
@@ -254,6 +257,9 @@ impl ModelReport {
         };
         line("model", words, "rank", rank as f64, verdict);
         line("model", words, "residual df", self.residual_df as f64, String::new());
+        if !self.estimable() {
+            return;
+        }
         if let Some((term, inflation)) = &self.largest_inflation {
             line("model", words, "largest variance inflation", *inflation, term.clone());
         }

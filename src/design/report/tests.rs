@@ -68,6 +68,11 @@ fn resolution_five_leaves_main_effects_and_interactions_clear() {
     let design = FractionalFactorial { runs: Some(16), ..Default::default() };
     let r = judged(Method::FractionalFactorial(design), &[2; 5]);
     assert_eq!((r.aliases.as_deref(), r.balance.strength), (Some([].as_slice()), Some(4)));
+    let design = FractionalFactorial { runs: Some(16), centre_points: 3, ..Default::default() };
+    let with_centre = judged(Method::FractionalFactorial(design), &[2; 5]);
+    assert_eq!((with_centre.balance.strength, with_centre.balance.disproportional_pairs), (Some(4), Some(0)));
+    assert_eq!(with_centre.balance.factors[0].counts, [(0.0, 8), (0.5, 3), (1.0, 8)]);
+    assert_eq!(with_centre.power_model, Some(Kind::Interactions));
     let inter = model(&r, Kind::Interactions);
     assert_eq!((inter.rank, inter.residual_df), (Some(16), 0));
     // no degrees of freedom beside the interactions: power is that of the main effects

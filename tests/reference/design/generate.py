@@ -4,7 +4,7 @@ Run with numpy 2.4.6, scipy 1.17.1, statsmodels 0.15.0, pyDOE3 1.6.2:  python3 g
 """
 
 import pathlib
-from itertools import permutations
+from itertools import combinations, permutations
 
 import numpy as np
 import pyDOE3
@@ -73,8 +73,24 @@ def surface():
         print(name, "largest VIF", repr(float(vif)), "condition", repr(float(np.linalg.cond(m / np.linalg.norm(m, axis=0)))))
 
 
+def word_lengths():
+    """A3 of the generalized word-length pattern of published orthogonal arrays (Xu & Wu 2001)."""
+    names = ["L8(2^7)", "L9(3^4)", "L12(2^11)", "L16(2^15)", "L16(4^5)", "L18(6^1 3^6)", "L25(5^6)", "L32(2^1 4^9)"]
+    for name in names + ["L36(3^23)", "L50(2^1 5^11)", "L54(2^1 3^25)", "L64(4^21)", "L81(3^40)"]:
+        a = pyDOE3.get_orthogonal_array(name).astype(int)
+        n, k = a.shape
+        cells = [np.unique(a[:, j], return_inverse=True)[1] for j in range(k)]
+        s = [c.max() + 1 for c in cells]
+        total = 0
+        for x, y, z in combinations(range(k), 3):
+            counts = np.bincount((cells[x] * s[y] + cells[y]) * s[z] + cells[z], minlength=s[x] * s[y] * s[z])
+            total += (counts.astype(float) ** 2).sum() * len(counts) / n**2 - 1
+        print(name, total)
+
+
 sobol()
 maximin()
+word_lengths()
 power()
 discrepancy()
 surface()
