@@ -3,7 +3,7 @@
 use super::board::{Board, NodeId};
 use crate::artifact::{Artifact, ContentHash, Key};
 use crate::stage::{Failure, Job, Progress, StageError, Task, work};
-use crate::store::{Claim, Store, Timing};
+use crate::store::{Claim, Guard, Store, Timing};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Instant, SystemTime};
@@ -54,9 +54,7 @@ impl Order {
         loop {
             match store.claim(&key).map_err(failure)? {
                 Claim::Done(record) => return Ok(Finished { content: record.content, shared: true, seconds: 0.0 }),
-                Claim::Mine(_guard) => {
-                    return self.compute(store, say, stop);
-                }
+                Claim::Mine(claim) => return self.compute(store, claim, say, stop),
                 Claim::Theirs(waiting) => {
                     say(Progress { fraction: None, note: format!("waits for {}", waiting.holder_now()) });
                     if !waiting.wait(|| stop.load(Ordering::Relaxed)) {
@@ -67,7 +65,13 @@ impl Order {
         }
     }
 
-    fn compute(&self, store: &Store, say: &(dyn Fn(Progress) + Sync), stop: &AtomicBool) -> Result<Finished, Failure> {
+    fn compute(
+        &self,
+        store: &Store,
+        claim: Guard,
+        say: &(dyn Fn(Progress) + Sync),
+        stop: &AtomicBool,
+    ) -> Result<Finished, Failure> {
         let Some(work) = work(self.task.work) else { panic!("BUG: no work is called `{}`", self.task.work) };
         let job = Job {
             params: &self.task.params,
@@ -82,7 +86,7 @@ impl Order {
         let (started, clock) = (SystemTime::now(), Instant::now());
         let artifact = (work.run)(&job)?;
         let timing = Timing { started, seconds: clock.elapsed().as_secs_f64() };
-        let (record, _) = store.put(&self.text, artifact, &timing).map_err(failure)?;
+        let (record, _) = store.finish(claim, &self.text, artifact, &timing).map_err(failure)?;
         Ok(Finished { content: record.content, shared: false, seconds: timing.seconds })
     }
 }

@@ -105,7 +105,8 @@ fn stand_in() {
         for batch in [1, 4] {
             let reps: usize = std::env::var("REPS").map_or(100, |v| v.parse().expect("n"));
             let clock = Instant::now();
-            let results: Vec<[f64; 4]> = (0..reps).map(|i| calibrate(i % 5, i as u64, earlier, budget, batch)).collect();
+            let results: Vec<[f64; 4]> =
+                (0..reps).map(|i| calibrate(i % 5, i as u64, earlier, budget, batch)).collect();
             let column = |k: usize| {
                 let mut values: Vec<f64> = results.iter().map(|r| r[k]).collect();
                 values.sort_by(f64::total_cmp);
@@ -136,7 +137,8 @@ fn calibrate(set: usize, seed: u64, earlier: usize, budget: usize, batch: usize)
         .collect();
     let settings = surrogate::Settings { batch, tolerance: 0.0, ..Default::default() };
     let limits = Limits { evaluations: Some(budget), ..Default::default() };
-    let mut search = Search::new(&problem, &Method::Surrogate(settings), &limits, seed, &Knowledge { earlier, trend: None });
+    let mut search =
+        Search::new(&problem, &Method::Surrogate(settings), &limits, seed, &Knowledge { earlier, trend: None });
     let (mut first, mut last_bad, mut at) = (f64::INFINITY, 0.0, [f64::NAN; 2]);
     loop {
         let state = search.state();
