@@ -180,8 +180,8 @@ fn rows_of_a_file_are_converted_to_the_factors_units() {
     let table = data::parse(b"note,Ec [MPa],kn_ks\na,10000,2.5\nb,20000,1\n").unwrap();
     let design = stage("method = \"given\"\nfile = \"rows.csv\"\nfactors = [\"Ec\", \"kn_ks\"]");
     let factors = design.factors(&context());
-    assert_eq!(rows(&table, &factors).unwrap(), [[10.0, 2.5], [20.0, 1.0]]);
-    let message = |text: &[u8]| rows(&data::parse(text).unwrap(), &factors).unwrap_err().message;
+    assert_eq!(rows(&table, &factors, false).unwrap(), [[10.0, 2.5], [20.0, 1.0]]);
+    let message = |text: &[u8]| rows(&data::parse(text).unwrap(), &factors, false).unwrap_err().message;
     assert!(message(b"Ec [mm],kn_ks\n1,2\n").contains("in `mm`, the factor in `GPa`"));
     assert!(message(b"Ec [GPa]\n1\n").contains("no column `kn_ks`"));
     assert!(message(b"Ec [GPa],kn_ks\n1,x\n").contains("holds texts"));
