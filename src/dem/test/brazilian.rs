@@ -8,8 +8,7 @@
 //! An elastic disc has tension 2F/(πDt) and compression 6F/(πDt) at its centre; σ_t is the tensile strength only if the
 //! disc fails there. Checks of the record:
 //! * at least half of the cracks up to the peak lie within a tenth of the diameter of the loaded diameter;
-//! * the disc has not rotated by more than one degree up to the peak (least-squares rotation of all balls);
-//! * the platen forces differ by less than a tenth at the end of the record's climb.
+//! * the disc has not rotated by more than one degree up to the peak (least-squares rotation of all balls).
 //!
 //! The disc has no modulus or Poisson's ratio: these values are NaN.
 //!

@@ -11,6 +11,7 @@ use super::material::Material;
 use super::rig::Machine;
 use super::snapshot::{Ladder, Snapshot};
 use crate::dem::genesis::specimen::Specimen;
+use crate::dem::measure::{Energy, energy};
 use crate::dem::{D2, Engine, Failure, Faults, Watch};
 use serde::{Deserialize, Serialize};
 
@@ -160,6 +161,8 @@ pub struct Run {
     pub cracks: Vec<CrackEvent>,
     /// States kept.
     pub snapshots: Vec<Snapshot>,
+    /// Energies at some axial strains, from the start of loading on.
+    pub energies: Vec<(f64, Energy)>,
     /// Why it is not complete, if so.
     pub failure: Option<TestFailure>,
     /// Whether the watcher stopped it.
@@ -169,6 +172,9 @@ pub struct Run {
     /// First time step (s).
     pub time_step: f64,
 }
+
+/// Samples between two readings of the energies.
+const ENERGY_EVERY: usize = 25;
 
 /// Loads until the rule ends the test. `rate` is the strain rate at the start (1/s), `measure` reads axial strain,
 /// lateral strain and stress; `watch` sees every sample and may interrupt.
@@ -183,6 +189,7 @@ pub fn drive(
         samples: vec![Sample::default()],
         cracks: Vec::new(),
         snapshots: Vec::new(),
+        energies: Vec::new(),
         failure: None,
         interrupted: false,
         steps: 0,
@@ -190,6 +197,7 @@ pub fn drive(
     };
     let mut ladder = Ladder::default();
     let mut largest = 0.0_f64;
+    engine.keep_books();
     loop {
         let before = (engine.steps(), run.samples[run.samples.len() - 1].axial);
         let every = (rule.sample_strain / (rate * engine.time_step())).max(1.0) as u64;
@@ -204,6 +212,9 @@ pub fn drive(
         run.samples.push(sample);
         ladder.offer(&sample, || state(engine));
         largest = largest.max(stress);
+        if run.samples.len() % ENERGY_EVERY == 0 {
+            run.energies.push((axial, energy(engine)));
+        }
         if watch(&sample) == Watch::Stop {
             run.interrupted = true;
             break;
@@ -219,6 +230,7 @@ pub fn drive(
     run.steps = engine.steps();
     let top = peak(&run.samples).map_or(0.0, |k| run.samples[k].stress);
     let last = run.samples[run.samples.len() - 1];
+    run.energies.push((last.axial, energy(engine)));
     run.snapshots = ladder.keep(top, &rule.snapshots, Snapshot::new(&last, state(engine)));
     run
 }

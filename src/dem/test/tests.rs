@@ -83,6 +83,8 @@ fn a_random_specimen_fails_with_a_record_and_the_same_bits_every_time() {
     assert!(last.stress <= 0.75 * a.values.strength && a.run.cracks.len() == last.cracks);
     assert_eq!(a.run.snapshots.len(), 4);
     assert!(a.run.cracks.windows(2).all(|pair| pair[0].strain <= pair[1].strain));
+    let books = a.run.energies.last().unwrap().1;
+    assert!(books.imbalance().abs() < 0.02 && books.boundary > 0.0, "{books:?}");
     assert!(a.judgement.warnings(test.speed).len() == 2, "{:?}", a.judgement);
 }
 

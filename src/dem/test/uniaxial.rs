@@ -1,6 +1,6 @@
 //! Uniaxial compression between two platens.
 //!
-//! Two rigid platens approach each other, each at `platen_speed`; their contacts have the mortar's modulus and
+//! Two rigid platens approach each other, each at the speed v; their contacts have the mortar's modulus and
 //! stiffness ratio and the platens' own friction (0 by default). The specimen starts free of force with the velocity
 //! field of uniform axial shortening, v_y = −2 v y / H, so that no shock runs through it at the start.
 //!

@@ -24,6 +24,7 @@ use crate::artifact::Artifact;
 use crate::artifact::specimen::Specimen as Stored;
 use crate::dem::Watch;
 use crate::dem::test::curve::Sample;
+use crate::dem::test::uniaxial;
 use crate::math::random::Stream;
 use config::Params;
 use serde_json::{Value, json};
@@ -103,6 +104,10 @@ const REPORT_EVERY: usize = 50;
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let specimen = super::specimen::load(job.input("specimen")?)?;
+    let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
+    for warning in uniaxial::warnings(&params.test, &specimen, &params.material).map_err(|faults| fail(&faults))? {
+        (job.say)(Progress { fraction: None, note: warning.to_string() });
+    }
     let mut seen = 0;
     let mut watch = |sample: &Sample| {
         seen += 1;
@@ -113,10 +118,7 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
         if job.stopped() { Watch::Stop } else { Watch::Continue }
     };
     let seed = job.seed.unwrap_or_default();
-    let record = params
-        .test
-        .run(&specimen, &params.material, seed, &mut watch)
-        .map_err(|fault| StageError::new(fault.to_string()))?;
+    let record = params.test.run(&specimen, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
     if record.run.interrupted {
         return Err(Failure::Stopped);
     }

@@ -2,7 +2,7 @@
 
 use super::super::rows::response_table;
 use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
-use crate::dem::measure::Mode;
+use crate::dem::measure::{Energy, Mode};
 use crate::dem::test::crack::{CrackEvent, CrackGroup};
 use crate::dem::test::curve::{Sample, thinned};
 use crate::dem::test::loading::{Loading, TestKind, TestRecord};
@@ -21,6 +21,7 @@ pub(super) fn artifact(record: &TestRecord, test: &Loading) -> Artifact {
         .with("judgement", Node::Table(judgement(record)))
         .with("checks", Node::Table(checks(record)))
         .with("curve", Node::Table(curve(record)))
+        .with("energies", Node::Table(energies(&record.run.energies)))
         .with("cracks", Node::Table(cracks(&record.run.cracks)))
         .with("snapshots", Node::Group(snapshots(&record.run.snapshots)));
     Artifact::new("run", 1, root)
@@ -103,6 +104,19 @@ fn curve(record: &TestRecord) -> Table {
         .reals_column("lateral_strain", "", "extension positive", of(|s| s.lateral))
         .reals_column("volumetric_strain", "", "contraction positive", of(|s| s.axial - s.lateral))
         .ints_column("cracks", "broken bonds so far", samples.iter().map(|s| s.cracks as i64).collect())
+}
+
+fn energies(energies: &[(f64, Energy)]) -> Table {
+    let of = |pick: fn(&Energy) -> f64| energies.iter().map(|(_, energy)| pick(energy)).collect::<Vec<f64>>();
+    table("energies per metre of thickness since the start of loading")
+        .reals_column("axial_strain", "", "", energies.iter().map(|(strain, _)| *strain).collect())
+        .reals_column("boundary", "J", "given by platens or grips", of(|e| e.boundary))
+        .reals_column("kinetic", "J", "with the masses that move the bodies", of(|e| e.kinetic))
+        .reals_column("spring", "J", "stored in linear springs", of(|e| e.spring))
+        .reals_column("bond", "J", "stored in bonds", of(|e| e.bond))
+        .reals_column("broken", "J", "lost with the bonds that broke", of(|e| e.broken))
+        .reals_column("slip", "J", "spent by friction", of(|e| e.slip))
+        .reals_column("damping", "J", "spent by local damping", of(|e| e.damping))
 }
 
 fn cracks(cracks: &[CrackEvent]) -> Table {
