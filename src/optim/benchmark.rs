@@ -7,17 +7,17 @@ use crate::math::elementary::{cos, exp};
 use crate::math::random::Stream;
 
 /// The names of the methods, in the order of the tables.
-pub const METHODS: [&str; 5] = ["genetic", "annealing", "differential", "cma-es", "surrogate"];
+pub(crate) const METHODS: [&str; 5] = ["genetic", "annealing", "differential", "cma-es", "surrogate"];
 
 /// A standard function: name, range of every coordinate, value (0 at the minimum).
-pub struct Standard {
-    pub name: &'static str,
-    pub range: (f64, f64),
-    pub value: fn(&[f64]) -> f64,
+pub(crate) struct Standard {
+    pub(crate) name: &'static str,
+    pub(crate) range: (f64, f64),
+    pub(crate) value: fn(&[f64]) -> f64,
 }
 
 /// The four functions of the comparison.
-pub const STANDARD: [Standard; 4] = [
+pub(crate) const STANDARD: [Standard; 4] = [
     Standard { name: "sphere", range: (-5.12, 5.12), value: sphere },
     Standard { name: "rosenbrock", range: (-2.048, 2.048), value: rosenbrock },
     Standard { name: "rastrigin", range: (-5.12, 5.12), value: rastrigin },
@@ -44,7 +44,7 @@ fn ackley(x: &[f64]) -> f64 {
 }
 
 /// A box of equal ranges around no particular centre, and one response whose misfit is the value itself.
-pub fn standard(function: &Standard, dimension: usize) -> Problem {
+pub(crate) fn standard(function: &Standard, dimension: usize) -> Problem {
     let (low, high) = function.range;
     let factor = |i: usize| Factor { name: format!("x{i}"), low, high };
     let domain = Domain::new((0..dimension).map(factor).collect(), &[]).expect("a box");
@@ -54,14 +54,14 @@ pub fn standard(function: &Standard, dimension: usize) -> Problem {
 }
 
 /// The five target sets of Su et al. 2021, section 6.3: peak strength MPa, modulus GPa, Poisson's ratio.
-pub const TARGETS: [[f64; 3]; 5] =
+pub(crate) const TARGETS: [[f64; 3]; 5] =
     [[59.67, 32.68, 0.201], [42.67, 26.78, 0.209], [36.54, 25.66, 0.218], [47.67, 21.54, 0.222], [43.60, 24.67, 0.222]];
 
 /// Scatter of a single run of the stand-in: Su et al. 2021, Table 15.
-pub const SCATTER: [f64; 3] = [0.04, 0.04, 0.025];
+pub(crate) const SCATTER: [f64; 3] = [0.04, 0.04, 0.025];
 
 /// The calibration problem of Su et al. 2021, eq. 18, for one of their target sets.
-pub fn su2021(set: usize, form: Form, denominator: Denominator) -> Problem {
+pub(crate) fn su2021(set: usize, form: Form, denominator: Denominator) -> Problem {
     let ranges = [
         ("Ec", 10.0, 30.0),
         ("kn_ks", 1.0, 4.0),
@@ -81,7 +81,7 @@ pub fn su2021(set: usize, form: Form, denominator: Denominator) -> Problem {
 }
 
 /// Their second-order surfaces, Table 12.
-pub fn surfaces(x: &[f64]) -> Vec<f64> {
+pub(crate) fn surfaces(x: &[f64]) -> Vec<f64> {
     let [ec, k, s, t, mu, ej, kj] = x else { panic!("seven factors") };
     let ucs = -0.48 + 1.083 * s + 0.919 * t - 0.03138 * s * s - 0.03018 * t * t + 0.06602 * s * t;
     let e = 0.30 + 1.998 * ec - 3.647 * k + 4.71 * mu + 0.715 * ej - 0.396 * kj - 0.00771 * ec * ec + 0.7972 * k * k
@@ -111,11 +111,11 @@ pub fn surfaces(x: &[f64]) -> Vec<f64> {
 }
 
 /// One noisy run of the stand-in.
-pub fn noisy(x: &[f64], random: &mut Stream) -> Vec<f64> {
+pub(crate) fn noisy(x: &[f64], random: &mut Stream) -> Vec<f64> {
     surfaces(x).into_iter().zip(SCATTER).map(|(y, cv)| y * (1.0 + cv * random.normal())).collect()
 }
 
 /// Largest relative deviation of the noise-free responses from the targets.
-pub fn true_error(x: &[f64], set: usize) -> f64 {
+pub(crate) fn true_error(x: &[f64], set: usize) -> f64 {
     surfaces(x).iter().zip(TARGETS[set]).map(|(y, t)| (y / t - 1.0).abs()).fold(0.0, f64::max)
 }
