@@ -66,7 +66,11 @@ impl Disk {
         bytes: &[u8],
         durable: bool,
     ) -> Result<bool, StoreError> {
-        let written = file.rewind().and_then(|()| file.set_len(0)).and_then(|()| file.write_all(bytes));
+        // What stands there is shorter than any image as a rule, and cutting a file costs more than asking for its size.
+        let size = bytes.len() as u64;
+        let longer = file.metadata().is_ok_and(|data| data.len() > size);
+        let cut = if longer { file.set_len(0) } else { Ok(()) };
+        let written = cut.and_then(|()| file.rewind()).and_then(|()| file.write_all(bytes));
         written
             .and_then(|()| if durable { file.sync_all() } else { Ok(()) })
             .map_err(|e| self.fail("write", path, e))?;
