@@ -261,6 +261,9 @@ impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
     }
 }
 
+/// A number and something behind it, for editors; the reader knows better what.
+const WITH_UNIT: &str = r"^\s*[-+]?[0-9._]+([eE][-+]?[0-9]+)?\s*[^\s0-9]";
+
 impl<K: Kind> JsonSchema for Quantity<K> {
     fn schema_name() -> Cow<'static, str> {
         K::NAME.replace(' ', "_").into()
@@ -268,6 +271,7 @@ impl<K: Kind> JsonSchema for Quantity<K> {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
             "type": "string",
+            "pattern": if K::DIMENSION == Dimension::NONE { r"^\s*[-+]?[0-9._]" } else { WITH_UNIT },
             "description": format!("A {} with its unit, such as \"{}\".", K::NAME, K::EXAMPLE),
             "examples": [K::EXAMPLE],
         })

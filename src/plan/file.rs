@@ -26,6 +26,7 @@ pub(super) struct Head {
 /// `[factor.NAME]`: what a design varies. Needs `levels` or `range`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("anyOf" = [{ "required": ["levels"] }, { "required": ["range"] }]))]
 pub(super) struct FactorTable {
     /// Path of the parameter that it sets, such as "mortar.Ec"; a factor without one is a dummy column.
     #[serde(default)]

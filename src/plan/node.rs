@@ -150,6 +150,16 @@ impl Node {
         }
     }
 
+    /// Whether it, or a value inside it, was faulty.
+    pub(super) fn has_hole(&self) -> bool {
+        match &self.value {
+            Value::Hole => true,
+            Value::List(list) => list.iter().any(Self::has_hole),
+            Value::Table(table) => table.0.values().any(|entry| entry.node.has_hole()),
+            Value::Text(_) | Value::Int(_) | Value::Real(_) | Value::Flag(_) | Value::Date(_) | Value::Probe => false,
+        }
+    }
+
     /// Puts a value of no known type here.
     pub(super) fn make_probe(&mut self) {
         self.value = Value::Probe;

@@ -30,6 +30,7 @@ pub(super) fn read<T>(
     read: impl Fn(Reader<'_>) -> Result<T, Unread>,
 ) -> Option<T> {
     let before = faults.len();
+    let whole = faults.is_empty() || !node.has_hole();
     let value = loop {
         let error = match read(Reader(node)) {
             Ok(value) => break value,
@@ -48,7 +49,7 @@ pub(super) fn read<T>(
         let names = if path.is_empty() { known() } else { Vec::new() };
         faults.extend(unknown(node, &path, &name, &names, sources));
     }
-    (faults.len() == before).then_some(value)
+    (whole && faults.len() == before).then_some(value)
 }
 
 /// The fault, told with its place; the tree is changed so that the next reading gets past it. `None` when the error is a

@@ -79,9 +79,13 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
     let text = &sources.0[index as usize].text;
     let mut faults = Vec::new();
     let mut last = None;
+    let mut doubled = None;
     for error in errors {
         let span = span(sources, index, error.span().unwrap_or(text.len()..text.len()));
-        if last.replace(span.start) == Some(span.start) {
+        let (start, end) = (span.start as usize, span.end as usize);
+        // Every key of a table that stands there twice would be told again.
+        let inside = |header: usize| header <= start && !text[header..start].contains("\n[");
+        if last.replace(start) == Some(start) || error.message() == DUPLICATE && doubled.is_some_and(inside) {
             continue;
         }
         if faults.len() == MOST_FAULTS {
@@ -90,8 +94,11 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
         }
         let fault = match error.message() {
             DUPLICATE => {
-                let name = &text[span.start as usize..span.end as usize];
-                Fault::new(format!("`{}` stands here a second time", shortened(name))).label("give it another name")
+                let line = text[..start].rfind('\n').map_or(0, |at| at + 1);
+                let header = text[line..].starts_with('[');
+                doubled = header.then_some(start);
+                let label = if header { "give it another name" } else { "remove one of them" };
+                Fault::new(format!("`{}` stands here a second time", shortened(&text[start..end]))).label(label)
             }
             message if message.contains("recurs") => Fault::new("nested too deeply"),
             message => Fault::new(message),

@@ -1,0 +1,61 @@
+//! Files that are no workflow at all: a clear message, exit code 2, no panic.
+
+use flow::plan::{Fault, Overrides, load, parse};
+use std::fs;
+use std::path::Path;
+
+fn faults(path: &Path) -> Vec<Fault> {
+    load(path, &Overrides::default()).err().unwrap_or_default()
+}
+
+fn told(name: &str, bytes: &[u8]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    faults(&path).iter().map(|fault| fault.message.replace(&format!("{}: ", path.display()), "") + "\n").collect()
+}
+
+#[test]
+fn files_that_are_no_workflow_are_named_as_what_they_are() {
+    assert!(told("empty.toml", b"").starts_with("the file is empty: the table [workflow] is missing\n"));
+    assert!(told("binary.toml", b"a = 1\n\xff\xfe\x00").starts_with("not a text file: byte 6, in line 2, is not UTF-8"));
+    let large = vec![b'#'; 50 << 20];
+    assert!(told("large.toml", &large).starts_with("the file is larger than 4 MiB, which no workflow is"));
+    let missing = faults(Path::new("no/such/file.toml"));
+    assert!(missing[0].message.starts_with("no/such/file.toml: cannot be read") && missing[0].hint.is_some());
+    assert!(faults(Path::new("/"))[0].message.starts_with("/: cannot be read"));
+    if Path::new("/dev/zero").exists() {
+        assert!(faults(Path::new("/dev/zero"))[0].message.contains("larger than 4 MiB"));
+    }
+}
+
+/// Nested in every way: lists, tables in tables, long keys, and all of it at once, which asks most of the stack.
+#[test]
+fn deep_files_are_refused() {
+    let key = |n: usize| format!("{}k", "k.".repeat(n));
+    let nested = |n: usize, open: &str, close: &str| format!("a = {}1{}", open.repeat(n), close.repeat(n));
+    let most = format!("{} = {{", key(78));
+    let texts = [
+        nested(100_000, "[", "]"),
+        nested(100_000, "{ a = ", "}"),
+        nested(70, "[", "]"),
+        "a = ".to_owned() + &"[".repeat(1_000_000),
+        format!("{} = 1", key(100_000)),
+        format!("[{}]\na = 1", key(100_000)),
+        format!("[{}]\n{}{}=1{}", key(78), most.repeat(78), key(78), "}".repeat(78)),
+        format!("[[{}]]\n{}", key(78), "a = [[[[[[]]]]]]\n".repeat(10_000)),
+    ];
+    for text in texts {
+        let faults = parse("deep.toml", &text, &Overrides::default()).err().unwrap_or_default();
+        assert!(!faults.is_empty() && faults.len() < 30, "{} faults in {:.60}", faults.len(), text);
+    }
+}
+
+/// Large and wrong everywhere: the faults that are told are bounded, each once.
+#[test]
+fn faults_are_bounded() {
+    let text = "[workflow]\nseed = 1\n".to_owned() + &"x y z\n".repeat(100_000);
+    assert!(parse("w.toml", &text, &Overrides::default()).err().unwrap_or_default().len() <= 21);
+    let levels = "[workflow]\nseed = 1\n[factor.a]\nlevels = [".to_owned() + &"'a', ".repeat(400_000) + "]";
+    assert!(parse("w.toml", &levels, &Overrides::default()).err().unwrap_or_default().len() <= 22);
+}

@@ -1,0 +1,7 @@
+//! Workflow files: good ones run, bad ones say what is wrong with them, the schema agrees, and no text makes the parser panic.
+
+mod corpus;
+mod files;
+mod fuzz;
+mod schema;
+mod validator;
