@@ -71,7 +71,6 @@ fn specimen<S: Space>(count: usize, speed: f64) -> (Engine<S>, Vector<S>) {
     let (porosity, spread) = if S::DIMENSION == 2 { (0.12, 2.5) } else { (0.36, 1.66) };
     let (model, size) = cloud::<S>(count, porosity, spread);
     let mut engine = Engine::new(&model).expect("a sound model");
-    engine.set_threads(2);
     for _ in 0..60 {
         engine.advance(5).expect("calm");
         engine.calm();
@@ -152,6 +151,13 @@ fn rate<S: Space>(engine: &mut Engine<S>, stretches: usize, steps: u64) -> [f64;
     [times[0], times[times.len() / 2]]
 }
 
+/// Largest memory of the process so far, bytes.
+fn memory() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find(|l| l.starts_with("VmHWM"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024.0)
+}
+
 fn rates<S: Space>(count: usize) {
     let (mut engine, _) = specimen::<S>(count, 0.02);
     let steps = (20_000_000 / engine.bond_count().max(1)).clamp(50, 5000) as u64;
@@ -160,8 +166,14 @@ fn rates<S: Space>(count: usize) {
         for width in [Width::One, Width::Four, Width::Eight].into_iter().filter(|w| w.available()) {
             engine.set_width(width);
             let [best, median] = rate(&mut engine, 9, steps);
-            println!("{threads} thread(s), {width:?}: best {best:.2}, median {median:.2} ns per bond and step");
+            let listed = engine.contacts().count();
+            println!(
+                "{threads} thread(s), {width:?}, {listed} listed: best {best:.2}, median {median:.2} ns per bond and step"
+            );
         }
+    }
+    if let Some(bytes) = memory() {
+        println!("{:.0} bytes a bond at most, particles and program included", bytes / engine.bond_count() as f64);
     }
 }
 

@@ -213,3 +213,80 @@ fn note(class: usize, wall: Option<u32>, ends: [&[u32]; 2], masks: [u8; 2], plac
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dem::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
+    use crate::dem::space::{D2, D3};
+
+    /// Loads a bonded pair, then turns it as a whole once around `axis` in `steps` steps; normal force, shear force,
+    /// moment before and after.
+    fn turned<S: Space>(axis: [f64; 3], steps: u32) -> [[f64; 3]; 2] {
+        let bond = ParallelBond {
+            radius_multiplier: 1.0,
+            stiffness: BondStiffness::PerArea { kn: 1e9, ks: 5e8 },
+            tensile_strength: f64::INFINITY,
+            cohesion: f64::INFINITY,
+            friction_angle: 0.0,
+            moment_factor: 1.0,
+            deviation: 0.0,
+        };
+        let constants =
+            Constants::new(&Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) });
+        let mut rows = vec![Row::default(); Rows::<S>::COUNT];
+        rows[Rows::<S>::TENSION] = Row([f64::MAX; WIDEST]);
+        rows[Rows::<S>::COHESION] = Row([f64::MAX; WIDEST]);
+        rows[Rows::<S>::BOND] = Row([1e9; WIDEST]);
+        let mut answer = |ends: &[End<S, f64>; 2]| {
+            let touch = pair_touch(&ends[0], &ends[1], 1.0);
+            let (load, _) = ParallelBondLaw::respond(&constants, &touch, None, &mut rows, 0, &mut Ledger(None));
+            [load.normal, load.shear.norm(), load.bend.norm().hypot(load.twist)]
+        };
+        let vector = |x: [f64; 3]| Vector::<S>::build(|k| x[k]);
+        let spin = |w: [f64; 3]| S::Spin::<f64>::build(|k| if S::DIMENSION == 2 { w[2] } else { w[k] });
+        let end = |x: [f64; 3], v: [f64; 3], w: [f64; 3]| End::<S, f64> {
+            position: vector(x),
+            radius: 0.5,
+            velocity: vector(v),
+            spin: spin(w),
+        };
+        let zero = [0.0; 3];
+        let start = [0.5, 1e-4, 0.0];
+        let pushed = end(start, [1e-5, 1e-4, 5e-5], [3e-5, 4e-5, 5e-5]);
+        let before = answer(&[end([-0.5, 0.0, 0.0], zero, zero), pushed]);
+        // Rodrigues' formula about the middle of the pair.
+        let around = |x: [f64; 3], angle: f64| {
+            let (sin, cos) = crate::math::elementary::sin_cos(angle);
+            let cross = D3::carried(axis, x);
+            let along = axis.dot(x) * (1.0 - cos);
+            std::array::from_fn::<f64, 3, _>(|k| x[k] * cos + cross[k] * sin + axis[k] * along)
+        };
+        let angle = std::f64::consts::TAU / f64::from(steps);
+        let middle = [0.0, 5e-5, 0.0];
+        let mut after = before;
+        for step in 1..=steps {
+            let ends = [[-0.5, 0.0, 0.0], start].map(|x| {
+                let arm = x.minus(middle);
+                let (old, new) = (around(arm, angle * f64::from(step - 1)), around(arm, angle * f64::from(step)));
+                end(new, new.minus(old), axis.times(angle))
+            });
+            after = answer(&ends);
+        }
+        [before, after]
+    }
+
+    #[test]
+    fn a_rigid_rotation_keeps_forces_and_moments() {
+        let check = |[before, after]: [[f64; 3]; 2]| {
+            assert!(before.iter().all(|x| x.abs() > 1e3), "{before:?}");
+            for k in 0..3 {
+                assert!((after[k] / before[k] - 1.0).abs() < 1e-5, "{before:?} {after:?}");
+            }
+        };
+        check(turned::<D2>([0.0, 0.0, 1.0], 5000));
+        check(turned::<D3>([0.0, 0.0, 1.0], 5000));
+        check(turned::<D3>([1.0, 0.0, 0.0], 5000));
+        check(turned::<D3>([0.48, 0.6, 0.64], 5000));
+    }
+}

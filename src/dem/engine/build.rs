@@ -84,6 +84,7 @@ impl<S: Space> Engine<S> {
             travelled: 0.0,
             origins: Vec::new(),
             listed_at: 0,
+            checked_at: 0,
             stale: false,
             dt: 0.0,
             step: 0,

@@ -179,7 +179,8 @@ fn serve<S: Space>(walls: &mut [MovingWall<S>], orders: &Orders<'_>, parity: usi
     }
 }
 
-/// New velocities and positions of a stretch; returns its largest speed (a bound that takes each component's largest).
+/// New velocities and positions of a stretch; returns its largest speed (a bound that takes each component's largest), or
+/// ∞ if a velocity is not finite.
 struct Integrate<'a, S: Space> {
     orders: &'a Orders<'a>,
     domain: &'a mut Domain,
@@ -191,7 +192,7 @@ impl<S: Space> Update<f64> for Integrate<'_, S> {
     fn run<R: Rows>(self, rows: &mut R) -> f64 {
         let Orders { damping, dt, inverse, weights, .. } = *self.orders;
         let loads = &mut *self.domain.loads;
-        let mut fastest = Quad::default();
+        let (mut fastest, mut spoiled) = (Quad::default(), Quad::default());
         let books = !self.domain.spent.is_empty();
         for (k, clump) in self.clumps.iter_mut().enumerate() {
             let (force, moment) = clump.collect(rows, loads);
@@ -199,7 +200,9 @@ impl<S: Space> Update<f64> for Integrate<'_, S> {
             if books {
                 self.domain.clump_spent[k] += drag;
             }
-            fastest = fastest.larger(clump.place(rows));
+            let top = clump.place(rows);
+            fastest = fastest.larger(top);
+            spoiled = spoiled.plus(top.times(0.0));
         }
         for p in self.domain.singles.iter().flat_map(|run| run.clone()) {
             let mut way = Quad::default();
@@ -217,6 +220,8 @@ impl<S: Space> Update<f64> for Integrate<'_, S> {
                     book(spent, load, inverse[place], [before, velocity], damping, dt);
                 }
                 rows.write(p * S::RECORD + 1 + q, velocity);
+                // 0 · v is 0 unless v is not finite; such a sum never comes back to 0.
+                spoiled = spoiled.plus(velocity.times(0.0));
                 if q == 0 {
                     way = velocity;
                     fastest = fastest.larger(velocity);
@@ -227,6 +232,9 @@ impl<S: Space> Update<f64> for Integrate<'_, S> {
                 position.0[k] += way.0[k] * dt;
             }
             rows.write(p * S::RECORD, position);
+        }
+        if spoiled != Quad::default() {
+            return f64::INFINITY;
         }
         fastest.0[..S::DIMENSION].iter().map(|v| v * v).sum::<f64>().sqrt()
     }

@@ -148,6 +148,7 @@ pub struct Engine<S: Space> {
     travelled: f64,
     origins: Vec<Vector<S>>,
     listed_at: u64,
+    checked_at: u64,
     stale: bool,
     dt: f64,
     step: u64,

@@ -11,6 +11,8 @@ use crate::dem::space::{Space, Tuple, Vector};
 
 /// Smallest radii that a body may move in one step; further, and it could pass through another.
 const STRIDE: f64 = 2.0;
+/// Steps after which the end of a run looks for bodies out of bounds; every renewal of the list does.
+const CHECK: u64 = 1000;
 
 impl<S: Space> Engine<S> {
     /// Makes `steps` steps; every `every` steps (and at the end) `watch` looks at the engine and may stop it.
@@ -45,7 +47,10 @@ impl<S: Space> Engine<S> {
             let outcome = self.march(end - self.step);
             self.take_in(outcome)?;
         }
-        self.check()
+        if self.step - self.checked_at >= CHECK {
+            self.check()?;
+        }
+        Ok(())
     }
 
     /// Makes up to `steps` steps on all threads, until the contact list may miss something.
@@ -92,6 +97,7 @@ impl<S: Space> Engine<S> {
         self.step += outcome.steps;
         self.travelled = outcome.travelled;
         if let Some(travel) = outcome.unstable {
+            self.check()?;
             return Err(self.unstable(travel));
         }
         if outcome.stale {
@@ -110,7 +116,8 @@ impl<S: Space> Engine<S> {
     }
 
     /// Finite and inside the bounds.
-    fn check(&self) -> Result<(), Failure> {
+    fn check(&mut self) -> Result<(), Failure> {
+        self.checked_at = self.step;
         for p in 0..self.caller.len() {
             let particle = self.caller[p] as usize;
             let (x, v) = (self.position_of(p), velocity::<S>(&self.records, p));

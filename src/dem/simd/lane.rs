@@ -20,6 +20,15 @@ impl Quad {
         self
     }
 
+    /// Multiple.
+    #[inline(always)]
+    pub(crate) fn times(mut self, factor: f64) -> Self {
+        for t in &mut self.0 {
+            *t *= factor;
+        }
+        self
+    }
+
     /// Componentwise the larger absolute value.
     #[inline(always)]
     pub(crate) fn larger(self, other: Self) -> Self {

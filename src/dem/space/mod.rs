@@ -117,7 +117,7 @@ pub struct Touch<S: Space, L: Lane> {
     pub arm_j: L,
     /// The smaller radius, m.
     pub radius: L,
-    /// Opening in this step, m.
+    /// Opening in this step, m: along the mean of the old and new normals, so that a rotation opens nothing.
     pub opening: L,
     /// Shear displacement in this step, m.
     pub slide: S::Shear<L>,
@@ -125,8 +125,10 @@ pub struct Touch<S: Space, L: Lane> {
     pub twist: L,
     /// Relative bending rotation in this step, rad.
     pub bend: S::Shear<L>,
-    /// Rotation of the contact frame in this step, rad.
-    pub frame: S::Spin<L>,
+    /// Mean of the normals before and after this step, to second order; along it vectors are laid into the new plane.
+    pub tilt: S::Vector<L>,
+    /// Rotation of the contact frame about the normal in this step, rad.
+    pub roll: L,
 }
 
 impl<S: Space> Touch<S, f64> {
@@ -134,8 +136,8 @@ impl<S: Space> Touch<S, f64> {
     pub(crate) fn still(normal: Vector<S>, gap: f64) -> Self {
         let flat = S::Shear::<f64>::zero();
         let (arm_i, arm_j, radius) = (0.0, 0.0, 0.0);
-        let frame = S::Spin::<f64>::zero();
-        Self { normal, gap, arm_i, arm_j, radius, opening: 0.0, slide: flat, twist: 0.0, bend: flat, frame }
+        let (opening, twist, roll) = (0.0, 0.0, 0.0);
+        Self { normal, gap, arm_i, arm_j, radius, opening, slide: flat, twist, bend: flat, tilt: normal, roll }
     }
 }
 

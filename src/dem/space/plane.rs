@@ -47,23 +47,26 @@ impl Space for D2 {
         normal: [L; 2],
         gap: L,
         arms: [L; 2],
-        _inverse_distance: L,
+        inverse_distance: L,
         dt: L,
     ) -> Touch<Self, L> {
         let [nx, ny] = normal;
         let [ux, uy] = j.velocity.minus(i.velocity);
         let rolling = i.spin[0] * arms[0] + j.spin[0] * arms[1];
+        let across = uy * nx - ux * ny;
+        let swing = across * inverse_distance * dt;
         Touch {
             normal,
             gap,
             arm_i: arms[0],
             arm_j: arms[1],
             radius: i.radius.min(j.radius),
-            opening: (ux * nx + uy * ny) * dt,
-            slide: [(uy * nx - ux * ny - rolling) * dt],
+            opening: ((ux * nx + uy * ny) - L::splat(0.5) * across * swing) * dt,
+            slide: [(across - rolling) * dt],
             twist: L::splat(0.0),
             bend: [(j.spin[0] - i.spin[0]) * dt],
-            frame: [L::splat(0.0)],
+            tilt: normal,
+            roll: L::splat(0.0),
         }
     }
 

@@ -1,8 +1,9 @@
 //! The solid: spheres.
 //!
-//! Shear, bending and the like are vectors kept in the contact plane. Between two steps the contact frame turns by
-//! q = n × u̇_t dt / d (swing of the normal) plus the mean spin about it; a vector is turned by the rotation through |q|
-//! to second order, v + q×v + ½ q×(q×v), then laid into the new contact plane.
+//! Shear, bending and the like are vectors in the contact plane. When the normal swings from n to n', a vector v of the
+//! old plane is carried along without turning about it: v' = v − (v·n') (n + n') / (1 + n·n'). With δ the swing in a step,
+//! (n + n') / (1 + n·n') = n' − δ/2 up to third order. Then v' is turned about n' by the mean spin's angle φ, to second
+//! order: (1 − φ²/2) v' + φ n' × v'. So a rigid rotation keeps lengths to fourth order in a step.
 
 use super::{End, Load, Space, Touch, Tuple};
 use crate::dem::simd::{Lane, Quad};
@@ -74,27 +75,29 @@ impl Space for D3 {
         let slide = tangential.minus(cross(rolling, normal));
         let turn = j.spin.minus(i.spin).times(dt);
         let twist = turn.dot(normal);
-        let swing = cross(normal, tangential).times(inverse_distance * dt);
-        let roll = i.spin.plus(j.spin).dot(normal) * (L::splat(0.5) * dt);
+        let half = L::splat(0.5);
+        let tilt = normal.minus(tangential.times(inverse_distance * dt * half));
+        let roll = i.spin.plus(j.spin).dot(normal) * (half * dt);
         Touch {
             normal,
             gap,
             arm_i: arms[0],
             arm_j: arms[1],
             radius: i.radius.min(j.radius),
-            opening: speed * dt,
+            opening: apart.dot(tilt) * dt,
             slide: slide.times(dt),
             twist,
             bend: turn.minus(normal.times(twist)),
-            frame: swing.plus(normal.times(roll)),
+            tilt,
+            roll,
         }
     }
 
     #[inline(always)]
     fn turned<L: Lane>(shear: [L; 3], touch: &Touch<Self, L>) -> [L; 3] {
-        let q = touch.frame;
-        let half = shear.plus(cross(q, shear).times(L::splat(0.5)));
-        flattened(shear.plus(cross(q, half)), touch.normal)
+        let laid = shear.minus(touch.tilt.times(shear.dot(touch.normal)));
+        let shrink = L::splat(1.0) - L::splat(0.5) * (touch.roll * touch.roll);
+        laid.times(shrink).plus(cross(touch.normal, laid).times(touch.roll))
     }
 
     #[inline(always)]
