@@ -17,9 +17,8 @@ pub use config::Design;
 
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
 use crate::artifact::{Artifact, Table};
-use crate::design::given::Given;
 use crate::design::report::power::Question;
-use crate::design::{Domain, Factor, Fault, Layout, Method, Order, build, check, report};
+use crate::design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -33,9 +32,6 @@ struct Params {
     layout: Layout,
     #[serde(default, skip_serializing_if = "is_default")]
     power: Question,
-    /// Given rows hold numbers of levels, from 1.
-    #[serde(default, skip_serializing_if = "is_default")]
-    by_level: bool,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -71,7 +67,7 @@ impl Stage for Design {
     fn settings(&self) -> Value {
         json!({
             "design": self.method().ok(), "factors": self.factors, "file": self.file,
-            "replicates": self.replicates, "order": self.order, "power": self.power, "by_level": self.by_level,
+            "replicates": self.replicates, "order": self.order, "power": self.power,
         })
     }
 
@@ -80,8 +76,7 @@ impl Stage for Design {
         let layout = Layout { replicates: self.replicates, order: self.order };
         let draws = design.draws() || layout.order == Order::Random;
         let factors = self.factors(known.context);
-        let by_level = self.by_level.unwrap_or(false);
-        let params = Params { design, factors, layout, power: self.power, by_level };
+        let params = Params { design, factors, layout, power: self.power };
         let mut task = Task::new("design", json!(params));
         if draws {
             task = task.seed(known.context.seed);
@@ -127,31 +122,12 @@ fn complaint(fault: &Fault) -> Complaint {
 fn run(job: &Job) -> Result<Artifact, Failure> {
     let mut params: Params = job.params()?;
     if let (Method::Given(given), Some(_)) = (&mut params.design, job.files.first()) {
-        given.rows = rows(&data::parse(&job.file("rows")?)?, &params.factors, params.by_level)?;
-    }
-    if let (Method::Given(given), true) = (&mut params.design, params.by_level) {
-        given.rows.iter_mut().enumerate().try_for_each(|(i, row)| levels(row, i, &params.factors))?;
+        given.rows = rows(&data::parse(&job.file("rows")?)?, &params.factors, given.by_level)?;
     }
     let table = build(&params.design, &params.factors, params.layout, job.seed.unwrap_or(0))
         .map_err(|error| StageError::new(error.to_string()))?;
     let report = report(&table, params.power);
     Ok(tables::artifact(&table, &report))
-}
-
-/// Replaces the numbers of levels in a row by the levels.
-fn levels(row: &mut [f64], index: usize, factors: &[Factor]) -> Result<(), StageError> {
-    for (value, factor) in row.iter_mut().zip(factors) {
-        let Domain::Levels(levels) = &factor.domain else {
-            let message = format!("factor `{}` has a range, and `by_level` needs levels", factor.name);
-            return Err(StageError::new(message).hint("give [factor] its levels, or leave `by_level` out"));
-        };
-        let level = (1..=levels.len()).find(|&n| n as f64 == *value).ok_or_else(|| {
-            let message = format!("row {}: `{}` has no level {value}", index + 1, factor.name);
-            StageError::new(message).hint(format!("its levels are numbered 1 to {}", levels.len()))
-        })?;
-        *value = levels[level - 1];
-    }
-    Ok(())
 }
 
 /// The columns of a file that are the factors, converted to the factors' units unless they are numbers of levels.
@@ -179,9 +155,4 @@ fn rows(table: &Table, factors: &[Factor], by_level: bool) -> Result<Vec<Vec<f64
     });
     let columns: Vec<Vec<f64>> = columns.collect::<Result<_, StageError>>()?;
     Ok((0..table.rows()).map(|i| columns.iter().map(|c| c[i]).collect()).collect())
-}
-
-/// A design whose rows are still in a file.
-fn in_file() -> Method {
-    Method::Given(Given { rows: Vec::new(), source: String::new() })
 }

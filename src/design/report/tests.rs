@@ -116,7 +116,7 @@ fn the_published_table_is_exactly_proportional() {
         .filter(|l| !l.starts_with('#'))
         .map(|l| l.split(',').map(|c| c.parse::<f64>().unwrap() - 1.0).collect())
         .collect();
-    let r = judged(Method::Given(Given { rows, source: String::new() }), &[3; 14]);
+    let r = judged(Method::Given(Given { rows, ..Default::default() }), &[3; 14]);
     assert_eq!((r.runs, r.distinct, r.balance.disproportional_pairs), (64, 63, Some(0)));
     assert!(r.balance.factors.iter().all(|f| f.counts.iter().map(|c| c.1).eq([32, 16, 16])));
     assert_eq!(model(&r, Kind::Levels).residual_df, 35);

@@ -1,6 +1,5 @@
 //! The table of a `design` stage: `method`, the options of every method, and which of them go together.
 
-use super::in_file;
 use crate::design::box_behnken::BoxBehnken;
 use crate::design::central_composite::{Alpha, CentralComposite, Corners, Extent};
 use crate::design::factorial::FullFactorial;
@@ -247,14 +246,19 @@ impl Design {
                 scramble: self.scramble.unwrap_or(true),
                 skip: self.skip.unwrap_or(0),
             }),
-            Name::Given => match (&self.rows, &self.file) {
-                (Some(rows), None) => Method::Given(Given { rows: rows.clone(), source: String::new() }),
-                (None, Some(_)) => in_file(),
-                _ => {
-                    let complaint = Complaint::new("method", "given rows need `rows` or `file`, and only one of them");
-                    return Err(complaint.hint("say `file = \"rows.csv\"`, or `rows = [[10, 2.5], [20, 1]]`"));
-                }
-            },
+            Name::Given => {
+                let rows = match (&self.rows, &self.file) {
+                    (Some(rows), None) => rows.clone(),
+                    // they are read when the task runs
+                    (None, Some(_)) => Vec::new(),
+                    _ => {
+                        let complaint = Complaint::new("method", "given rows need `rows` or `file`, one of them");
+                        return Err(complaint.hint("say `file = \"rows.csv\"`, or `rows = [[10, 2.5], [20, 1]]`"));
+                    }
+                };
+                let by_level = self.by_level.unwrap_or(false);
+                Method::Given(Given { rows, by_level, source: String::new() })
+            }
         })
     }
 
@@ -285,6 +289,7 @@ impl Design {
                     Name::CentralComposite | Name::BoxBehnken if factor.levels.len() <= 3 => {
                         range.unwrap_or_else(levels)
                     }
+                    Name::Given if self.by_level == Some(true) => levels(),
                     Name::Given => range.unwrap_or_else(levels),
                     _ => range.unwrap_or_else(ends),
                 };

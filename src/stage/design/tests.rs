@@ -185,4 +185,20 @@ fn rows_of_a_file_are_converted_to_the_factors_units() {
     assert!(message(b"Ec [mm],kn_ks\n1,2\n").contains("in `mm`, the factor in `GPa`"));
     assert!(message(b"Ec [GPa]\n1\n").contains("no column `kn_ks`"));
     assert!(message(b"Ec [GPa],kn_ks\n1,x\n").contains("holds texts"));
+    let numbers = data::parse(b"Ec,kn_ks\n1,3\n").unwrap();
+    assert_eq!(rows(&numbers, &factors, true).unwrap(), [[1.0, 3.0]]);
+}
+
+#[test]
+fn rows_by_level_are_checked_and_set() {
+    let design = |rows: &str| {
+        format!("method = \"given\"\nby_level = true\nrows = {rows}\nfactors = [\"Ec\", \"kn_ks\", \"tau_c\"]")
+    };
+    let made = ran(&design("[[1, 3, 2]]"));
+    let table = made.table("design").unwrap();
+    assert_eq!(["Ec", "kn_ks", "tau_c"].map(|f| table.reals(f).unwrap()[0]), [10.0, 4.0, 20.0]);
+    assert!(complaints(&design("[[1, 3, 2]]")).is_empty());
+    assert!(
+        complaints(&design("[[1, 4, 2]]"))[0].contains("rows: row 1: `kn_ks` is 4 | its levels are numbered 1 to 3")
+    );
 }
