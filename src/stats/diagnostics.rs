@@ -12,7 +12,7 @@
 
 use super::columns::Matrix;
 use super::fit::Solution;
-use super::number::Real;
+use super::number::{PANEL, Real};
 use super::triangle::{BLOCK, Blocks};
 use crate::math::distribution::t_for_tail;
 use rayon::prelude::*;
@@ -100,8 +100,14 @@ fn block<T: Real>(matrix: &Matrix, solution: &Solution<T>, rows: Range<usize>) -
     for j in 0..terms {
         let (done, rest) = entries.split_at_mut(j * height);
         let column = &mut rest[..height];
-        for (k, other) in done.chunks_exact(height).enumerate() {
-            T::add_multiple(column, -solution.triangle.at(k, j), other);
+        let weight = |k: usize| -solution.triangle.at(k, j);
+        let whole = j - j % PANEL;
+        for k in (0..whole).step_by(PANEL) {
+            let own = std::array::from_fn(|i| &done[(k + i) * height..(k + i + 1) * height]);
+            T::add_multiples(column, std::array::from_fn(|i| weight(k + i)), own);
+        }
+        for k in whole..j {
+            T::add_multiple(column, weight(k), &done[k * height..(k + 1) * height]);
         }
         let scale = T::from(1.0) / solution.triangle.at(j, j);
         for (entry, h) in column.iter_mut().zip(&mut leverage) {

@@ -229,17 +229,13 @@ pub(crate) struct PureError<T> {
 impl<T: Real> PureError<T> {
     /// Rows that agree in all the listed factors are replicates.
     pub(crate) fn of(sample: &Sample, usable: &Usable, factors: &[usize]) -> Self {
-        let order = |&a: &usize, &b: &usize| {
-            let compare = |&f: &usize| {
-                let values = &sample.factors[f].values;
-                (values[usable.rows[a]] + 0.0).total_cmp(&(values[usable.rows[b]] + 0.0))
-            };
-            factors.iter().map(compare).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
-        };
+        let settings = |&row: &usize| factors.iter().map(move |&f| (sample.factors[f].values[row] + 0.0).to_bits());
+        let keys: Vec<u64> = usable.rows.iter().flat_map(settings).collect();
+        let key = |row: usize| &keys[row * factors.len()..(row + 1) * factors.len()];
         let mut sorted: Vec<usize> = (0..usable.rows.len()).collect();
-        sorted.par_sort_by(order);
+        sorted.par_sort_by(|&a, &b| key(a).cmp(key(b)));
         let mut pure = Self { df: 0, squares: T::zero() };
-        for group in sorted.chunk_by(|a, b| order(a, b).is_eq()).filter(|group| group.len() > 1) {
+        for group in sorted.chunk_by(|&a, &b| key(a) == key(b)).filter(|group| group.len() > 1) {
             let weight = |i: usize| T::from(sample.weight(usable.rows[i]));
             let (sum, weights) = group.iter().fold((T::zero(), T::zero()), |(sum, weights), &i| {
                 (sum + weight(i) * T::from(usable.values[i]), weights + weight(i))

@@ -7,6 +7,9 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// Columns that are worked on together, so that another column is read once for all of them.
+pub(crate) const PANEL: usize = 4;
+
 /// What the linear algebra needs of a number.
 pub(crate) trait Real:
     Copy
@@ -45,6 +48,18 @@ pub(crate) trait Real:
             *t = *t + factor * o;
         }
     }
+
+    /// Scalar products of the columns of a panel with one column.
+    fn dots(panel: [&[Self]; PANEL], column: &[Self]) -> [Self; PANEL] {
+        panel.map(|own| Self::dot(own, column))
+    }
+
+    /// Adds a multiple of each column of a panel.
+    fn add_multiples(to: &mut [Self], factors: [Self; PANEL], [a, b, c, d]: [&[Self]; PANEL]) {
+        for ((((t, &a), &b), &c), &d) in to.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+            *t = *t + ((factors[0] * a + factors[1] * b) + (factors[2] * c + factors[3] * d));
+        }
+    }
 }
 
 /// Partial sums of a dot product of doubles; the order of summation is theirs, so it must never change.
@@ -80,6 +95,26 @@ impl Real for f64 {
             width /= 2;
         }
         sums[0]
+    }
+
+    fn dots(panel: [&[Self]; PANEL], column: &[Self]) -> [Self; PANEL] {
+        const WIDE: usize = 4;
+        let (blocks, rest) = column.as_chunks::<WIDE>();
+        let [a, b, c, d] = panel.map(|own| own.as_chunks::<WIDE>().0);
+        let mut sums = [[0.0; WIDE]; PANEL];
+        for ((((x, a), b), c), d) in blocks.iter().zip(a).zip(b).zip(c).zip(d) {
+            for lane in 0..WIDE {
+                sums[0][lane] += a[lane] * x[lane];
+                sums[1][lane] += b[lane] * x[lane];
+                sums[2][lane] += c[lane] * x[lane];
+                sums[3][lane] += d[lane] * x[lane];
+            }
+        }
+        let done = column.len() - rest.len();
+        std::array::from_fn(|i| {
+            let tail = panel[i][done..].iter().zip(rest).fold(0.0, |sum, (x, y)| sum + x * y);
+            ((sums[i][0] + sums[i][2]) + (sums[i][1] + sums[i][3])) + tail
+        })
     }
 }
 

@@ -8,7 +8,7 @@
 //! Blocks of [`BLOCK`] rows are folded in order within leaves of [`LEAF`] rows, the leaves' triangles in order after
 //! that. Both sizes are constants, so the bits of a result do not depend on the number of threads.
 
-use super::number::Real;
+use super::number::{PANEL, Real};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -80,11 +80,44 @@ impl<T: Real> Triangle<T> {
 
     /// Folds `height` rows, stored column by column, into the triangle. Column `j` has entries only in its first
     /// `depth(j)` rows, which never falls with `j`.
+    ///
+    /// Reflections are made in panels of [`PANEL`] columns; each later column is read and written once per panel.
     fn absorb(&mut self, block: &mut [T], height: usize, depth: impl Fn(usize) -> usize) {
         let n = self.width;
-        for j in 0..n {
-            let (before, after) = block.split_at_mut((j + 1) * height);
-            let reflector = &mut before[j * height..j * height + depth(j)];
+        for start in (0..n).step_by(PANEL) {
+            let end = n.min(start + PANEL);
+            let length = depth(end - 1);
+            let (head, later) = block.split_at_mut(end * height);
+            let panel = &mut head[start * height..];
+            let strengths = self.reflect(panel, height, length, start);
+            if later.is_empty() {
+                return;
+            }
+            let reflectors: [&[T]; PANEL] = std::array::from_fn(|i| &panel[i * height..i * height + length]);
+            let overlaps = reflectors.map(|own| T::dots(reflectors, own));
+            for (k, column) in (end..n).zip(later.chunks_exact_mut(height)) {
+                let column = &mut column[..length];
+                let products = T::dots(reflectors, column);
+                let mut shares = [T::zero(); PANEL];
+                for i in 0..PANEL {
+                    let entry = &mut self.entries[(start + i) * n + k];
+                    let before = (0..i).fold(T::zero(), |sum, l| sum + shares[l] * overlaps[i][l]);
+                    shares[i] = strengths[i] * (*entry + products[i] - before);
+                    *entry = *entry - shares[i];
+                }
+                T::add_multiples(column, shares.map(|share| -share), reflectors);
+            }
+        }
+    }
+
+    /// Turns the columns of a panel, which begins at column `start`, into reflectors; gives their strengths.
+    fn reflect(&mut self, panel: &mut [T], height: usize, length: usize, start: usize) -> [T; PANEL] {
+        let n = self.width;
+        let mut strengths = [T::zero(); PANEL];
+        for i in 0..panel.len() / height {
+            let j = start + i;
+            let (before, after) = panel.split_at_mut((i + 1) * height);
+            let reflector = &mut before[i * height..i * height + length];
             let diagonal = self.entries[j * n + j];
             let below = T::dot(reflector, reflector);
             if below == T::zero() {
@@ -96,15 +129,16 @@ impl<T: Real> Triangle<T> {
             for entry in reflector.iter_mut() {
                 *entry = *entry * scale;
             }
-            let strength = (pivot - diagonal) / pivot;
+            strengths[i] = (pivot - diagonal) / pivot;
             self.entries[j * n + j] = pivot;
             for (k, column) in (j + 1..n).zip(after.chunks_exact_mut(height)) {
-                let column = &mut column[..reflector.len()];
-                let share = strength * (self.entries[j * n + k] + T::dot(reflector, column));
+                let column = &mut column[..length];
+                let share = strengths[i] * (self.entries[j * n + k] + T::dot(reflector, column));
                 self.entries[j * n + k] = self.entries[j * n + k] - share;
                 T::add_multiple(column, -share, reflector);
             }
         }
+        strengths
     }
 
     /// Entry (i, j), zero below the diagonal.
