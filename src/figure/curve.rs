@@ -197,8 +197,11 @@ impl StressStrain {
                 let k = modes.iter().position(|m| m == mode).unwrap_or(0);
                 for part in panel.places(&percent, counts) {
                     scene.stroke(Path::polyline(&part), self.crack_style(i, k));
-                    if let (Some(&end), true) = (part.last(), self.curves.len() > 1) {
-                        draw_marker(scene, palette::marker(i), end, 1.6, palette::category(i));
+                    // Halfway up the curves are apart; a marker tells them in grey too.
+                    let half = part.last().map_or(0.0, |end| (end[1] + panel.area.bottom) / 2.0);
+                    let middle = part.iter().find(|p| p[1] <= half).filter(|_| self.curves.len() > 1);
+                    if let Some(&at) = middle {
+                        draw_marker(scene, palette::marker(i), at, 1.6, palette::category(i));
                     }
                 }
             }

@@ -19,7 +19,7 @@ pub struct Figure {
     /// Stages with values to set beside them.
     #[serde(default)]
     pub compare: Names,
-    /// The response that is drawn, or several where the figure has a panel for each.
+    /// The response that is drawn; where the figure has a panel for each, several, or all when not given.
     #[serde(default)]
     pub response: Names,
     /// The factors that are drawn; all of them when not given.
@@ -67,40 +67,35 @@ impl Names {
     }
 }
 
-/// Width of the picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Preset {
-    /// One column of a journal: 90 mm.
-    #[default]
-    Single,
-    /// Two columns: 190 mm.
-    Double,
-}
+/// Width of a picture in mm: `single` (one column of a journal, 90 mm), `double` (190 mm) or a length.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(try_from = "String")]
+#[schemars(with = "String")]
+pub struct Width(f64);
 
-/// A named width or a length.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Width {
-    /// By name.
-    Preset(Preset),
-    /// By length.
-    Length(Length),
+impl TryFrom<String> for Width {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        match text.as_str() {
+            "single" => Ok(Self(SINGLE)),
+            "double" => Ok(Self(DOUBLE)),
+            _ => Length::parse(&text)
+                .map(|length| Self(length.get() * 1e3))
+                .map_err(|e| format!("wanted \"single\", \"double\" or a length: {e}")),
+        }
+    }
 }
 
 impl Default for Width {
     fn default() -> Self {
-        Width::Preset(Preset::Single)
+        Self(SINGLE)
     }
 }
 
 impl Width {
     pub(super) fn millimetres(self) -> f64 {
-        match self {
-            Width::Preset(Preset::Single) => SINGLE,
-            Width::Preset(Preset::Double) => DOUBLE,
-            Width::Length(length) => length.get() * 1e3,
-        }
+        self.0
     }
 }
 
@@ -169,11 +164,11 @@ impl Show {
             Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&["run"], &["specimen"], [0, 0], [0, 0]),
             Show::Specimen => needs(&["specimen"], &[], [0, 0], [0, 0]),
             Show::MainEffects | Show::Range => needs(&["range"], &["range"], [1, 1], [0, MANY]),
-            Show::Points => needs(PLACES, &[], [0, 0], [2, 3]),
-            Show::Agreement => needs(RESULTS, RESULTS, [1, MANY], [0, MANY]),
+            Show::Points => needs(PLACES, &[], [0, 0], [0, 3]),
+            Show::Agreement => needs(RESULTS, RESULTS, [0, MANY], [0, MANY]),
             Show::Contour | Show::Surface => needs(&["surfaces"], PLACES, [1, 1], [2, 2]),
             Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
-            Show::ObservedPredicted => needs(MODELS, &[], [1, MANY], [0, 0]),
+            Show::ObservedPredicted => needs(MODELS, &[], [0, MANY], [0, 0]),
             Show::Pareto => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
             Show::HalfNormal => needs(&["screening"], &[], [1, 1], [0, MANY]),
             Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),

@@ -104,6 +104,10 @@ pub(super) fn range(params: &Params, sources: &Sources) -> Result<RankedBars, St
 
 pub(super) fn points(params: &Params, sources: &Sources) -> Result<DesignPoints, StageError> {
     let rows = sources.first()?.rows(&["design", "runs"])?;
+    if !(2..=3).contains(&params.factors.len()) {
+        let message = format!("points are drawn in two or three factors, not in {}", params.factors.len());
+        return Err(StageError::new(message).hint("name them with `factors`"));
+    }
     let columns = params.factors.iter().map(|f| rows.reals(&f.key)).collect::<Result<Vec<_>, _>>()?;
     let points: Vec<Vec<f64>> = (0..rows.len()).map(|i| columns.iter().map(|c| c[i]).collect()).collect();
     let kinds = if rows.has("point_type") { rows.texts("point_type")? } else { vec!["run".to_owned(); rows.len()] };
@@ -135,12 +139,14 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
                 clouds.push(Cloud { name, x, y, rows });
             }
         }
-        if clouds.is_empty() {
-            let message = format!("no row with `{}` is in both tables", response.key);
-            return Err(StageError::new(message).hint("rows are matched by the factors that both tables hold"));
+        if !clouds.is_empty() {
+            let note = note_of(&clouds);
+            pairs.push(Pair { quantity: response.quantity(), clouds, note });
         }
-        let note = note_of(&clouds);
-        pairs.push(Pair { quantity: response.quantity(), clouds, note });
+    }
+    if pairs.is_empty() {
+        let hint = "rows are matched by the factors that both tables hold";
+        return Err(StageError::new("no row with a response is in both tables").hint(hint));
     }
     Ok(Agreement { x_word: "Published".into(), y_word: "Computed".into(), pairs, band: params.band.or(Some(0.1)) })
 }

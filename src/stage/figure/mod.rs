@@ -36,7 +36,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-pub use config::{Figure, Names, Preset, Show, Width};
+pub use config::{Figure, Names, Show, Width};
 
 /// A factor or response as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

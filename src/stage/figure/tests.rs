@@ -358,6 +358,8 @@ fn faults_of_the_settings_are_told_before_anything_runs() {
         said("show = 'agreement'\nof = ['a', 'b']\nresponse = 'UCS'\ncompare = 'c'"),
         "`of` names 2 stages and `compare` 1; they are compared in pairs"
     );
+    let width = toml::from_str::<Figure>("show = 'specimen'\nof = 'a'\nwidth = 'tripple'").unwrap_err().to_string();
+    assert!(width.contains("wanted \"single\", \"double\" or a length"), "{width}");
     assert!(said("show = 'specimen'\nof = 'a'\nwidth = '9 mm'").contains("9 mm is no width"));
     assert!(said("show = 'specimen'\nof = 'a'\nnames = { UCS = '$\\\\sgma$' }").contains("unknown command"));
 }
