@@ -50,6 +50,9 @@ pub struct TaskCount {
 }
 
 impl TaskCount {
+    /// One task that was in the store.
+    pub(super) const CACHED: Self = Self { total: 1, ran: 0, cached: 1, failed: 0, skipped: 0 };
+
     /// Tasks that have ended one way or another.
     pub fn ended(&self) -> usize {
         self.ran + self.cached + self.failed + self.skipped
@@ -196,6 +199,33 @@ impl Board {
         let key = self.text(node).map(|text| Key::of(&text));
         self.nodes[node].key = key.or(self.nodes[node].key);
         key
+    }
+
+    /// Number of nodes.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Nodes by their keys, where those are known.
+    pub(super) fn by_key(&self) -> HashMap<Key, NodeId> {
+        (0..self.nodes.len()).filter_map(|node| Some((self.nodes[node].key?, node))).collect()
+    }
+
+    /// The key of a node whose inputs were known.
+    pub(super) fn key_of(&self, node: NodeId) -> Option<Key> {
+        self.nodes[node].key
+    }
+
+    /// How one node counts.
+    pub(super) fn count_of(&self, node: NodeId) -> TaskCount {
+        let one = TaskCount { total: 1, ..TaskCount::default() };
+        match self.nodes[node].state {
+            TaskState::Open | TaskState::Running => one,
+            TaskState::Done { cached: true, .. } => TaskCount { cached: 1, ..one },
+            TaskState::Done { cached: false, .. } => TaskCount { ran: 1, ..one },
+            TaskState::Failed(_) => TaskCount { failed: 1, ..one },
+            TaskState::Skipped => TaskCount { skipped: 1, ..one },
+        }
     }
 
     /// The object that holds a node's result.

@@ -18,14 +18,19 @@ use std::time::UNIX_EPOCH;
 /// What a stage came to.
 pub(super) struct Known {
     pub(super) content: ContentHash,
-    pub(super) count: TaskCount,
     pub(super) objects: Vec<ObjectId>,
+}
+
+impl Known {
+    /// Its tasks, with those that it shares with other stages.
+    pub(super) fn count(&self) -> TaskCount {
+        TaskCount { total: self.objects.len(), cached: self.objects.len(), ..TaskCount::default() }
+    }
 }
 
 #[derive(Serialize, Deserialize)]
 struct Note {
     content: String,
-    tasks: usize,
     /// Files that the stage looked at, with their digests.
     files: Vec<(String, String)>,
     /// Design row of each object; −1 for none.
@@ -63,8 +68,7 @@ pub(super) fn recall(workflow: &Workflow, store: &Store, key: &Key) -> Option<Kn
     if !note.files.iter().all(unchanged) || !store.has_all(&memo.objects).ok()? {
         return None;
     }
-    let count = TaskCount { total: note.tasks, cached: note.tasks, ..TaskCount::default() };
-    Some(Known { content: ContentHash::from_hex(&note.content)?, count, objects: memo.objects })
+    Some(Known { content: ContentHash::from_hex(&note.content)?, objects: memo.objects })
 }
 
 /// The tasks that the memo of a stage rests on: design row and key of each. For the reasons of a rerun.
@@ -75,18 +79,18 @@ pub fn remembered(store: &Store, key: &Key) -> Option<Vec<(Option<usize>, Key)>>
     Some(rows.zip(memo.objects.into_iter().map(|object| object.key)).collect())
 }
 
-/// Keeps what a stage came to: `nodes` are all the tasks it rests on, `own` how many of them are its own.
+/// Keeps what a stage came to: `nodes` are all the tasks it rests on.
 pub(super) fn keep(
     store: &Store,
     key: &Key,
     content: ContentHash,
     board: &Board,
-    (nodes, own): (&[NodeId], usize),
+    nodes: &[NodeId],
     files: Vec<(String, String)>,
 ) {
     let objects: Vec<ObjectId> = nodes.iter().filter_map(|&node| board.object(node)).collect();
     let rows = nodes.iter().map(|&node| board.task(node).row.map_or(-1, |row| row as i64)).collect();
-    let note = Note { content: content.to_string(), tasks: own, files, rows };
+    let note = Note { content: content.to_string(), files, rows };
     let note = serde_json::to_string(&note).unwrap_or_else(|e| panic!("BUG: the note of a memo: {e}"));
     // A memo that cannot be written costs time only; the store says what is wrong when it matters.
     let _ = store.keep_memo(key, &Memo { note, objects });

@@ -8,6 +8,7 @@ use crate::plan::Workflow;
 use crate::stage::{Input, Known, Library, StageError, Step};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// What became of a stage, for people and programs.
@@ -197,8 +198,8 @@ impl Stages {
     fn keep(&mut self, index: usize, content: ContentHash, board: &Board, store: &Store) {
         let place = &mut self.places[index];
         if let Some(key) = &place.key {
-            let (nodes, own) = (board.closure(&place.asked), board.count(index).total);
-            memo::keep(store, key, content, board, (&nodes, own), std::mem::take(&mut place.files));
+            let nodes = board.closure(&place.asked);
+            memo::keep(store, key, content, board, &nodes, std::mem::take(&mut place.files));
         }
     }
 
@@ -231,16 +232,37 @@ impl Stages {
                 State::Ended(status) => status.clone(),
                 State::Waiting | State::Asking(_) | State::Finishing(_) => StageStatus::Open,
             },
-            tasks: place.remembered.as_ref().map_or_else(|| board.count(index), |known| known.count),
+            tasks: place.remembered.as_ref().map_or_else(|| board.count(index), memo::Known::count),
             memo: place.key,
             seconds: board.seconds(index),
         }
     }
 
-    /// Every wanted stage.
+    /// Every wanted stage. A task that several stages rest on counts for the first of them in the workflow, whichever
+    /// asked first, so that counts do not depend on timing.
     pub(super) fn reports(&self, workflow: &Workflow, board: &Board) -> Vec<StageReport> {
+        let by_key = board.by_key();
+        let (mut nodes, mut keys) = (vec![false; board.len()], HashSet::new());
         let wanted = (0..self.places.len()).filter(|&index| self.places[index].wanted);
-        wanted.map(|index| self.report(workflow, index, board)).collect()
+        wanted
+            .map(|index| {
+                let place = &self.places[index];
+                let mut tasks = TaskCount::default();
+                for object in place.remembered.iter().flat_map(|known| &known.objects) {
+                    if keys.insert(object.key) {
+                        let node = by_key.get(&object.key).inspect(|&&node| nodes[node] = true);
+                        tasks = tasks + node.map_or(TaskCount::CACHED, |&node| board.count_of(node));
+                    }
+                }
+                for node in board.closure(&place.asked) {
+                    let new = !std::mem::replace(&mut nodes[node], true);
+                    if new && board.key_of(node).is_none_or(|key| keys.insert(key)) {
+                        tasks = tasks + board.count_of(node);
+                    }
+                }
+                StageReport { tasks, ..self.report(workflow, index, board) }
+            })
+            .collect()
     }
 
     /// Objects that memos spoke for.

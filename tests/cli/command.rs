@@ -44,7 +44,7 @@ fn a_changed_template_parameter_or_command_runs_again_and_a_changed_limit_does_n
     space.run(&[]).expect(&[("trial", 1)]);
     space.run(&["--set", "stage.trial.time_limit=30 s"]).expect(&[]);
     space.run(&["--set", "material.base.mortar.Ec=21 GPa"]).expect(&[("trial", 1)]);
-    space.run(&["--set", "stage.trial.environment.LEVEL=2"]).expect(&[("trial", 1)]);
+    space.run(&["--set", "stage.trial.environment.LEVEL=\"2\""]).expect(&[("trial", 1)]);
     space.write("engine.sh", "printf 'UCS\\n1\\n' > out.csv # {{seed}}");
     space.run(&[]).expect(&[("trial", 1)]);
 }

@@ -2,5 +2,6 @@
 
 mod command;
 mod faults;
+mod kill;
 mod reruns;
 mod space;

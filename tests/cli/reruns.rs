@@ -15,7 +15,7 @@ fn space() -> (Space, Ran) {
         ("range", 1),
         ("anova", 1),
         ("faces", 1),
-        ("ccd", 4),
+        ("ccd", 3),
         ("surfaces", 1),
         ("calibrate", 1),
         ("verify", 4),

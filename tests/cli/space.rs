@@ -16,8 +16,6 @@ pub(crate) struct Ran {
     pub(crate) ran: Vec<(String, u64)>,
     /// Result of each stage.
     pub(crate) objects: Vec<(String, Option<String>)>,
-    /// The whole document.
-    pub(crate) document: Value,
 }
 
 impl Space {
@@ -87,7 +85,6 @@ impl Ran {
         Self {
             ran: stages.iter().filter(|stage| count(stage) > 0).map(|stage| (name(stage), count(stage))).collect(),
             objects: stages.iter().map(|stage| (name(stage), stage["object"].as_str().map(str::to_owned))).collect(),
-            document,
         }
     }
 

@@ -18,7 +18,9 @@ fn told(name: &str, bytes: &[u8]) -> String {
 #[test]
 fn files_that_are_no_workflow_are_named_as_what_they_are() {
     assert!(told("empty.toml", b"").starts_with("the file is empty: the table [workflow] is missing\n"));
-    assert!(told("binary.toml", b"a = 1\n\xff\xfe\x00").starts_with("not a text file: byte 6, in line 2, is not UTF-8"));
+    assert!(
+        told("binary.toml", b"a = 1\n\xff\xfe\x00").starts_with("not a text file: byte 6, in line 2, is not UTF-8")
+    );
     let large = vec![b'#'; 50 << 20];
     assert!(told("large.toml", &large).starts_with("the file is larger than 4 MiB, which no workflow is"));
     let missing = faults(Path::new("no/such/file.toml"));

@@ -14,11 +14,65 @@ const IN_EVERY_TEST_RUN: u64 = 1_000;
 
 /// Pieces that mean something to TOML or to a workflow.
 const PIECES: &[&str] = &[
-    "[", "]", "[[", "]]", "{", "}", "=", ".", ",", "\"", "'", "\"\"\"", "'''", "#", "\n", "\r\n", "\t", " ", "\\", "\\u0000",
-    "\u{0}", "\u{feff}", "σ", "\u{202e}", "\u{1f600}", "nan", "-inf", "1e999", "-0", "0x", "9223372036854775808", "1e-400",
-    "1979-05-27T07:32:00Z", "true", "[workflow]", "[stage.a]", "[profile.quick.stage.a]", "[factor.x]", "[response.y]",
-    "[material.m]", "kind = ", "seed = ", "levels = ", "range = ", "sets = ", "unit = ", "design = ", "method = ", "\"GPa\"",
-    "\"16 GPa\"", "\"1 m^127*m^127\"", "\"5e308 km\"", "\"a\"", "[1, 2, 3]", "{ value = \"x^x^x\" }", "{}", "[]", "a.b.c", "1_0",
+    "[",
+    "]",
+    "[[",
+    "]]",
+    "{",
+    "}",
+    "=",
+    ".",
+    ",",
+    "\"",
+    "'",
+    "\"\"\"",
+    "'''",
+    "#",
+    "\n",
+    "\r\n",
+    "\t",
+    " ",
+    "\\",
+    "\\u0000",
+    "\u{0}",
+    "\u{feff}",
+    "σ",
+    "\u{202e}",
+    "\u{1f600}",
+    "nan",
+    "-inf",
+    "1e999",
+    "-0",
+    "0x",
+    "9223372036854775808",
+    "1e-400",
+    "1979-05-27T07:32:00Z",
+    "true",
+    "[workflow]",
+    "[stage.a]",
+    "[profile.quick.stage.a]",
+    "[factor.x]",
+    "[response.y]",
+    "[material.m]",
+    "kind = ",
+    "seed = ",
+    "levels = ",
+    "range = ",
+    "sets = ",
+    "unit = ",
+    "design = ",
+    "method = ",
+    "\"GPa\"",
+    "\"16 GPa\"",
+    "\"1 m^127*m^127\"",
+    "\"5e308 km\"",
+    "\"a\"",
+    "[1, 2, 3]",
+    "{ value = \"x^x^x\" }",
+    "{}",
+    "[]",
+    "a.b.c",
+    "1_0",
 ];
 
 fn pick<'a, T: ?Sized>(random: &mut Stream, from: &[&'a T]) -> &'a T {
@@ -73,7 +127,8 @@ impl Inputs {
         let profile = (random.below(4) == 0).then(|| pick(&mut random, &["quick", "other", "", "σ\n"]).to_owned());
         let some = if random.below(4) == 0 { random.below(3) } else { 0 };
         let set = |random: &mut Stream| {
-            let path = pick(random, &["stage.a.file", "workflow.seed", "factor.Ec.levels", "a b", "", "stage.\"a.b\".c"]);
+            let path =
+                pick(random, &["stage.a.file", "workflow.seed", "factor.Ec.levels", "a b", "", "stage.\"a.b\".c"]);
             format!("{path}{}{}", pick(random, &["=", "", "=="]), self.piece(random))
         };
         let sets = (0..some).map(|_| set(&mut random)).collect();
@@ -81,7 +136,11 @@ impl Inputs {
     }
 
     fn piece(&self, random: &mut Stream) -> String {
-        if random.below(2) == 0 { pick(random, PIECES).to_owned() } else { self.words[random.below(self.words.len())].clone() }
+        if random.below(2) == 0 {
+            pick(random, PIECES).to_owned()
+        } else {
+            self.words[random.below(self.words.len())].clone()
+        }
     }
 
     fn mutate(&self, random: &mut Stream, text: &mut String) {

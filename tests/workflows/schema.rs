@@ -52,6 +52,10 @@ fn every_kind_is_an_alternative_of_its_own() {
     assert_eq!(names, flow::stage::KINDS.iter().map(|kind| kind.name).collect::<Vec<_>>());
     for kind in kinds {
         let closed = |key: &str| kind[key] == json!(false);
-        assert!(closed("additionalProperties") || closed("unevaluatedProperties"), "{} lets any key pass", kind["title"]);
+        assert!(
+            closed("additionalProperties") || closed("unevaluatedProperties"),
+            "{} lets any key pass",
+            kind["title"]
+        );
     }
 }

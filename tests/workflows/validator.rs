@@ -38,12 +38,16 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str, faults: &mut Vec
             "pattern" => value.as_str().is_none_or(|v| pattern(rule).is_match(v)),
             "minItems" => value.as_array().is_none_or(|v| v.len() as f64 >= number(rule)),
             "maxItems" => value.as_array().is_none_or(|v| v.len() as f64 <= number(rule)),
-            "uniqueItems" => value.as_array().is_none_or(|list| !(1..list.len()).any(|i| list[..i].iter().any(|v| same(v, &list[i])))),
+            "uniqueItems" => value
+                .as_array()
+                .is_none_or(|list| !(1..list.len()).any(|i| list[..i].iter().any(|v| same(v, &list[i])))),
             "minProperties" => value.as_object().is_none_or(|v| v.len() as f64 >= number(rule)),
-            "required" => value.as_object().is_none_or(|v| items(rule).iter().all(|name| v.contains_key(name.as_str().unwrap()))),
-            "propertyNames" => value.as_object().is_none_or(|v| {
-                v.keys().all(|name| passes(root, rule, &Value::String(name.clone())))
-            }),
+            "required" => {
+                value.as_object().is_none_or(|v| items(rule).iter().all(|name| v.contains_key(name.as_str().unwrap())))
+            }
+            "propertyNames" => {
+                value.as_object().is_none_or(|v| v.keys().all(|name| passes(root, rule, &Value::String(name.clone()))))
+            }
             "items" => {
                 let prefix = schema.get("prefixItems").map_or(0, |prefix| items(prefix).len());
                 for (i, item) in value.as_array().into_iter().flatten().enumerate().skip(prefix) {
@@ -140,7 +144,8 @@ fn type_of(value: &Value) -> &'static str {
 }
 
 fn types(rule: &Value) -> Vec<&str> {
-    rule.as_array().map_or_else(|| vec![rule.as_str().unwrap()], |list| list.iter().map(|t| t.as_str().unwrap()).collect())
+    rule.as_array()
+        .map_or_else(|| vec![rule.as_str().unwrap()], |list| list.iter().map(|t| t.as_str().unwrap()).collect())
 }
 
 fn items(rule: &Value) -> &Vec<Value> {
@@ -170,5 +175,7 @@ fn it_refuses_what_each_keyword_refuses() {
     let parts = r#"{"allOf": [{"properties": {"a": true}}], "unevaluatedProperties": false}"#;
     assert!(refused(parts, r#"{"b": 1}"#) && !refused(parts, r#"{"a": 1}"#));
     assert!(refused(r#"{"uniqueItems": true}"#, "[1, 2, 1.0]") && refused(r#"{"items": {"minimum": 0}}"#, "[1, -1]"));
-    assert!(refused(r#"{"propertyNames": {"pattern": "^a"}}"#, r#"{"b": 1}"#) && refused(r#"{"required": ["a"]}"#, "{}"));
+    assert!(
+        refused(r#"{"propertyNames": {"pattern": "^a"}}"#, r#"{"b": 1}"#) && refused(r#"{"required": ["a"]}"#, "{}")
+    );
 }

@@ -1,3 +1,4 @@
+#![allow(dead_code)] // fields are read from text, and that is the test
 use super::super::node::Sources;
 use super::super::syntax;
 use super::*;
