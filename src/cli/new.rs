@@ -3,7 +3,7 @@
 use super::Exit;
 use crate::plan::{nearest, schema};
 use clap::Args;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Write a commented workflow to start from, and the schema for editors beside it.
@@ -12,44 +12,101 @@ pub(super) struct New {
     /// Name of the workflow: NAME.toml is written, never over a file that is there.
     name: PathBuf,
     /// The shipped workflow to copy.
-    #[arg(long, value_name = "WORKFLOW", default_value = TEMPLATES[0].0)]
+    #[arg(long, value_name = "WORKFLOW", default_value = SHIPPED[0].name)]
     from: String,
 }
 
-/// Shipped workflows by name.
-const TEMPLATES: &[(&str, &str)] =
-    &[("start", include_str!("../../workflows/start.toml")), ("c30", include_str!("../../workflows/c30.toml"))];
+/// A workflow in the repository's folder `workflows`, with the tables it reads.
+struct Shipped {
+    name: &'static str,
+    text: &'static str,
+    files: &'static [(&'static str, &'static str)],
+}
+
+/// The first is copied when none is named.
+const SHIPPED: &[Shipped] = &[
+    Shipped { name: "start", text: include_str!("../../workflows/start.toml"), files: &[] },
+    Shipped { name: "c30", text: include_str!("../../workflows/c30.toml"), files: SU2021 },
+    Shipped { name: "su2021-published", text: include_str!("../../workflows/su2021-published.toml"), files: SU2021 },
+];
+
+const SU2021: &[(&str, &str)] = &[
+    ("su2021/l64.csv", include_str!("../../workflows/su2021/l64.csv")),
+    ("su2021/table06.csv", include_str!("../../workflows/su2021/table06.csv")),
+    ("su2021/table07.csv", include_str!("../../workflows/su2021/table07.csv")),
+    ("su2021/table08.csv", include_str!("../../workflows/su2021/table08.csv")),
+    ("su2021/table09.csv", include_str!("../../workflows/su2021/table09.csv")),
+    ("su2021/table10.csv", include_str!("../../workflows/su2021/table10.csv")),
+    ("su2021/table11.csv", include_str!("../../workflows/su2021/table11.csv")),
+    ("su2021/table12.csv", include_str!("../../workflows/su2021/table12.csv")),
+];
 
 impl New {
     pub(super) fn go(self) -> Exit {
-        let names = || TEMPLATES.iter().map(|(name, _)| *name);
-        let Some((_, text)) = TEMPLATES.iter().find(|(name, _)| *name == self.from) else {
-            let meant =
-                nearest(&self.from, names()).map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
-            let known: Vec<&str> = names().collect();
+        let Some(shipped) = SHIPPED.iter().find(|shipped| shipped.name == self.from) else {
+            let known: Vec<&str> = SHIPPED.iter().map(|shipped| shipped.name).collect();
+            let near = nearest(&self.from, known.iter().copied());
+            let meant = near.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
             eprintln!("error: there is no shipped workflow `{}`{meant}\n  there are {}", self.from, known.join(", "));
             return Exit::BadInput;
         };
         let path = self.name.with_extension("toml");
-        let schema_path = path.with_file_name(schema::FILE_NAME);
-        match write_new(&path, text).and_then(|()| write_new(&schema_path, &format!("{:#}\n", schema::schema()))) {
-            Ok(()) => {}
-            Err((place, e)) if place == schema_path && e.kind() == std::io::ErrorKind::AlreadyExists => {}
-            Err((place, e)) if e.kind() == std::io::ErrorKind::AlreadyExists => {
-                eprintln!("error: {} is there already and was left as it is", place.display());
-                return Exit::BadInput;
+        match self.write(&path, shipped) {
+            Ok(()) => {
+                println!("{0} is written; next: flow plan {0}", path.display());
+                Exit::Done
             }
-            Err((place, e)) => {
-                eprintln!("error: {} cannot be written: {e}", place.display());
-                return Exit::System;
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {
+                eprintln!("error: {} is there already and was left as it is", path.display());
+                Exit::BadInput
+            }
+            Err(e) => {
+                eprintln!("error: {} cannot be written: {e}", path.display());
+                Exit::System
             }
         }
-        out!("{} written; next: flow plan {0}", path.display());
-        Exit::Done
+    }
+
+    /// The workflow must be new; schema and tables beside it may be there from another one.
+    fn write(&self, path: &Path, shipped: &Shipped) -> std::io::Result<()> {
+        std::fs::File::create_new(path)?.write_all(shipped.text.as_bytes())?;
+        let schema = format!("{:#}\n", schema::schema());
+        let beside = shipped.files.iter().copied().chain([(schema::FILE_NAME, schema.as_str())]);
+        for (name, text) in beside {
+            let place = path.with_file_name(name);
+            place.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+            match std::fs::File::create_new(&place) {
+                Ok(mut file) => file.write_all(text.as_bytes())?,
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
+                Err(e) => return Err(e),
+            }
+        }
+        Ok(())
     }
 }
 
-fn write_new(path: &Path, text: &str) -> Result<(), (PathBuf, std::io::Error)> {
-    let file = std::fs::File::create_new(path);
-    file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(|e| (path.to_owned(), e))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What `--from` gives can be read and checked where it lies, with all the files it names.
+    #[test]
+    fn every_shipped_workflow_is_complete() {
+        for shipped in SHIPPED {
+            let folder = tempfile::tempdir().unwrap();
+            let new = New { name: folder.path().join("mine"), from: shipped.name.to_owned() };
+            assert_eq!(new.go(), Exit::Done);
+            let path = folder.path().join("mine.toml");
+            let faults = crate::plan::load(&path, &crate::plan::Overrides::default()).err().unwrap_or_default();
+            assert!(faults.is_empty(), "{}: {}", shipped.name, faults[0]);
+            for (_, named) in
+                shipped.text.match_indices("file = \"").map(|(at, head)| (at, &shipped.text[at + head.len()..]))
+            {
+                let file = named.split('"').next().unwrap_or_default();
+                assert!(folder.path().join(file).exists(), "{} names {file}, which is not shipped", shipped.name);
+            }
+            let again = New { name: folder.path().join("mine"), from: shipped.name.to_owned() };
+            assert_eq!(again.go(), Exit::BadInput);
+        }
+    }
 }

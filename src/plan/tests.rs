@@ -53,3 +53,36 @@ fn all_faults_are_told_at_once() {
     assert_eq!(found[..5], expected);
     assert!(found[5].starts_with("w.toml:8:8: there is no kind of stage `dta` | did you mean `data`?"), "{}", found[5]);
 }
+
+fn settings(profile: Option<&str>, sets: &[&str]) -> Result<String, String> {
+    let overrides =
+        Overrides { profile: profile.map(str::to_owned), sets: sets.iter().map(|&set| set.to_owned()).collect() };
+    match parse("w.toml", GOOD, &overrides) {
+        Ok(workflow) => Ok(format!("{} {}", workflow.context.seed, workflow.stages[0].stage.settings()["file"])),
+        Err(faults) => Err(faults[0].to_string()),
+    }
+}
+
+#[test]
+fn profiles_and_options_lie_over_the_file_in_that_order() {
+    let ok = |text: &str| Ok(text.to_owned());
+    assert_eq!(settings(None, &[]), ok("3 \"runs.csv\""));
+    assert_eq!(settings(Some("quick"), &[]), ok("3 \"few.csv\""));
+    assert_eq!(settings(Some("quick"), &["stage.runs.file='set.csv'", "workflow.seed = 0x10"]), ok("16 \"set.csv\""));
+    assert_eq!(settings(None, &["stage.runs.file=plain text.csv"]), ok("3 \"plain text.csv\""), "falls back to text");
+    assert_eq!(settings(None, &["stage.runs.file=a", "stage.\"runs\".file=b"]), ok("3 \"b\""), "the last one counts");
+    assert_eq!(settings(None, &["workflow.title=new key"]), ok("3 \"runs.csv\""));
+}
+
+#[test]
+fn options_that_set_nothing_are_faults() {
+    let fault = |set: &str| settings(None, &[set]).unwrap_err();
+    assert_eq!(fault("stage.rums.file=1"), "--set:1:1: the option sets `stage.rums`, which does not exist");
+    assert_eq!(fault("stage.runs.fil=1"), "--set:1:1: unknown key `fil`");
+    assert_eq!(fault("stage.runs.file=1"), "--set:1:17: wanted a text in quotes, found the number 1");
+    assert_eq!(fault("profile.quick=1"), "--set:1:1: the option cannot set `profile`");
+    assert_eq!(fault("stage.runs.file"), "--set:1:1: `stage.runs.file` has no `=`");
+    assert_eq!(fault("stage..file=1"), "--set:1:1: `stage..file` is not a path of keys");
+    assert_eq!(fault("workflow.seed=nan"), "--set:1:15: wanted a whole number of 0 or more, found the text \"nan\"");
+    assert_eq!(fault("stage=1"), "--set:1:1: the option must name one of the stages below `stage`");
+}
