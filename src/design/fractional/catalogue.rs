@@ -43,8 +43,8 @@ const DESIGNS: &[(usize, &[&str])] = &[
     (128, &["ABCG", "BCDE", "ACDF", "ABCDEFG"]),
 ];
 
-/// The listed fraction for `factors` factors in `runs` runs, or the smallest of at least this `resolution`; a full factorial
-/// where that is the smallest.
+/// The listed fraction for `factors` factors in `runs` runs, or the smallest of at least this `resolution`; a full
+/// factorial where that is the smallest.
 pub(super) fn find(factors: usize, runs: Option<usize>, resolution: Option<usize>) -> Result<Vec<Word>, Fault> {
     let listed = || {
         let fits =
