@@ -84,7 +84,7 @@ mod tests {
         build(&Method::BoxBehnken(BoxBehnken { centre_points }), &factors, Layout::default(), 1).unwrap()
     }
 
-    /// Box & Behnken 1960, table 1; NIST handbook, table 3.24.
+    /// Box & Behnken 1960.
     #[test]
     fn three_factors_are_the_printed_matrix() {
         let printed =

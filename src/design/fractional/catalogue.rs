@@ -1,4 +1,4 @@
-//! Fractions of minimum aberration up to 128 runs (Chen, Sun & Wu 1993; Box, Hunter & Hunter 2005, table 6.22).
+//! Fractions of minimum aberration up to 128 runs (Chen, Sun & Wu 1993; Box, Hunter & Hunter 2005).
 
 use super::generator::{LETTERS, Word};
 use crate::design::error::Fault;

@@ -2,8 +2,7 @@
 //!
 //! A hypothesis on d₁ coefficients is tested by F on d₁ and d₂ degrees of freedom at level α. If it is false, F follows
 //! the non-central distribution with λ = (effect in units of its standard error)², and the power is P(F' > F_α). The
-//! distribution is its Poisson mixture (Johnson, Kotz & Balakrishnan 1995, *Continuous Univariate Distributions 2*, eq.
-//! 30.8):
+//! distribution is its Poisson mixture (Johnson, Kotz & Balakrishnan 1995, *Continuous Univariate Distributions 2*):
 //!
 //! P(F' > f) = Σ_j e^(−λ/2)(λ/2)^j / j! · I_(1−x)(d₂/2, d₁/2 + j), x = d₁f / (d₁f + d₂),
 //!
