@@ -1,4 +1,5 @@
-//! Box–Behnken designs for 3 to 7 factors (Box & Behnken 1960, *Technometrics* 2, 455, doi:10.1080/00401706.1960.10489912).
+//! Box–Behnken designs for 3 to 7 factors (Box & Behnken 1960, *Technometrics* 2, 455,
+//! doi:10.1080/00401706.1960.10489912).
 //!
 //! Every block of an incomplete block design names the factors that run through ±1 together while the others stay at 0;
 //! centre points are added. No point lies at a corner of the cube, and three levels suffice for a second-order surface.
@@ -83,7 +84,7 @@ mod tests {
         build(&Method::BoxBehnken(BoxBehnken { centre_points }), &factors, Layout::default(), 1).unwrap()
     }
 
-    /// Box & Behnken 1960, table 1; NIST handbook, table 3.24.
+    /// Box & Behnken 1960.
     #[test]
     fn three_factors_are_the_printed_matrix() {
         let printed =

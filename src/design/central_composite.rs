@@ -1,5 +1,5 @@
-//! Central composite designs (Box & Wilson 1951, *J. R. Stat. Soc. B* 13, 1, doi:10.1111/j.2517-6161.1951.tb00067.x; Box &
-//! Hunter 1957, *Ann. Math. Stat.* 28, 195, doi:10.1214/aoms/1177707047).
+//! Central composite designs (Box & Wilson 1951, *J. R. Stat. Soc. B* 13, 1, doi:10.1111/j.2517-6161.1951.tb00067.x;
+//! Box & Hunter 1957, *Ann. Math. Stat.* 28, 195, doi:10.1214/aoms/1177707047).
 //!
 //! F corners of the cube at ±1 (the full factorial, or from five factors on the smallest fraction of resolution V), 2k
 //! axial points at ±α, and n₀ centre points; N = F + 2k + n₀.
@@ -11,8 +11,8 @@
 //! | spherical | √k | all points but the centre on one sphere |
 //! | face | 1 | three levels suffice, no point leaves the cube |
 //!
-//! Without `centre_points`, n₀ gives uniform precision (Box & Hunter 1957, table 2): the integer nearest to λ(√F + 2)² − F − 2k with
-//! λ = (k + 3 + √(9k² + 14k − 7)) / (4(k + 2)).
+//! Without `centre_points`, n₀ gives uniform precision (Box & Hunter 1957): the integer nearest to λ(√F + 2)²
+//! − F − 2k with λ = (k + 3 + √(9k² + 14k − 7)) / (4(k + 2)).
 
 use super::coding::{Factor, check_surface};
 use super::error::Fault;
@@ -210,7 +210,7 @@ mod tests {
         }
     }
 
-    /// Box & Hunter 1957, table 2: corners, α and centre points of rotatable designs of uniform precision.
+    /// Box & Hunter 1957: corners, α and centre points of rotatable designs of uniform precision.
     #[test]
     fn rotatable_designs_have_the_published_size_and_alpha() {
         let published = [
@@ -232,7 +232,8 @@ mod tests {
         }
     }
 
-    /// α for one centre point as listed in textbooks (Myers, Montgomery & Anderson-Cook 2016, section 8.2): k = 5 on the half cube.
+    /// α for one centre point as listed in textbooks (Myers, Montgomery & Anderson-Cook 2016): k = 5 on the half
+    /// cube.
     #[test]
     fn orthogonal_alpha_makes_squares_uncorrelated() {
         let orthogonal =

@@ -1,9 +1,9 @@
 //! Factors, and the two scales they are measured on.
 //!
-//! A factor has a *natural* scale (gigapascal, ratio …) and a *coded* one on which its lowest level is −1 and its highest
-//! +1: `coded = (natural − centre) / half`, with `centre = (low + high) / 2` and `half = (high − low) / 2` (Box & Wilson
-//! 1951, doi:10.1111/j.2517-6161.1951.tb00067.x). Values that are a declared level up to rounding are given that level's
-//! very bits, so that a row of one design equals the same row of another.
+//! A factor has a *natural* scale (gigapascal, ratio …) and a *coded* one on which its lowest level is −1 and its
+//! highest +1: `coded = (natural − centre) / half`, with `centre = (low + high) / 2` and `half = (high − low) / 2` (Box
+//! & Wilson 1951, doi:10.1111/j.2517-6161.1951.tb00067.x). Values that are a declared level up to rounding are given
+//! that level's very bits, so that a row of one design equals the same row of another.
 
 use super::error::Fault;
 use serde::{Deserialize, Serialize};
@@ -97,8 +97,8 @@ impl Factor {
         if (coded - whole).abs() < SNAP { whole + 0.0 } else { coded }
     }
 
-    /// Natural value of a coded one: exactly the declared level or end of the range where it is one up to rounding, else rounded to
-    /// twelve digits, so that a table reads 3.025 and not 3.0250000000000004.
+    /// Natural value of a coded one: exactly the declared level or end of the range where it is one up to rounding,
+    /// else rounded to twelve digits, so that a table reads 3.025 and not 3.0250000000000004.
     pub fn natural(&self, coded: f64) -> f64 {
         let value = self.centre() + self.half() * coded;
         let near = |known: &f64| (value - known).abs() <= SNAP * self.half().max(known.abs());

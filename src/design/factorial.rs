@@ -1,4 +1,5 @@
-//! Full factorial: every combination of the levels of every factor (Fisher 1935, *The Design of Experiments*; Yates 1937).
+//! Full factorial: every combination of the levels of every factor (Fisher 1935, *The Design of Experiments*; Yates
+//! 1937).
 //!
 //! Standard order is that of Yates: the first factor changes fastest. A factor given by a range is set to its two ends.
 //! Centre points may be added; they stand at the middle of every range.

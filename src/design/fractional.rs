@@ -1,10 +1,10 @@
-//! Regular fractions 2^(k−p) of the two-level factorial, by generators (Box & Hunter 1961, *Technometrics* 3, 311 and 449,
-//! doi:10.1080/00401706.1961.10489951).
+//! Regular fractions 2^(k−p) of the two-level factorial, by generators (Box & Hunter 1961, *Technometrics* 3, 311 and
+//! 449, doi:10.1080/00401706.1961.10489951).
 //!
 //! k − p basic factors run through all combinations in Yates order; each of the other p is the product of some of them,
 //! `E = ABCD`. The generators' words (ABCDE) and their products are the *defining relation* I = …; its shortest word is
-//! the *resolution*: III mixes main effects with two-factor interactions, IV two-factor interactions with one another, V
-//! leaves both clear. Without generators the design is the one of minimum aberration (Fries & Hunter 1980,
+//! the *resolution*: III mixes main effects with two-factor interactions, IV two-factor interactions with one another,
+//! V leaves both clear. Without generators the design is the one of minimum aberration (Fries & Hunter 1980,
 //! doi:10.1080/00401706.1980.10486210) listed by Chen, Sun & Wu 1993, *Int. Stat. Rev.* 61, 131, doi:10.2307/1403599.
 
 mod catalogue;
@@ -23,8 +23,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FractionalFactorial {
-    /// One a generated factor: `"E=ABCD"` with letters by position (A, B, … without I), or `"mu=Ec*kn_ks"`; `"E=-ABCD"` takes
-    /// the other half.
+    /// One a generated factor: `"E=ABCD"` with letters by position (A, B, … without I), or `"mu=Ec*kn_ks"`; `"E=-ABCD"`
+    /// takes the other half.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub generators: Vec<String>,
     /// The least resolution (3, 4, 5 …); the smallest published fraction that has it is taken.

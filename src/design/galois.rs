@@ -1,8 +1,8 @@
 //! Arithmetic of the finite fields GF(q), q a prime power up to 27.
 //!
-//! An element is a number 0 … q − 1 whose base-p digits are the coefficients of a polynomial, lowest power first; 0 and 1
-//! are the neutral elements. Products are reduced by the polynomial listed for q (Lidl & Niederreiter 1997, *Finite
-//! Fields*, table C, doi:10.1017/CBO9780511525926).
+//! An element is a number 0 … q − 1 whose base-p digits are the coefficients of a polynomial, lowest power first; 0 and
+//! 1 are the neutral elements. Products are reduced by the polynomial listed for q (Lidl & Niederreiter 1997, *Finite
+//! Fields*, doi:10.1017/CBO9780511525926).
 
 /// Prime, degree and the reducing monic polynomial without its leading term (coefficients of 1, x, x², …).
 const PRIME_POWERS: &[(usize, usize, &[usize])] =

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | 4, 8, 12, 20, 24, 44, 48 | quadratic residues modulo the prime N − 1 (Paley 1933, type I, doi:10.1002/sapm1933121311) |
 //! | 16, 32 | shift-register sequences over GF(2): the regular fractions 2^(15−11) and 2^(31−26) |
-//! | 36 | twin primes 5 · 7 (Stanton & Sprott 1958, doi:10.4153/CJM-1958-008-5; printed by Plackett & Burman) |
+//! | 36 | twin primes 5 · 7 (Stanton & Sprott 1958, *Can. J. Math.* 10, 73; printed by Plackett & Burman) |
 //! | 28 | not cyclic: nine blocks of 9 × 9 cyclic in A, B, C, each of 3 × 3 circulants, as printed |
 //! | 40 | doubling of N = 20: (H, H; H, −H), as printed |
 

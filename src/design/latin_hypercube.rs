@@ -1,9 +1,11 @@
-//! Latin hypercube samples (McKay, Beckman & Conover 1979, *Technometrics* 21, 239, doi:10.1080/00401706.1979.10489755): the
-//! range of every factor is cut into n equal strata and each stratum holds one of the n points.
+//! Latin hypercube samples (McKay, Beckman & Conover 1979, *Technometrics* 21, 239,
+//! doi:10.1080/00401706.1979.10489755): the range of every factor is cut into n equal strata and each stratum holds one
+//! of the n points.
 //!
-//! `maximin` spreads the points by exchanging two values of one factor under simulated annealing (Morris & Mitchell 1995,
-//! *J. Stat. Plan. Inference* 43, 381, doi:10.1016/0378-3758(94)00035-T): it minimises φ = (Σ d⁻⁴⁰)^(1/40) over the distances d of
-//! all pairs, measured in strata, which for so high a power pushes the smallest distance up. The best sample met is kept.
+//! `maximin` spreads the points by exchanging two values of one factor under simulated annealing (Morris & Mitchell
+//! 1995, *J. Stat. Plan. Inference* 43, 381, doi:10.1016/0378-3758(94)00035-T): it minimises φ = (Σ d⁻⁴⁰)^(1/40) over
+//! the distances d of all pairs, measured in strata, which for so high a power pushes the smallest distance up. The
+//! best sample met is kept.
 
 use super::coding::Factor;
 use super::error::Fault;
@@ -175,10 +177,11 @@ impl Spread {
         self.columns[column].swap(a, b);
     }
 
-    /// Simulated annealing on φ = (Σ d⁻⁴⁰)^(1/40), whose relative change is ln(Σ'/Σ)/40: [`CYCLES`] times from hot to cold.
+    /// Simulated annealing on φ = (Σ d⁻⁴⁰)^(1/40), whose relative change is ln(Σ'/Σ)/40: [`CYCLES`] times from hot to
+    /// cold.
     fn anneal(mut self, stream: &mut Stream) -> Vec<Vec<usize>> {
         let (n, k) = (self.n, self.columns.len());
-        let tries = (100 * n * k).max(20_000).min((50_000_000 / n).max(1));
+        let tries = (100 * n * k).max(20_000).min((20_000_000 / n).max(1));
         let cooling = exp(ln(COLD / HOT) / tries as f64);
         let mut best = (f64::INFINITY, self.columns.clone());
         for _ in 0..CYCLES {
@@ -244,8 +247,8 @@ mod tests {
         }
     }
 
-    /// Largest possible smallest squared distance, in strata, over all samples in two dimensions: found by trying them all in
-    /// `tests/reference/design/generate.py`.
+    /// Largest possible smallest squared distance, in strata, over all samples in two dimensions: found by trying them
+    /// all in `tests/reference/design/generate.py`.
     #[test]
     fn small_samples_reach_the_optimum() {
         for (n, optimum) in [(4, 5.0), (5, 5.0), (6, 5.0), (7, 8.0), (8, 8.0), (9, 10.0)] {

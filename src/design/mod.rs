@@ -1,7 +1,7 @@
 //! Designs of experiments: from factors to a table of runs, and what such a table can tell.
 //!
-//! Every file is one design; its head cites who published the construction and for which sizes. A size for which none is
-//! published is refused with the nearest one that is. Coded values run from −1 to +1 over a factor's range
+//! Every file is one design; its head cites who published the construction and for which sizes. A size for which none
+//! is published is refused with the nearest one that is. Coded values run from −1 to +1 over a factor's range
 //! ([`coding`]); standard order is that of the construction. [`report()`] judges any table by its rows alone.
 
 pub mod box_behnken;
@@ -110,8 +110,8 @@ methods! {
     Given(given),
 }
 
-/// Builds the table of a design. The same factors, options and seed give the same bits; the seed matters only for designs that
-/// draw and for [`Order::Random`], and the random order is drawn apart from the points.
+/// Builds the table of a design. The same factors, options and seed give the same bits; the seed matters only for
+/// designs that draw and for [`Order::Random`], and the random order is drawn apart from the points.
 ///
 /// # Errors
 /// All faults of the factors, or else all faults of the design's options and size.

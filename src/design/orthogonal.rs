@@ -1,16 +1,17 @@
 //! Orthogonal arrays: tables in which every pair of columns shows all combinations of levels equally often.
 //!
 //! The arrays come from finite fields, Hadamard matrices and difference schemes ([`construct`] lists constructions and
-//! sources; Hedayat, Sloane & Stufken 1999, *Orthogonal Arrays*, doi:10.1007/978-1-4612-1478-6, is the general reference). A
-//! column of s levels may be replaced by the columns of an array of s runs, so mixed tables such as L18(2^1 3^7),
-//! L32(2^1 4^9), L36(2^11 3^12) and L36(2^3 3^13) come out of the symmetrical ones.
+//! sources; Hedayat, Sloane & Stufken 1999, *Orthogonal Arrays*, doi:10.1007/978-1-4612-1478-6, is the general
+//! reference). A column of s levels may be replaced by the columns of an array of s runs, so mixed tables such as
+//! L18(2^1 3^7), L32(2^1 4^9), L36(2^11 3^12) and L36(2^3 3^13) come out of the symmetrical ones.
 //!
-//! A factor with fewer levels than its column has the surplus levels merged into its own ones (Addelman 1962, *Technometrics*
-//! 4, 21, doi:10.1080/00401706.1962.10489985): in L64(4^21) with three-level factors one level stands in 32 runs and the
-//! others in 16, and every pair of factors keeps exactly proportional frequencies. [`Orthogonal::doubled`] says which.
+//! A factor with fewer levels than its column has the surplus levels merged into its own ones (Addelman 1962,
+//! *Technometrics* 4, 21, doi:10.1080/00401706.1962.10489985): in L64(4^21) with three-level factors one level stands
+//! in 32 runs and the others in 16, and every pair of factors keeps exactly proportional frequencies.
+//! [`Orthogonal::doubled`] says which.
 //!
-//! When a table has more columns than there are factors, those are taken that entangle main effects least with two-factor
-//! interactions (smallest A₃ of the generalized word-length pattern, one column after the other).
+//! When a table has more columns than there are factors, those are taken that entangle main effects least with
+//! two-factor interactions (smallest A₃ of the generalized word-length pattern, one column after the other).
 
 mod array;
 mod assign;
@@ -34,7 +35,8 @@ use shape::{Counts, count, name, parse};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Orthogonal {
-    /// The table, as `L18(2^1 3^7)` or `L18`; the smallest that has a column of exactly each factor's levels if left out.
+    /// The table, as `L18(2^1 3^7)` or `L18`; the smallest that has a column of exactly each factor's levels if left
+    /// out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table: Option<String>,
     /// Column of each factor, from 1, in the order of the factors; those that entangle least if left out.
@@ -43,7 +45,8 @@ pub struct Orthogonal {
     /// Where levels are merged: the level (from 1) that is met most often; 1 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubled: Option<usize>,
-    /// Strength 2 (every pair of columns) or 3 (every triple: main effects clear of two-factor interactions); 2 if left out.
+    /// Strength 2 (every pair of columns) or 3 (every triple: main effects clear of two-factor interactions); 2 if left
+    /// out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strength: Option<usize>,
 }

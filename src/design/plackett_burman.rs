@@ -1,8 +1,8 @@
-//! Plackett–Burman designs: N = 8, 12, … 48 runs for up to N − 1 two-level factors (Plackett & Burman 1946, *Biometrika* 33,
-//! 305, doi:10.1093/biomet/33.4.305). Resolution III: main effects are clear of one another and, unless N is a power of
-//! two, each is *partly* aliased with every two-factor interaction that does not contain it (±1/3 at 12 runs). Folding over
-//! (Box & Wilson 1951) adds the mirror image of every run and clears main effects of two-factor interactions.
-//! The constructions are listed in [`super::hadamard`].
+//! Plackett–Burman designs: N = 8, 12, … 48 runs for up to N − 1 two-level factors (Plackett & Burman 1946,
+//! *Biometrika* 33, 305, doi:10.1093/biomet/33.4.305). Resolution III: main effects are clear of one another and,
+//! unless N is a power of two, each is *partly* aliased with every two-factor interaction that does not contain it
+//! (±1/3 at 12 runs). Folding over (Box & Wilson 1951) adds the mirror image of every run and clears main effects of
+//! two-factor interactions. The constructions are listed in [`super::hadamard`].
 
 use super::coding::{Factor, check_two_level};
 use super::error::Fault;
@@ -79,7 +79,8 @@ mod tests {
         build(&Method::PlackettBurman(design), &factors(n), Layout::default(), 1).unwrap().coded
     }
 
-    /// The 12-run table as printed (Plackett & Burman 1946; Montgomery, *Design and Analysis of Experiments*, table 8.23).
+    /// The 12-run table as printed (Plackett & Burman 1946; Montgomery, *Design and Analysis of Experiments*, table
+    /// 8.23).
     #[test]
     fn twelve_runs_are_the_printed_matrix() {
         let printed = [

@@ -1,11 +1,11 @@
-//! Sobol sequences (Sobol 1967, doi:10.1016/0041-5553(67)90144-9) with the direction numbers of Joe & Kuo 2008, *SIAM J. Sci.
-//! Comput.* 30, 2635, doi:10.1137/070709359 (their set 6), for up to 64 factors; points in Gray-code order (Antonov & Saleev 1979,
-//! doi:10.1016/0041-5553(79)90085-5).
+//! Sobol sequences (Sobol 1967, doi:10.1016/0041-5553(67)90144-9) with the direction numbers of Joe & Kuo 2008, *SIAM
+//! J. Sci. Comput.* 30, 2635, doi:10.1137/070709359 (their set 6), for up to 64 factors; points in Gray-code order
+//! (Antonov & Saleev 1979, doi:10.1016/0041-5553(79)90085-5).
 //!
-//! *First point.* Unscrambled, point 1 is the origin: every factor at its low end. It belongs to the sequence and is kept
-//! (dropping it spoils the balance of the first 2^m points: Owen 2020, arXiv:2008.08051); `skip` leaves out points from
-//! the start. *Scrambling* (the default) multiplies the digits by random lower triangular matrices and adds a random shift
-//! (Matoušek 1998, doi:10.1006/jcom.1998.0489); balance is kept and no point lies on the boundary by rule.
+//! *First point.* Unscrambled, point 1 is the origin: every factor at its low end. It belongs to the sequence and is
+//! kept (dropping it spoils the balance of the first 2^m points: Owen 2020, arXiv:2008.08051); `skip` leaves out points
+//! from the start. *Scrambling* (the default) multiplies the digits by random lower triangular matrices and adds a
+//! random shift (Matoušek 1998, doi:10.1006/jcom.1998.0489); balance is kept and no point lies on the boundary by rule.
 //! Runs should be a power of two: then every factor's range is cut into as many equal parts with one point each.
 
 mod directions;

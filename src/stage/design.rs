@@ -1,10 +1,10 @@
 //! `kind = "design"`: the runs of an experiment, and what they can tell.
 //!
-//! `method` picks the design; the other keys are its options, and an option of another method is refused. The factors are
-//! those of the workflow, in the order named. Orthogonal, factorial designs take a factor's levels (its range if it
+//! `method` picks the design; the other keys are its options, and an option of another method is refused. The factors
+//! are those of the workflow, in the order named. Orthogonal, factorial designs take a factor's levels (its range if it
 //! has none); two-level and sampled designs its range (the extreme levels if it has none); central composite and
-//! Box–Behnken designs its range, or up to three levels. Rows come from the workflow (`rows`) or a CSV file beside it (`file`) with
-//! `method = "given"`.
+//! Box–Behnken designs its range, or up to three levels. Rows come from the workflow (`rows`) or a CSV file beside it
+//! (`file`) with `method = "given"`.
 //!
 //! The result has the tables `design` (run, standard order, point type, factors in their units), `coded` and `report`.
 

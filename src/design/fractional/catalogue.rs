@@ -1,4 +1,4 @@
-//! Fractions of minimum aberration up to 128 runs (Chen, Sun & Wu 1993; Box, Hunter & Hunter 2005, table 6.22).
+//! Fractions of minimum aberration up to 128 runs (Chen, Sun & Wu 1993; Box, Hunter & Hunter 2005).
 
 use super::generator::{LETTERS, Word};
 use crate::design::error::Fault;
@@ -43,8 +43,8 @@ const DESIGNS: &[(usize, &[&str])] = &[
     (128, &["ABCG", "BCDE", "ACDF", "ABCDEFG"]),
 ];
 
-/// The listed fraction for `factors` factors in `runs` runs, or the smallest of at least this `resolution`; a full factorial
-/// where that is the smallest.
+/// The listed fraction for `factors` factors in `runs` runs, or the smallest of at least this `resolution`; a full
+/// factorial where that is the smallest.
 pub(super) fn find(factors: usize, runs: Option<usize>, resolution: Option<usize>) -> Result<Vec<Word>, Fault> {
     let listed = || {
         let fits =

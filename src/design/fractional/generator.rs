@@ -80,7 +80,8 @@ fn read(text: &str, factors: &[Factor], before: &[Word]) -> Result<Word, String>
     Ok(Word { target, factors: product, sign })
 }
 
-/// A piece is a factor's name or a run of letters. Letters are names where factors have one-letter names, else positions.
+/// A piece is a factor's name or a run of letters. Letters are names where factors have one-letter names, else
+/// positions.
 fn members(piece: &str, factors: &[Factor]) -> Result<Vec<usize>, String> {
     let named = |name: &str| factors.iter().position(|f| f.name == name);
     if let Some(i) = named(piece) {

@@ -32,8 +32,7 @@ fn small_fractions_are_the_printed_matrices() {
     assert_eq!(quarter.iter().map(text).collect::<Vec<_>>(), printed);
 }
 
-/// Word-length patterns (A3, A4, …) of the minimum-aberration designs, from Chen, Sun & Wu 1993, tables 2–4, and Wu &
-/// Hamada 2009, tables 5A.2–5A.6.
+/// Word-length patterns (A3, A4, …) of the minimum-aberration designs, from Chen, Sun & Wu 1993 and Wu & Hamada 2009.
 #[test]
 fn listed_fractions_have_the_published_word_lengths() {
     let published: &[(usize, usize, &[usize])] = &[

@@ -20,8 +20,8 @@ impl Array {
         Self { columns: levels.iter().enumerate().map(column).collect() }
     }
 
-    /// Replaces column `at`, of s levels, by the columns of an array of s runs (expansive replacement, Hedayat, Sloane &
-    /// Stufken 1999, section 9.3): level i becomes row i. Strength two is kept.
+    /// Replaces column `at`, of s levels, by the columns of an array of s runs (expansive replacement, Hedayat, Sloane
+    /// & Stufken 1999): level i becomes row i. Strength two is kept.
     pub(super) fn replace(&mut self, at: usize, rows: &Self) {
         let old = self.columns.remove(at);
         let expand = |new: &Column| Column {
@@ -33,8 +33,9 @@ impl Array {
 }
 
 /// How much three columns of a strength-two array are entangled: s₁s₂s₃ Σn² / N² − 1 over the counts n of their level
-/// combinations. It is their share of A₃ in the generalized word-length pattern (Xu & Wu 2001, doi:10.1214/aos/1013699993): 0 when the three are
-/// a full factorial, 1 per degree of freedom that a main effect shares with the interaction of the other two.
+/// combinations. It is their share of A₃ in the generalized word-length pattern (Xu & Wu 2001,
+/// doi:10.1214/aos/1013699993): 0 when the three are a full factorial, 1 per degree of freedom that a main effect
+/// shares with the interaction of the other two.
 pub(super) fn entanglement(a: &Column, b: &Column, c: &Column) -> f64 {
     let mut counts = vec![0_u32; a.levels * b.levels * c.levels];
     for ((x, y), z) in a.cells.iter().zip(&b.cells).zip(&c.cells) {

@@ -7,18 +7,18 @@ use crate::design::hadamard::two_level;
 /// How an array is made. `q` and `order` are prime powers for which [`Field`] exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Recipe {
-    /// OA(qⁿ, (qⁿ − 1)/(q − 1), q, 2): one column for every point of the projective geometry PG(n − 1, q), the linear form of
-    /// that point (Rao 1947; Bose 1947).
+    /// OA(qⁿ, (qⁿ − 1)/(q − 1), q, 2): one column for every point of the projective geometry PG(n − 1, q), the linear
+    /// form of that point (Rao 1947; Bose 1947).
     RaoHamming { q: usize, n: u32 },
-    /// OA(qᵗ, q + 1, q, t): polynomials of degree below t at every element, and their leading coefficient (Bush 1952); for even q
-    /// and t = 3 one more column, the middle coefficient.
+    /// OA(qᵗ, q + 1, q, t): polynomials of degree below t at every element, and their leading coefficient (Bush 1952);
+    /// for even q and t = 3 one more column, the middle coefficient.
     Bush { q: usize, t: u32 },
     /// OA(N, N − 1, 2, 2) from a Hadamard matrix.
     Hadamard(usize),
     /// OA(2N, N, 2, 3): a Hadamard matrix over its mirror image.
     Fold(usize),
-    /// OA(rq, r¹ qᶜ, 2) from a difference scheme with r rows over q levels (Bose & Bush 1952): every row of the scheme plus every
-    /// element, and the number of the row.
+    /// OA(rq, r¹ qᶜ, 2) from a difference scheme with r rows over q levels (Bose & Bush 1952): every row of the scheme
+    /// plus every element, and the number of the row.
     Developed(Scheme),
     /// All combinations of two factors.
     Product(usize, usize),
@@ -217,8 +217,9 @@ impl Scheme {
 }
 
 /// D(2q, 2q, q), q odd. Row (j, y), column (i, x) holds a_ij xy + b_ij x² + c_ij y² with ν a non-square and
-/// a = (1 1; 1 ν), b = (0, (1/ν − 1)/4; 0, (1 − ν)/4), c = (0 0; −1 −ν). For two columns of one kind the term in y runs through the field; for columns of two kinds
-/// completing the square leaves K + y'² for j = 1 and K + νy'² for j = 2: squares and non-squares, each element twice.
+/// a = (1 1; 1 ν), b = (0, (1/ν − 1)/4; 0, (1 − ν)/4), c = (0 0; −1 −ν). For two columns of one kind the term in y runs
+/// through the field; for columns of two kinds completing the square leaves K + y'² for j = 1 and K + νy'² for j = 2:
+/// squares and non-squares, each element twice.
 fn double(f: &Field) -> Vec<Vec<usize>> {
     let q = f.order();
     let non_square = (1..q).find(|&a| !f.is_square(a)).unwrap_or_else(|| panic!("BUG: {q} is even"));

@@ -168,7 +168,8 @@ fn columns_of_l27_are_the_printed_products() {
     }
 }
 
-/// Table 5 and 6 of Su et al. 2021 (doi:10.3390/ma14071627): 14 columns of 64 runs at 32/16/16, the first level doubled.
+/// Table 5 and 6 of Su et al. 2021 (doi:10.3390/ma14071627): 14 columns of 64 runs at 32/16/16, the first level
+/// doubled.
 #[test]
 fn the_64_run_table_of_three_levels_is_exactly_proportional() {
     for doubled in 1..=3 {
@@ -189,8 +190,8 @@ fn the_64_run_table_of_three_levels_is_exactly_proportional() {
     assert!(t.construction.ends_with("merged levels, level 1 met most often"));
 }
 
-/// Third element of the generalized word-length pattern of the tables as others print them (`generate.py`, from the files of
-/// pyDOE3, which took them from Taguchi's and Sloane's collections).
+/// Third element of the generalized word-length pattern of the tables as others print them (`generate.py`, from the
+/// files of pyDOE3, which took them from Taguchi's and Sloane's collections).
 #[test]
 fn word_lengths_are_those_of_the_published_tables() {
     let published = [

@@ -1,9 +1,9 @@
 //! Aliases of main effects.
 //!
-//! When the model y = X₁β₁ (constant and slopes) is fitted although X₂β₂ (squares, products of two) also acts, the estimates have the
-//! expectation β₁ + Aβ₂ with the alias matrix A = (X₁ᵀX₁)⁻¹X₁ᵀX₂ (Box & Wilson 1951,
-//! doi:10.1111/j.2517-6161.1951.tb00067.x). In a regular fraction its entries are 0 and ±1, in a Plackett–Burman design also
-//! ±1/3 and the like.
+//! When the model y = X₁β₁ (constant and slopes) is fitted although X₂β₂ (squares, products of two) also acts, the
+//! estimates have the expectation β₁ + Aβ₂ with the alias matrix A = (X₁ᵀX₁)⁻¹X₁ᵀX₂ (Box & Wilson 1951,
+//! doi:10.1111/j.2517-6161.1951.tb00067.x). In a regular fraction its entries are 0 and ±1, in a Plackett–Burman design
+//! also ±1/3 and the like.
 
 use super::model::{Kind, Model};
 use super::tidy;
@@ -25,8 +25,8 @@ const NOTHING: f64 = 1e-9;
 /// More products of columns than this are not searched.
 const MOST_WORK: f64 = 4e9;
 
-/// Every alias of the slopes that is not 0, by slope and descending size. The constant is left out: squares always add to it. None when
-/// there are too many runs and factors to compute it.
+/// Every alias of the slopes that is not 0, by slope and descending size. The constant is left out: squares always add
+/// to it. None when there are too many runs and factors to compute it.
 pub fn aliases(table: &DesignTable) -> Option<Vec<Alias>> {
     let k = table.factors.len();
     let pairs = (k * (k + 1) / 2) as f64;

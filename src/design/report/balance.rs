@@ -20,13 +20,13 @@ pub struct Balance {
     pub largest_correlation: f64,
     /// The pair that has it.
     pub worst: Option<(String, String)>,
-    /// Number of pairs of factors without proportional frequencies, centre points left aside; none for a sample, where every value is its own
-    /// level.
+    /// Number of pairs of factors without proportional frequencies, centre points left aside; none for a sample, where
+    /// every value is its own level.
     pub disproportional_pairs: Option<usize>,
     /// The first such pair.
     pub disproportional: Option<(String, String)>,
-    /// Any so many factors together show all combinations of their levels equally often, centre points left aside; none for a sample
-    /// and where it was too much to count.
+    /// Any so many factors together show all combinations of their levels equally often, centre points left aside; none
+    /// for a sample and where it was too much to count.
     pub strength: Option<usize>,
 }
 

@@ -1,11 +1,12 @@
 //! Models and whether a table can estimate them.
 //!
-//! The columns of the model matrix X (coded units) are made orthogonal one after the other, X = QR, by Gram–Schmidt done twice
-//! (Giraud, Langou & Rozložník 2005, doi:10.1016/j.camwa.2005.08.009). A column of which nothing is left beside the earlier ones is a term that the runs
-//! cannot tell from them; the number of the others is the rank.
+//! The columns of the model matrix X (coded units) are made orthogonal one after the other, X = QR, by Gram–Schmidt
+//! done twice (Giraud, Langou & Rozložník 2005, doi:10.1016/j.camwa.2005.08.009). A column of which nothing is left
+//! beside the earlier ones is a term that the runs cannot tell from them; the number of the others is the rank.
 //!
 //! * variance of a coefficient: σ² c_jj, C = (XᵀX)⁻¹ = R⁻¹R⁻ᵀ
-//! * variance inflation: c_jj Σ(x_j − x̄_j)², 1 when the term is orthogonal to all others (Marquardt 1970, doi:10.1080/00401706.1970.10488699)
+//! * variance inflation: c_jj Σ(x_j − x̄_j)², 1 when the term is orthogonal to all others (Marquardt 1970,
+//!   doi:10.1080/00401706.1970.10488699)
 //! * condition number: largest over smallest singular value of X with columns of length 1 (Belsley, Kuh & Welsch 1980,
 //!   doi:10.1002/0471725153), by one-sided Jacobi rotations of R (Hestenes 1958, doi:10.1137/0106005)
 
@@ -37,8 +38,8 @@ impl Kind {
         }
     }
 
-    /// Whether the model means something for this table: classes need a table of levels; a product needs two factors; squares need a
-    /// third value of some factor.
+    /// Whether the model means something for this table: classes need a table of levels; a product needs two factors;
+    /// squares need a third value of some factor.
     pub fn applies(self, table: &DesignTable) -> bool {
         let counts = || (0..table.factors.len()).map(|j| levels(table, j).1.len());
         let of_levels = |p: &PointType| matches!(p, PointType::Cube | PointType::Grid | PointType::Given);

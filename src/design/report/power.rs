@@ -1,15 +1,15 @@
 //! The chance to see an effect of a given size.
 //!
-//! A hypothesis on d₁ coefficients is tested by F on d₁ and d₂ degrees of freedom at level α. If it is false, F follows the
-//! non-central distribution with λ = (effect in units of its standard error)², and the power is P(F' > F_α). The distribution
-//! is its Poisson mixture (Johnson, Kotz & Balakrishnan 1995, *Continuous Univariate Distributions 2*, eq. 30.8):
+//! A hypothesis on d₁ coefficients is tested by F on d₁ and d₂ degrees of freedom at level α. If it is false, F follows
+//! the non-central distribution with λ = (effect in units of its standard error)², and the power is P(F' > F_α). The
+//! distribution is its Poisson mixture (Johnson, Kotz & Balakrishnan 1995, *Continuous Univariate Distributions 2*):
 //!
 //! P(F' > f) = Σ_j e^(−λ/2)(λ/2)^j / j! · I_(1−x)(d₂/2, d₁/2 + j), x = d₁f / (d₁f + d₂),
 //!
-//! each term of which is a central F tail. The *effect* is the change of the mean response from −1 to +1 of a factor (twice its coefficient; for
-//! squares and products likewise twice theirs). For a factor of s levels as classes (d₁ = s − 1) it is the difference between
-//! any two of its levels, the others being such that the power is least: λ = effect² / (σ² var(τ̂_a − τ̂_b)) for the worst pair
-//! (a, b).
+//! each term of which is a central F tail. The *effect* is the change of the mean response from −1 to +1 of a factor
+//! (twice its coefficient; for squares and products likewise twice theirs). For a factor of s levels as classes (d₁ = s
+//! − 1) it is the difference between any two of its levels, the others being such that the power is least: λ = effect²
+//! / (σ² var(τ̂_a − τ̂_b)) for the worst pair (a, b).
 
 use super::model::{Kind, Model, ModelReport};
 use crate::math::distribution::f_upper;
@@ -117,20 +117,20 @@ pub(super) fn powers(model: &Model, report: &ModelReport, question: Question) ->
         }
     }
     let size = question.effect / question.noise;
-    let mut seen: Vec<Power> = Vec::new();
-    for (term, df, unit) in found {
-        // equal questions have equal answers
-        let same = seen.iter().find(|p| p.df == df && (p.unit_noncentrality / unit - 1.0).abs() < 1e-12);
-        let (power, detectable) = match same {
-            Some(p) => (p.power, p.detectable),
-            None => {
-                let critical = f_critical(question.alpha, df as f64, df2);
-                (power(df as f64, df2, unit * size * size, critical), detectable(df as f64, df2, unit, critical))
-            }
-        };
-        seen.push(Power { term, df, unit_noncentrality: unit, power, detectable });
-    }
-    seen
+    let mut tests: Vec<(usize, f64, f64)> = Vec::new();
+    let answer = |(term, df, unit): (String, usize, f64)| {
+        let df1 = df as f64;
+        let known = tests.iter().find(|(of, _, _)| *of == df).copied();
+        let (_, critical, seen) = known.unwrap_or_else(|| {
+            let critical = f_critical(question.alpha, df1, df2);
+            let test = (df, critical, needed(df1, df2, critical));
+            tests.push(test);
+            test
+        });
+        let power = power(df1, df2, unit * size * size, critical);
+        Power { term, df, unit_noncentrality: unit, power, detectable: (seen / unit).sqrt() }
+    };
+    found.into_iter().map(answer).collect()
 }
 
 /// Largest variance of the difference of two levels, in σ²; the first level has no term of its own.
@@ -141,8 +141,8 @@ fn worst_variance(model: &Model, terms: &[usize]) -> f64 {
     against_first.chain(between).fold(0.0, f64::max)
 }
 
-/// The effect in standard deviations that has power 0.8.
-fn detectable(df1: f64, df2: f64, unit: f64, critical: f64) -> f64 {
+/// The non-centrality that has power 0.8.
+fn needed(df1: f64, df2: f64, critical: f64) -> f64 {
     let enough = |lambda: f64| power(df1, df2, lambda, critical) >= 0.8;
     let (mut low, mut high) = (0.0, 1.0);
     while !enough(high) && high < 1e300 {
@@ -152,5 +152,5 @@ fn detectable(df1: f64, df2: f64, unit: f64, critical: f64) -> f64 {
         let middle = 0.5 * (low + high);
         if enough(middle) { high = middle } else { low = middle }
     }
-    (high / unit).sqrt()
+    high
 }

@@ -7,8 +7,8 @@ use crate::design::table::DesignTable;
 pub struct Spread {
     /// Smallest Euclidean distance of two runs; NaN for more than 5000 runs.
     pub smallest_distance: f64,
-    /// Centred L2 discrepancy (Hickernell 1998, *Math. Comp.* 67, 299, eq. 5.1, doi:10.1090/S0025-5718-98-00894-1), squared as is
-    /// usual in programs; NaN for more than 5000 runs.
+    /// Centred L2 discrepancy (Hickernell 1998, *Math. Comp.* 67, 299, doi:10.1090/S0025-5718-98-00894-1),
+    /// squared as is usual in programs; NaN for more than 5000 runs.
     pub discrepancy: f64,
 }
 

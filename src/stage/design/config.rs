@@ -72,7 +72,8 @@ pub struct Design {
     pub runs: Option<usize>,
     /// Plackett–Burman: add the mirror image of every run.
     pub fold: Option<bool>,
-    /// Number of centre points; factorial and screening designs have none, surface designs their published number if left out.
+    /// Number of centre points; factorial and screening designs have none, surface designs their published number if
+    /// left out.
     pub centre_points: Option<usize>,
     /// Central composite: `rotatable`, `orthogonal`, `spherical`, `face` or a number.
     pub alpha: Option<Alpha>,
