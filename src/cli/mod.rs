@@ -9,6 +9,7 @@ mod check;
 mod common;
 mod completions;
 mod diff;
+mod export;
 mod graph;
 mod message;
 mod new;
@@ -42,6 +43,8 @@ enum Command {
     Check(check::Check),
     /// Show the stages, what they take from one another, and what is done of them.
     Graph(graph::Graph),
+    /// Write results as files: pictures, printed tables, CSV.
+    Export(export::Export),
     /// Compare two campaigns: what was set otherwise, what came out otherwise.
     Diff(diff::Diff),
     /// Look after the store: list, verify, sizes, remove what nothing reaches.
@@ -75,6 +78,7 @@ pub fn main() -> ExitCode {
         Command::Run(run) => run.go(),
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
+        Command::Export(export) => export.go(),
         Command::Diff(diff) => diff.go(),
         Command::Store(store) => store.go(),
         Command::Check(check) => check.go(),

@@ -69,8 +69,15 @@ impl Run {
         Ok(exit(&report))
     }
 
-    /// Every failed task with the command that runs it again.
+    /// Every failed stage and task, with the command that runs the task again.
     fn failures(&self, workflow: &Workflow, report: &Report) {
+        if self.quiet {
+            for stage in &report.stages {
+                if let StageStatus::Failed(why) = &stage.status {
+                    eprintln!("error: stage `{}` failed: {why}", stage.name);
+                }
+            }
+        }
         for task in &report.tasks {
             if let TaskState::Failed(why) = &task.state {
                 let name = &workflow.stages[task.stage].name;

@@ -205,7 +205,8 @@ fn text(table: &Table) -> String {
     format!("{}{rest}", lines.join("\n"))
 }
 
-fn csv_text(table: &Table) -> String {
+/// A table as CSV, with units in the first line and all digits.
+pub(super) fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
     let mut out = csv::Writer::from_writer(Vec::new());
     let written = out.write_record(table.columns.iter().map(head)).and_then(|()| {

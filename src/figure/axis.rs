@@ -169,7 +169,10 @@ fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
 }
 
 fn linear_ticks(low: f64, high: f64, want: usize) -> (Vec<Tick>, Vec<f64>) {
-    let step = nice_step(high - low, want);
+    // An axis is read between two ticks: a step that leaves only one inside is too long.
+    let enough = |step: &f64| multiples(low, high, *step).len() >= 2;
+    let mut steps = (want..4 * want.max(1)).map(|want| nice_step(high - low, want));
+    let step = steps.find(enough).unwrap_or_else(|| nice_step(high - low, want));
     let at = multiples(low, high, step);
     let lead = step / power_of_ten(log10(step).floor() as i32);
     let parts = if (lead - 2.0).abs() < 0.01 { 4.0 } else { 5.0 };

@@ -11,7 +11,7 @@ use crate::artifact::{Artifact, Group, Node};
 use crate::math::elementary as math;
 use crate::math::random::Stream;
 use crate::unit::Unit;
-use exmex::{BinOp, Express, FlatEx, MakeOperators, Operator};
+use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator, literal_matcher_from_pattern};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -80,7 +80,9 @@ impl MakeOperators<f64> for Operators {
     }
 }
 
-fn parse(text: &str) -> Result<FlatEx<f64, Operators>, String> {
+literal_matcher_from_pattern!(Number, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
+
+fn parse(text: &str) -> Result<FlatEx<f64, Operators, Number>, String> {
     FlatEx::parse(text).map_err(|e| format!("`{text}` is not a formula: {e}"))
 }
 
@@ -185,4 +187,28 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
 /// The point as text: what the scatter of a run depends on, besides seed and replicate.
 fn point_text(params: &Params) -> String {
     params.values.iter().map(|(name, value)| format!("{name}={value};")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_are_read_as_they_are_written() {
+        for (text, value) in [
+            ("2*a/1e2 - 3", 2.0 * 5.0 / 1e2 - 3.0),
+            ("-a^2 + 1.5E+1", -25.0 + 15.0),
+            ("sqrt(abs(-16)) + max(1, a)", 4.0 + 5.0),
+            ("a - 1 - 1", 3.0),
+            ("a / 5 / 2", 0.5),
+            ("10 - a + 1", 6.0),
+        ] {
+            assert_eq!(
+                parse(text).unwrap().eval(&[5.0][..parse(text).unwrap().var_names().len()]).unwrap(),
+                value,
+                "{text}"
+            );
+        }
+        assert!(parse("a +* 2").is_err());
+    }
 }

@@ -11,6 +11,8 @@ seed = 1
 [factor]
 a = { sets = "mortar.a", levels = [1, 2, 3, 4, 5, 6] }
 b = { sets = "mortar.b", levels = [1, 2, 3, 4] }
+[response]
+y = {}
 [material.base]
 mortar = { a = 1, b = 1 }
 [stage.grid]
