@@ -74,9 +74,10 @@ fn option(set: &str, sources: &Sources, whole: Span) -> Result<Table, Vec<Fault>
     let refused = |message: String| vec![Fault::new(message).at(sources.place(whole)).hint(form)];
     let (path, text) = set.split_once('=').ok_or_else(|| refused(format!("`{set}` has no `=`")))?;
     let steps = path_steps(path).ok_or_else(|| refused(format!("`{}` is not a path of keys", path.trim())))?;
-    let span = Span { start: path.len() as u32 + 1, ..whole };
+    let offset = set.len() - text.trim_start().len();
+    let span = Span { start: offset as u32, ..whole };
     let text_node = |text: &str| Node { span, value: Value::Text(text.trim().to_owned()) };
-    let node = syntax::value(sources, whole.source, path.len() + 1).unwrap_or_else(|_| text_node(text));
+    let node = syntax::value(sources, whole.source, offset).unwrap_or_else(|_| text_node(text));
     let key = Span { end: path.len() as u32, ..whole };
     let nested = steps.into_iter().rev().fold(node, |node, step| {
         let table = Table([(step, Entry { key, node })].into());

@@ -110,7 +110,7 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
 
 /// A single value, as in `--set path=value`; `offset` is where it begins in its source.
 pub(super) fn value(sources: &Sources, index: u32, offset: usize) -> Result<Node, Vec<Fault>> {
-    let text = &sources.0[index as usize].text[offset..];
+    let text = sources.0[index as usize].text[offset..].trim_end();
     let parsed = DeValue::parse(text).map_err(|e| vec![Fault::new(e.message())])?;
     let mut convert = Convert { sources, index, faults: Vec::new() };
     let mut node = convert.node(parsed, 0);

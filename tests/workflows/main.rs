@@ -1,5 +1,7 @@
 //! Workflow files: good ones run, bad ones say what is wrong with them, the schema agrees, and no text makes the parser panic.
 
+#![allow(clippy::unwrap_used)]
+
 mod corpus;
 mod files;
 mod fuzz;
