@@ -72,11 +72,12 @@ impl Space for D3 {
         let speed = apart.dot(normal);
         let rolling = i.spin.times(arms[0]).plus(j.spin.times(arms[1]));
         let tangential = apart.minus(normal.times(speed));
-        let slide = tangential.minus(cross(rolling, normal));
         let turn = j.spin.minus(i.spin).times(dt);
         let twist = turn.dot(normal);
         let half = L::splat(0.5);
         let tilt = normal.minus(tangential.times(inverse_distance * dt * half));
+        let parting = apart.dot(tilt);
+        let slide = apart.minus(tilt.times(parting)).minus(cross(rolling, tilt));
         let roll = i.spin.plus(j.spin).dot(normal) * (half * dt);
         Touch {
             normal,
@@ -84,7 +85,7 @@ impl Space for D3 {
             arm_i: arms[0],
             arm_j: arms[1],
             radius: i.radius.min(j.radius),
-            opening: apart.dot(tilt) * dt,
+            opening: parting * dt,
             slide: slide.times(dt),
             twist,
             bend: turn.minus(normal.times(twist)),
