@@ -48,6 +48,10 @@ pub(super) const SELECT_ALPHA: f64 = 0.05;
 /// Fits every response and makes the artifact `surfaces`.
 pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
+    if let Some(own) = params.fittings.iter().find(|f| f.response.contains('/')) {
+        let message = format!("response `{}` holds a `/`, which a name in a result file cannot", own.response);
+        return Err(StageError::new(message).hint("give the response another name").into());
+    }
     let alpha = params.select_alpha.unwrap_or(SELECT_ALPHA);
     let settings = Settings {
         outlier_alpha: params.outlier_alpha,
