@@ -117,9 +117,9 @@ impl Calibrate {
                 Next::Stop(..) => return Ok((told, runs, Vec::new())),
                 Next::Ask(points) => points,
             };
-            let mut wanted = Vec::new();
+            let (mut wanted, first) = (Vec::new(), history.len());
             for (i, point) in asked.iter().enumerate() {
-                let task = self.task(simulator, params, point, history.len() + i)?;
+                let task = self.task(simulator, params, point, first + i)?;
                 match known.library.outcome(&task) {
                     Some(Outcome::Done(content)) if wanted.is_empty() => {
                         let run = known.library.load(&content)?;
