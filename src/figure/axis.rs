@@ -218,7 +218,7 @@ fn tick_label(at: f64, step: f64, largest: f64) -> String {
     if at == 0.0 {
         return "0".into();
     }
-    if largest >= 1e5 || largest < 1e-2 {
+    if !(1e-2..1e5).contains(&largest) {
         let exponent = log10(largest).floor() as i32;
         let unit = power_of_ten(exponent);
         return format!("{}×$10^{{{exponent}}}$", shortest(at / unit, step / unit));

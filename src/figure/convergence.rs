@@ -127,10 +127,8 @@ fn floored(values: &[f64], low: f64) -> Vec<f64> {
 fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::with_capacity(2 * points.len());
     for &[x, y] in points {
-        if let Some(&[_, before]) = out.last() {
-            if before != y {
-                out.push([x, before]);
-            }
+        if let Some(&[_, before]) = out.last().filter(|last| last[1] != y) {
+            out.push([x, before]);
         }
         out.push([x, y]);
     }

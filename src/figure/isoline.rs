@@ -31,7 +31,7 @@ type Edge = (usize, usize, bool);
 
 impl Field<'_> {
     fn rows(&self) -> usize {
-        if self.columns == 0 { 0 } else { self.values.len() / self.columns }
+        self.values.len().checked_div(self.columns).unwrap_or(0)
     }
 
     /// Value in the padded grid.

@@ -51,7 +51,7 @@ fn swatch_width(swatch: &Swatch) -> f64 {
 }
 
 /// Entries broken into rows that fit the width: (entry, x) per row.
-fn rows<'a>(entries: &'a [Entry], width: f64, size: f64) -> Vec<Vec<(&'a Entry, f64)>> {
+fn rows(entries: &[Entry], width: f64, size: f64) -> Vec<Vec<(&Entry, f64)>> {
     let mut rows: Vec<Vec<(&Entry, f64)>> = vec![Vec::new()];
     let mut x = 0.0;
     for entry in entries {

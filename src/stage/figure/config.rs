@@ -81,7 +81,7 @@ impl TryFrom<String> for Width {
             "single" => Ok(Self(SINGLE)),
             "double" => Ok(Self(DOUBLE)),
             _ => Length::parse(&text)
-                .map(|length| Self(length.get() * 1e3))
+                .map(|length| Self((length.get() * 1e9).round() / 1e6))
                 .map_err(|e| format!("wanted \"single\", \"double\" or a length: {e}")),
         }
     }

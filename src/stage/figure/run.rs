@@ -117,8 +117,11 @@ pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
     })
 }
 
+/// Lower left and upper right corner of a domain, and the polygons in it.
+type Ground = ([f64; 2], [f64; 2], Vec<Vec<[f64; 2]>>);
+
 /// Domain and polygons: of the specimen when it is given, else around the points.
-fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<([f64; 2], [f64; 2], Vec<Vec<[f64; 2]>>), StageError> {
+fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
     if let Some(&specimen) = sources.compare.first() {
         let (low, high) = domain(specimen)?;
         return Ok((low, high, outlines(specimen)));
@@ -128,7 +131,10 @@ fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<([f64; 2], [f64; 2],
     Ok(([r.left, r.top], [r.right, r.bottom], Vec::new()))
 }
 
-fn crack_list(cracks: Rows<'_>) -> Result<(Vec<String>, Vec<(f64, Crack)>), StageError> {
+/// Names of the modes, and the cracks with the strain at which they opened.
+type CrackList = (Vec<String>, Vec<(f64, Crack)>);
+
+fn crack_list(cracks: Rows<'_>) -> Result<CrackList, StageError> {
     let (names, mode) = modes(cracks)?;
     let read = |name: &str| cracks.reals(name);
     let (strain, x, y, size) = (read("axial_strain")?, read("x")?, read("y")?, read("size")?);

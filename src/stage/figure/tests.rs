@@ -234,7 +234,8 @@ fn task_of(figure: &Figure, context: &Context, from: &[Artifact], compare: &[Art
 }
 
 fn made(text: &str, from: &[Artifact], compare: &[Artifact]) -> Result<Artifact, Failure> {
-    let figure = settings(text);
+    // A small page: the pixels of the PNG are most of the work.
+    let figure = settings(&format!("{text}\nwidth = '45 mm'"));
     assert_eq!(figure.check(&context()), [], "{text}");
     let task = task_of(&figure, &context(), from, compare);
     let inputs: Vec<(String, Arc<Artifact>)> = (from.iter().map(|a| ("of".to_owned(), Arc::new(a.clone()))))

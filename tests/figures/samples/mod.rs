@@ -268,7 +268,7 @@ fn dag() -> Dag {
         ("contours", "figures", 4),
         ("table_15", "table", 4),
     ];
-    let index = |n: &str| names.iter().position(|m| m.0 == n).unwrap();
+    let index = |n: &str| names.iter().position(|m| m.0 == n).unwrap_or(0);
     let edges = [
         ("specimen", "trial"),
         ("specimen", "orthogonal"),
