@@ -22,7 +22,7 @@ pub(super) struct Lost {
     pub(super) content: ContentHash,
     /// Whether computing it again will help.
     pub(super) again: bool,
-    pub(super) error: StoreError,
+    pub(super) error: Box<StoreError>,
 }
 
 /// A stored result.
@@ -42,7 +42,11 @@ impl Order {
         };
         let task = Arc::clone(board.task(node));
         let load = |content: &ContentHash| {
-            store.get(content).map_err(|error| Lost { content: *content, again: error.is_missing(), error })
+            store.get(content).map_err(|error| Lost {
+                content: *content,
+                again: error.is_missing(),
+                error: Box::new(error),
+            })
         };
         let inputs = task
             .inputs

@@ -97,14 +97,12 @@ impl Stage for Calibrate {
     }
 }
 
+/// What was told, by which tasks, and which are wanted next.
+type Replayed = (Vec<Told>, Vec<Task>, Vec<Task>);
+
 impl Calibrate {
     /// Replays one set against the outcomes there are: what was told, by which tasks, and which are wanted next.
-    fn simulated(
-        &self,
-        known: &Known,
-        params: &Params,
-        set: usize,
-    ) -> Result<(Vec<Told>, Vec<Task>, Vec<Task>), StageError> {
+    fn simulated(&self, known: &Known, params: &Params, set: usize) -> Result<Replayed, StageError> {
         let problem = params.problem(set)?;
         let load = |key: &str| known.port(key).map(|input| known.load(input)).collect::<Result<Vec<_>, _>>();
         let (surfaces, earlier) = (load("surfaces")?, load("learn_from")?);

@@ -2,6 +2,8 @@
 //!
 //!     cargo bench --bench gallery -- FOLDER [NAME…]
 
+#![allow(clippy::approx_constant)] // sample data, not mathematics
+
 #[path = "../figures/samples/mod.rs"]
 mod samples;
 

@@ -3,13 +3,15 @@
 //! `tests/reference/optim/optimisers.py` prints the table of the standard functions for scipy, in the same form.
 
 use flow::math;
-use flow::optim::search::{Knowledge, Limits, METHODS, Method, Run, Search, minimise};
+use flow::optim::search::{Knowledge, Limits, Method, Run, Search, minimise};
 use flow::optim::{Problem, annealing, cma_es, constraint, differential, genetic, misfit, surrogate};
 use misfit::{Denominator, Form};
 use std::time::Instant;
 
 #[path = "../../src/optim/benchmark.rs"]
 mod benchmark;
+
+use benchmark::METHODS;
 
 fn main() {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();

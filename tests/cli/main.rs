@@ -1,5 +1,7 @@
 //! The binary in a temporary folder: write a file, run a command, read what it says.
 
+#![allow(clippy::unwrap_used)]
+
 mod command;
 mod faults;
 mod kill;

@@ -1,5 +1,7 @@
 //! The store under faults: damage, kills, full and vanished disks, many processes, other programs that read its files.
 
+#![allow(clippy::unwrap_used)]
+
 mod damage;
 mod disk;
 mod processes;

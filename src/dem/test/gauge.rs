@@ -24,7 +24,7 @@ impl Gauges {
         let slices = ((0.5 * height / (4.0 * mean)) as usize).max(1);
         let slice_of = |y: f64| {
             let share = y / (0.5 * height) + 0.5;
-            (0.0..1.0).contains(&share).then(|| (share * slices as f64) as usize)
+            (0.0..1.0).contains(&share).then_some((share * slices as f64) as usize)
         };
         let mut ends: Vec<Option<(usize, usize)>> = vec![None; slices];
         for (i, centre) in centres.iter().enumerate() {

@@ -212,7 +212,7 @@ pub fn drive(
         run.samples.push(sample);
         ladder.offer(&sample, || state(engine));
         largest = largest.max(stress);
-        if run.samples.len() % ENERGY_EVERY == 0 {
+        if run.samples.len().is_multiple_of(ENERGY_EVERY) {
             run.energies.push((axial, energy(engine)));
         }
         if watch(&sample) == Watch::Stop {

@@ -116,7 +116,7 @@ fn foreign_and_newer_files_are_refused() {
 /// Valid files of another program that ask for more than there is: see tests/reference/hostile/make.py.
 #[test]
 fn files_that_ask_for_too_much_are_refused_before_anything_is_read() {
-    let refused = |image: &[u8]| decode(image.to_vec()).err().expect("an error");
+    let refused = |image: &[u8]| decode(image.to_vec()).expect_err("an error");
     let huge = [
         &include_bytes!("../../../tests/reference/hostile/contiguous.h5")[..],
         include_bytes!("../../../tests/reference/hostile/chunked.h5"),
