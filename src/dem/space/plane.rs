@@ -54,15 +54,17 @@ impl Space for D2 {
         let [ux, uy] = j.velocity.minus(i.velocity);
         let rolling = i.spin[0] * arms[0] + j.spin[0] * arms[1];
         let across = uy * nx - ux * ny;
-        let swing = across * inverse_distance * dt;
+        // The displacement is taken along the mean normal and tangent of the step, which lag behind the new ones.
+        let lag = L::splat(0.5) * (across * inverse_distance * dt);
+        let parting = (ux * nx + uy * ny) - across * lag;
         Touch {
             normal,
             gap,
             arm_i: arms[0],
             arm_j: arms[1],
             radius: i.radius.min(j.radius),
-            opening: ((ux * nx + uy * ny) - L::splat(0.5) * across * swing) * dt,
-            slide: [(across - rolling) * dt],
+            opening: parting * dt,
+            slide: [(across + lag * parting - rolling) * dt],
             twist: L::splat(0.0),
             bend: [(j.spin[0] - i.spin[0]) * dt],
             tilt: normal,

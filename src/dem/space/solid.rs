@@ -75,9 +75,11 @@ impl Space for D3 {
         let turn = j.spin.minus(i.spin).times(dt);
         let twist = turn.dot(normal);
         let half = L::splat(0.5);
-        let tilt = normal.minus(tangential.times(inverse_distance * dt * half));
+        // The displacement is taken in the mean plane of the step and laid into the new one.
+        let lag = tangential.times(inverse_distance * dt * half);
+        let tilt = normal.minus(lag);
         let parting = apart.dot(tilt);
-        let slide = apart.minus(tilt.times(parting)).minus(cross(rolling, tilt));
+        let slide = tangential.plus(lag.times(parting)).minus(flattened(cross(rolling, tilt), normal));
         let roll = i.spin.plus(j.spin).dot(normal) * (half * dt);
         Touch {
             normal,
