@@ -63,7 +63,7 @@ impl Columns {
     pub(super) fn of(table: &Table, context: &Context, wanted: Wanted) -> Result<Self, StageError> {
         let present = |name: &&String| table.column(name).is_some();
         let known: Vec<&String> = table.columns.iter().map(|c| &c.name).collect();
-        for name in wanted.factors.iter().chain(wanted.responses).filter(|name| !present(name)) {
+        if let Some(name) = wanted.factors.iter().chain(wanted.responses).find(|name| !present(name)) {
             let names = known.iter().map(|n| n.as_str()).collect::<Vec<_>>().join(", ");
             return Err(StageError::new(format!("the table has no column `{name}`")).hint(format!("it has {names}")));
         }
