@@ -83,7 +83,41 @@ impl MakeOperators<f64> for Operators {
 literal_matcher_from_pattern!(Number, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
 
 fn parse(text: &str) -> Result<FlatEx<f64, Operators, Number>, String> {
+    if let Some(place) = ambiguous_power(text) {
+        return Err(format!("`{text}`: a minus before a power at `{}`; write -(a^2) or (-a)^2", &text[place..]));
+    }
     FlatEx::parse(text).map_err(|e| format!("`{text}` is not a formula: {e}"))
+}
+
+/// Place of a sign that stands directly before a power: mathematics reads `-a^2` as −(a²), the library as (−a)².
+fn ambiguous_power(text: &str) -> Option<usize> {
+    let mut before = None;
+    for (place, c) in text.char_indices().filter(|(_, c)| !c.is_whitespace()) {
+        let sign = c == '-' && before.is_none_or(|b| "(,+-*/^".contains(b));
+        // The exponent of a number, as in 1e-3, is no sign.
+        if sign && after_operand(text[place + 1..].trim_start()).trim_start().starts_with('^') {
+            return Some(place);
+        }
+        before = Some(c);
+    }
+    None
+}
+
+/// What follows the first name, number, call or bracket of a formula.
+fn after_operand(text: &str) -> &str {
+    let name = text.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')).unwrap_or(text.len());
+    let rest = &text[name..];
+    if !rest.starts_with('(') {
+        return rest;
+    }
+    let mut depth = 0;
+    for (place, c) in rest.char_indices() {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        if depth == 0 {
+            return &rest[place + 1..];
+        }
+    }
+    ""
 }
 
 impl Stage for Formula {
@@ -197,7 +231,8 @@ mod tests {
     fn formulas_are_read_as_they_are_written() {
         for (text, value) in [
             ("2*a/1e2 - 3", 2.0 * 5.0 / 1e2 - 3.0),
-            ("-a^2 + 1.5E+1", -25.0 + 15.0),
+            ("-(a^2) + 1.5E+1", -25.0 + 15.0),
+            ("(-a)^2 - a^2 * 1e-1", 25.0 - 2.5),
             ("sqrt(abs(-16)) + max(1, a)", 4.0 + 5.0),
             ("a - 1 - 1", 3.0),
             ("a / 5 / 2", 0.5),
@@ -210,5 +245,8 @@ mod tests {
             );
         }
         assert!(parse("a +* 2").is_err());
+        for unclear in ["-a^2", "3 * -sqrt(a)^2", "-(a + (1))^2 + 1", "max(-a^2, 1)"] {
+            assert!(parse(unclear).unwrap_err().contains("a minus before a power"), "{unclear}");
+        }
     }
 }

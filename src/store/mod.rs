@@ -176,7 +176,12 @@ impl Store {
             return Ok(artifact);
         }
         let mut failure = StoreError::Missing { content: *content };
-        let records = locked(self.index()?).with_content(content);
+        let mut records = locked(self.index()?).with_content(content);
+        if records.is_empty() {
+            // Another process may have recorded it since the journals were read.
+            self.refresh()?;
+            records = locked(self.index()?).with_content(content);
+        }
         for record in records {
             match self.read(&record) {
                 Ok((artifact, _)) => {

@@ -1,7 +1,6 @@
 //! Every figure on its sample data: nothing clipped, nothing over anything, the same bytes each time, numbers handed out.
 
 #![allow(clippy::approx_constant)] // sample data, not mathematics
-
 #![allow(clippy::unwrap_used)]
 
 mod samples;

@@ -139,7 +139,8 @@ fn simulations_in_the_loop_find_the_parameters_and_their_interval() {
     let stage = stage(COLD);
     assert_eq!(stage.check(&context), Vec::new());
     let Step::Finish(task) = stage.next(&known(&context, &laboratory)).unwrap() else { panic!("it can go on") };
-    assert_eq!(laboratory.simulations(), 48);
+    // 24 for each set; the first batch of four knows no target yet, so both sets share it.
+    assert_eq!(laboratory.simulations(), 2 * 24 - 4);
     let artifact = finished(&laboratory, &task).unwrap();
     let solution = artifact.table("solution").unwrap();
     let first = |name: &str| solution.reals(name).unwrap()[0];
