@@ -1,6 +1,5 @@
 //! `workflows/su2021-published.toml` from nothing: the printed tables of Su et al. 2021 come out, each value judged.
 #![allow(clippy::unwrap_used)]
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::Command;

@@ -1,6 +1,5 @@
 //! The statistics against certified data, published tables and other programs.
 #![allow(clippy::unwrap_used)]
-#![allow(clippy::unwrap_used)]
 
 mod faults;
 mod identities;
