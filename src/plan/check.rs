@@ -15,6 +15,9 @@ use std::sync::Arc;
 /// Keys of the root.
 const ROOT: [&str; 6] = ["workflow", "factor", "response", "material", "stage", "profile"];
 
+/// So many faults are told; much later ones are not even looked for.
+pub(super) const MOST_FAULTS: usize = 50;
+
 /// Longest name of a stage, factor, response or material.
 const LONGEST_NAME: usize = 64;
 
@@ -42,6 +45,11 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
     let mut faults = check.faults;
     let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
         faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.source.name != name, place.span.start)));
+        let more = faults.len().saturating_sub(MOST_FAULTS);
+        faults.truncate(MOST_FAULTS);
+        if more > 0 {
+            faults.push(Fault::new(format!("… and {more} more faults")));
+        }
         return Err(faults);
     };
     Ok(Workflow {
@@ -66,7 +74,7 @@ pub(super) struct Check<'a> {
 
 impl Check<'_> {
     fn root_keys(&mut self, root: &Table) {
-        for (name, entry) in root.in_order() {
+        for (name, entry) in root.in_order().into_iter().take(ROOT.len() + MOST_FAULTS + 1) {
             if !ROOT.contains(&name) {
                 let fault = Fault::new(format!("unknown key `{name}`")).at(self.sources.place(entry.key));
                 self.faults.push(fault.known(name, "tables", ROOT));
@@ -98,6 +106,9 @@ impl Check<'_> {
         let Some(table) = self.tables(root, key) else { return BTreeMap::new() };
         let mut found = BTreeMap::new();
         for (name, entry) in &mut table.0 {
+            if self.faults.len() > MOST_FAULTS {
+                break;
+            }
             self.name(name, entry);
             if let Some(value) = one(self, name, &mut entry.node) {
                 found.insert(name.clone(), value);

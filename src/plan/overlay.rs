@@ -3,6 +3,7 @@
 //! What is laid over a stage, factor or response must name one that exists; whether its keys exist is seen when the
 //! merged table is read, and the fault then points at the profile or the option.
 
+use super::check::MOST_FAULTS;
 use super::fault::Fault;
 use super::node::{Entry, Node, Sources, Span, Table, Value};
 use super::syntax;
@@ -125,6 +126,9 @@ fn check_paths(root: &Table, over: &Table, whose: &str, sources: &Sources, fault
         };
         let known = root.get(name).and_then(Node::table);
         for (inner, entry) in table.in_order() {
+            if faults.len() > MOST_FAULTS {
+                return;
+            }
             if known.is_some_and(|known| known.0.contains_key(inner)) {
                 continue;
             }

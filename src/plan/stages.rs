@@ -1,6 +1,6 @@
 //! The `[stage.NAME]` tables: each is read by its kind, then the ports are connected.
 
-use super::check::{Check, steps};
+use super::check::{Check, MOST_FAULTS, steps};
 use super::fault::Fault;
 use super::node::{Entry, Node, Step, Table, Value};
 use super::read::read;
@@ -41,6 +41,9 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &Context) -> Vec
     entries.sort_by_key(|(_, entry)| entry.key);
     let mut stages = Vec::new();
     for (name, entry) in entries {
+        if check.faults.len() > MOST_FAULTS {
+            break;
+        }
         check.name(name, entry);
         let Some(kind) = take_kind(check, name, &mut entry.node) else { continue };
         let keys = || super::schema::keys(kind);
@@ -95,6 +98,9 @@ fn same_but_for_case(check: &mut Check<'_>, table: &Table) {
             let fault = Fault::new(format!("stages `{other}` and `{name}` differ only by upper and lower case"));
             let fault = fault.at(check.sources.place(entry.key)).also(check.sources.place(first.key), "the other one");
             check.faults.push(fault);
+            if check.faults.len() > MOST_FAULTS {
+                return;
+            }
         }
     }
 }
@@ -104,6 +110,9 @@ fn connect(check: &mut Check<'_>, table: &Table, stages: &[Configured]) -> Vec<V
     let numbers: BTreeMap<&str, usize> = stages.iter().map(|stage| stage.name.as_str()).zip(0..).collect();
     let mut inputs = Vec::new();
     for stage in stages {
+        if check.faults.len() > MOST_FAULTS {
+            return vec![Vec::new(); stages.len()];
+        }
         let mut found = Vec::new();
         for (port, at, name) in
             stage.ports.iter().flat_map(|p| p.stages.iter().enumerate().map(move |(i, s)| (p, i, s)))

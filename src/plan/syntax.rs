@@ -12,7 +12,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// The largest workflow file, in bytes.
-pub(super) const LARGEST: usize = 4 << 20;
+pub(super) const LARGEST: usize = 1 << 20;
+
+/// The largest text of which every fault of syntax is told; of a larger one only the first, because going on behind a
+/// fault costs the TOML reader far more than reading.
+const LARGEST_FAULTY: usize = 1 << 15;
 
 /// The deepest table or list.
 const DEEPEST: usize = 32;
@@ -53,7 +57,11 @@ pub(super) fn tree(sources: &Sources, index: u32) -> (Option<Node>, Vec<Fault>) 
         return (None, vec![Fault::new(format!("the workflow is larger than {} MiB", LARGEST >> 20))]);
     }
     on_a_large_stack(|| {
-        let (root, errors) = DeTable::parse_recoverable(text);
+        let (root, errors) = match DeTable::parse(text) {
+            Ok(root) => (root, Vec::new()),
+            Err(_) if text.len() <= LARGEST_FAULTY => DeTable::parse_recoverable(text),
+            Err(first) => return (None, syntax_faults(sources, index, &[first])),
+        };
         let whole = errors.iter().all(|error| error.message() == DUPLICATE);
         let mut convert = Convert { sources, index, faults: syntax_faults(sources, index, &errors) };
         let span = convert.span(root.span());
