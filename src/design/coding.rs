@@ -7,6 +7,7 @@
 
 use super::error::Fault;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 
 /// Relative distance below which a computed value is taken for a declared level or a whole coded number.
 const SNAP: f64 = 1e-12;
@@ -92,9 +93,12 @@ impl Factor {
 
     /// Coded value of a natural one.
     pub fn coded(&self, natural: f64) -> f64 {
-        let coded = (natural - self.centre()) / self.half();
-        let whole = coded.round();
-        if (coded - whole).abs() < SNAP { whole + 0.0 } else { coded }
+        self.coding().coded(natural)
+    }
+
+    /// Its coding, for many values at once.
+    pub fn coding(&self) -> Coding {
+        Coding { centre: self.centre(), half: self.half() }
     }
 
     /// Natural value of a coded one: exactly the declared level or end of the range where it is one up to rounding,
@@ -126,10 +130,14 @@ impl Factor {
                 if levels.len() < 2 {
                     faults.push(Fault::TooFewLevels { factor: factor(), found: levels.len() });
                 }
-                for (second, value) in levels.iter().enumerate() {
-                    if let Some(first) = levels[..second].iter().position(|v| v == value) {
-                        let (first, second) = (first + 1, second + 1);
-                        faults.push(Fault::DuplicateLevel { factor: factor(), value: *value, first, second });
+                let mut places: HashMap<u64, usize> = HashMap::with_capacity(levels.len());
+                for (place, &value) in levels.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+                    // −0 is 0.
+                    if let Some(first) = places.get(&(value + 0.0).to_bits()) {
+                        let (first, second) = (first + 1, place + 1);
+                        faults.push(Fault::DuplicateLevel { factor: factor(), value, first, second });
+                    } else {
+                        places.insert((value + 0.0).to_bits(), place);
                     }
                 }
             }
@@ -142,6 +150,22 @@ impl Factor {
             }
         }
         faults
+    }
+}
+
+/// Middle and half of a factor's range: what turns natural values into coded ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coding {
+    centre: f64,
+    half: f64,
+}
+
+impl Coding {
+    /// Coded value of a natural one.
+    pub fn coded(&self, natural: f64) -> f64 {
+        let coded = (natural - self.centre) / self.half;
+        let whole = coded.round();
+        if (coded - whole).abs() < SNAP { whole + 0.0 } else { coded }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The finished table of runs.
 
-use super::coding::Factor;
+use super::coding::{Coding, Factor};
 use super::error::Fault;
 use crate::math::random::Stream;
 use serde::{Deserialize, Serialize};
@@ -141,9 +141,10 @@ impl DesignTable {
         if layout.order == Order::Random {
             stream.shuffle(&mut order);
         }
+        let codings: Vec<(&Factor, Coding)> = factors.iter().map(|factor| (factor, factor.coding())).collect();
         let values = |i: &usize| -> (Vec<f64>, Vec<f64>) {
             let row = &points.rows[i % once].0;
-            row.iter().zip(factors).map(|(place, factor)| place.values(factor)).unzip()
+            row.iter().zip(&codings).map(|(place, (factor, coding))| place.values(factor, coding)).unzip()
         };
         let (coded, natural) = order.iter().map(values).unzip();
         Ok(Self {
@@ -160,11 +161,11 @@ impl DesignTable {
 
 impl Place {
     /// Coded and natural value.
-    fn values(self, factor: &Factor) -> (f64, f64) {
+    fn values(self, factor: &Factor, coding: &Coding) -> (f64, f64) {
         match self {
-            Self::Level(i) => (factor.coded(factor.level(i)), factor.level(i)),
+            Self::Level(i) => (coding.coded(factor.level(i)), factor.level(i)),
             Self::Coded(x) => (x, factor.natural(x)),
-            Self::Natural(x) => (factor.coded(x), x),
+            Self::Natural(x) => (coding.coded(x), x),
         }
     }
 }
