@@ -16,7 +16,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// Settings of a `formula` stage.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -160,15 +159,7 @@ impl Stage for Formula {
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
-        if self.design.is_none() {
-            return Ok(Step::Finish(self.sample(known, &Point::new(), 1)?));
-        }
-        let design = known.one("design")?;
-        let runs = rows::rows(&*known.load(design)?, known.context)?
-            .into_iter()
-            .map(|row| Ok(Arc::new(self.sample(known, &row.point, row.replicate)?.row(row.index))))
-            .collect::<Result<Vec<_>, StageError>>()?;
-        Ok(Step::Finish(rows::gather(known, design, runs)?))
+        rows::fan_out(self, known)
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {

@@ -3,7 +3,7 @@
 //! Rows are known by content. Equal rows of one design are replicates, numbered from 1 by occurrence, so adding rows
 //! changes nothing for the others, and the same row and replicate in two designs is one run.
 
-use super::{Complaint, Context, Failure, Input, Job, Known, Point, StageError, Task, Work};
+use super::{Complaint, Context, Failure, Input, Job, Known, Point, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Column, Group, Node, Table, Values};
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
@@ -119,6 +119,21 @@ struct GatherParams {
     factors: Vec<String>,
     /// Unit to show each response in; a response that is not named keeps the unit of the runs.
     units: BTreeMap<String, String>,
+}
+
+/// The step of a simulator: every row of its `design` on its own task, gathered into one table; one run without a design.
+///
+/// # Errors
+/// The design cannot be read, or a row cannot be tried.
+pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError> {
+    let Some(design) = known.port("design").next() else {
+        return Ok(Step::Finish(simulator.sample(known, &Point::new(), 1)?));
+    };
+    let runs = rows(&*known.load(design)?, known.context)?
+        .into_iter()
+        .map(|row| Ok(Arc::new(simulator.sample(known, &row.point, row.replicate)?.row(row.index))))
+        .collect::<Result<Vec<_>, StageError>>()?;
+    Ok(Step::Finish(gather(known, design, runs)?))
 }
 
 /// The task that gathers `runs`, one per row of the design, into the table `runs` of a `results` artifact.
