@@ -5,7 +5,7 @@
 
 use super::disk::{Disk, TEMPORARY};
 use super::object::{self, short_of_name};
-use super::{Damage, Index, Record, Store, StoreError, Timing, hdf5, journal, locked, memo};
+use super::{Damage, Index, Record, Store, StoreError, Timing, hdf5, journal, lock, locked, memo};
 use crate::artifact::{Artifact, ContentHash, Key};
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -110,7 +110,7 @@ impl Store {
         if !really {
             return self.sweep_alone(reachable, false, Duration::ZERO);
         }
-        let Some(lock) = &self.in_use else {
+        let Some(lock::Held(lock)) = &self.in_use else {
             return self.sweep_alone(reachable, true, Duration::from_secs(86_400));
         };
         if lock.try_lock().is_err() {

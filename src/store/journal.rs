@@ -19,6 +19,7 @@
 //! records with the same key the later one counts.
 
 use super::disk::{Disk, TEMPORARY};
+use super::lock::Held;
 use super::object::Seal;
 use super::{Origin, Record, StoreError};
 use crate::artifact::{ContentHash, Key};
@@ -219,7 +220,7 @@ pub(super) struct Segment {
 }
 
 struct Open {
-    file: File,
+    held: Held,
     path: PathBuf,
     end: u64,
 }
@@ -231,10 +232,10 @@ impl Segment {
             Some(open) => open,
             none => none.insert(create(disk, &record.origin)?),
         };
-        open.file
-            .seek(SeekFrom::Start(open.end))
-            .and_then(|_| open.file.write_all(&pack(record)))
-            .and_then(|()| if durable { open.file.sync_data() } else { Ok(()) })
+        let mut file = &open.held.0;
+        file.seek(SeekFrom::Start(open.end))
+            .and_then(|_| file.write_all(&pack(record)))
+            .and_then(|()| if durable { file.sync_data() } else { Ok(()) })
             .map_err(|error| disk.fail("write", &open.path, error))?;
         open.end += RECORD as u64;
         Ok(())
@@ -258,15 +259,16 @@ fn create(disk: &Disk, origin: &Origin) -> Result<Open, StoreError> {
     let path = folder.join(format!("{:013}-{}-{name}.journal", super::now_ms(), std::process::id()));
     let file = file.persist_noclobber(&path).map_err(|error| fail(error.error))?;
     disk.sync_dir(&folder)?;
-    Ok(Open { file, path, end: HEAD as u64 })
+    Ok(Open { held: Held(file), path, end: HEAD as u64 })
 }
 
 /// Writes a finished segment with these records, which have one origin.
 pub(super) fn write_segment(disk: &Disk, records: &[Record]) -> Result<(), StoreError> {
     let Some(first) = records.first() else { return Ok(()) };
-    let mut open = create(disk, &first.origin)?;
+    let open = create(disk, &first.origin)?;
+    let mut file = &open.held.0;
     let bytes: Vec<u8> = records.iter().flat_map(pack).collect();
-    let written = open.file.write_all(&bytes).and_then(|()| open.file.sync_all());
+    let written = file.write_all(&bytes).and_then(|()| file.sync_all());
     written.map_err(|error| disk.fail("write", &open.path, error))
 }
 

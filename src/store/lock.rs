@@ -37,11 +37,22 @@ impl std::fmt::Display for Holder {
     }
 }
 
+/// An open file that may be locked; dropped, it is unlocked. To close it would not do: a child that another thread has
+/// forked and that has not yet begun its program holds the same open file, and with it the lock.
+#[derive(Debug)]
+pub(super) struct Held(pub(super) File);
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        let _ = self.0.unlock();
+    }
+}
+
 /// The right to compute a task; dropped, it is free again.
 #[derive(Debug)]
 pub struct Guard {
     pub(super) path: PathBuf,
-    pub(super) file: File,
+    pub(super) held: Held,
 }
 
 impl Drop for Guard {
@@ -107,7 +118,7 @@ pub(super) fn take(disk: &Disk, name: &str, machine: &str) -> Result<Taken, Stor
                 let taken = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
                 if taken && is_same_file(&path, &file) {
                     let written = file.write_all(format!("{} {machine}\n", std::process::id()).as_bytes());
-                    let guard = Guard { path, file };
+                    let guard = Guard { path, held: Held(file) };
                     written.map_err(|error| disk.fail("write the lock", &guard.path, error))?;
                     return Ok(Taken::Mine(guard));
                 }
@@ -130,26 +141,24 @@ fn held(disk: &Disk, path: &Path) -> Result<Option<Waiting>, StoreError> {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         other => other.map_err(|error| disk.fail("open the lock", path, error))?,
     };
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => {
-            let holder = read_holder(&mut file);
-            return Ok(Some(Waiting { path: path.to_owned(), file, holder }));
-        }
-        Ok(()) | Err(TryLockError::Error(_)) => {}
+    if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
+        let holder = read_holder(&mut file);
+        return Ok(Some(Waiting { path: path.to_owned(), file, holder }));
     }
-    if is_same_file(path, &file) {
+    let left_behind = Held(file);
+    if is_same_file(path, &left_behind.0) {
         disk.remove(path)?;
     }
     Ok(None)
 }
 
-/// Says that this process uses the store, until the file is dropped; nothing is removed from a store in use. A store
+/// Says that this process uses the store, until the lock is dropped; nothing is removed from a store in use. A store
 /// that cannot be written, or a file system without locks, gives none.
-pub(super) fn share(disk: &Disk) -> Option<File> {
+pub(super) fn share(disk: &Disk) -> Option<Held> {
     let path = disk.root.join("in-use.lock");
     let file = File::open(&path).or_else(|_| File::create_new(&path)).or_else(|_| File::open(&path)).ok()?;
     file.lock_shared().ok()?;
-    Some(file)
+    Some(Held(file))
 }
 
 fn read_holder(file: &mut File) -> Holder {

@@ -42,7 +42,6 @@ use disk::Disk;
 use journal::{Index, Segment};
 use object::{Presence, Seal};
 use std::ffi::OsStr;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -104,7 +103,7 @@ pub struct Store {
     cache: Mutex<Cache>,
     presence: Mutex<Presence>,
     damages: Mutex<Vec<Damage>>,
-    in_use: Option<File>,
+    in_use: Option<lock::Held>,
 }
 
 impl Store {

@@ -84,7 +84,7 @@ pub(super) fn write(
     let seal = Seal::of(image);
     for _ in 0..3 {
         let written = match &mut claim {
-            Some(claim) => disk.link_new(&claim.path, &mut claim.file, &path, image, durable)?,
+            Some(claim) => disk.link_new(&claim.path, &mut claim.held.0, &path, image, durable)?,
             None => disk.write_new(&path, image, durable)?,
         };
         if written {
