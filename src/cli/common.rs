@@ -5,7 +5,7 @@ use crate::plan::{self, Overrides, Workflow};
 use crate::store::Store;
 use clap::{Args, ValueEnum};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Which campaign.
 #[derive(Args, Clone, Debug)]
@@ -65,6 +65,18 @@ impl Campaign {
             eprintln!("error: the workflow has no stage `{name}`{meant}\n  it has {}", known.join(", "));
         }
         if unknown.is_empty() { Ok(workflow) } else { Err(Exit::BadInput) }
+    }
+
+    /// The command that runs `stages` of this very campaign.
+    pub(super) fn again(&self, stages: &[&str]) -> String {
+        let mut parts = vec!["flow run".to_owned(), self.workflow.display().to_string()];
+        parts.extend(stages.iter().map(|&stage| stage.to_owned()));
+        parts.extend(self.profile.iter().map(|profile| format!("--profile {profile}")));
+        parts.extend(self.sets.iter().map(|set| format!("--set '{set}'")));
+        if self.store != Path::new("store") {
+            parts.push(format!("--store {}", self.store.display()));
+        }
+        parts.join(" ")
     }
 
     /// The store.

@@ -5,6 +5,7 @@
 
 #[macro_use]
 mod output;
+mod calibrate;
 mod check;
 mod common;
 mod completions;
@@ -39,6 +40,8 @@ enum Command {
     Plan(plan::Plan),
     /// Show a result as a table.
     Show(show::Show),
+    /// Find the parameters for other targets, on the surfaces of a finished campaign.
+    Calibrate(calibrate::Calibrate),
     /// Find every fault of a workflow without running anything.
     Check(check::Check),
     /// Show the stages, what they take from one another, and what is done of them.
@@ -79,6 +82,7 @@ pub fn main() -> ExitCode {
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
         Command::Export(export) => export.go(),
+        Command::Calibrate(calibrate) => calibrate.go(),
         Command::Diff(diff) => diff.go(),
         Command::Store(store) => store.go(),
         Command::Check(check) => check.go(),

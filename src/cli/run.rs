@@ -91,7 +91,7 @@ impl Run {
 }
 
 /// A flag that Ctrl-C or a termination request sets; a second Ctrl-C ends the process at once.
-fn interruption() -> Arc<AtomicBool> {
+pub(super) fn interruption() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let handler = ctrlc::set_handler(move || {
@@ -106,7 +106,7 @@ fn interruption() -> Arc<AtomicBool> {
     stop
 }
 
-fn expected(workflow: &Workflow, store: &Store) -> HashMap<String, f64> {
+pub(super) fn expected(workflow: &Workflow, store: &Store) -> HashMap<String, f64> {
     let Ok(past) = Past::of(workflow, store) else { return HashMap::new() };
     let seconds = |name: &String| Some((name.clone(), past.seconds(name)?));
     workflow.stages.iter().filter_map(|stage| seconds(&stage.name)).collect()

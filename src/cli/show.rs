@@ -186,7 +186,7 @@ fn head(column: &Column) -> String {
 /// So many rows of a table are shown to a reader; programs take `--csv` or `--json`.
 const MOST_ROWS: usize = 100;
 
-fn text(table: &Table) -> String {
+pub(super) fn text(table: &Table) -> String {
     let mut shown = comfy_table::Table::new();
     shown.load_style(comfy_table::presets::NOTHING);
     shown.set_header(table.columns.iter().map(head));
@@ -230,6 +230,13 @@ fn table_json(table: &Table) -> Value {
     let column =
         |c: &Column| json!({ "name": c.name, "unit": c.unit, "about": c.about, "values": values_json(&c.values) });
     json!({ "about": table.about, "columns": table.columns.iter().map(column).collect::<Vec<_>>() })
+}
+
+/// A table as a list of rows, each an object by column.
+pub(super) fn rows_json(table: &Table) -> Value {
+    let columns: Vec<(&str, Value)> = table.columns.iter().map(|c| (c.name.as_str(), values_json(&c.values))).collect();
+    let row = |i: usize| columns.iter().map(|(name, values)| ((*name).to_owned(), values[i].clone())).collect();
+    (0..table.rows()).map(|i| Value::Object(row(i))).collect()
 }
 
 fn group_json(artifact: &Artifact) -> Value {

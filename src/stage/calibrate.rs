@@ -28,7 +28,7 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
-pub use config::{Calibrate, Constraint, Curve, MethodName};
+pub use config::{Calibrate, Constraint, Curve, MethodName, Wanted};
 
 use super::{Complaint, Context, Kind, Known, Outcome, Point, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::Artifact;
@@ -148,8 +148,9 @@ impl Calibrate {
     }
 }
 
+/// Version 2: intervals of what surfaces expect, and the recommended misfit in the history.
 impl Kind for Calibrate {
     const NAME: &'static str = "calibrate";
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 1, run: solve::solve }];
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 2, run: solve::solve }];
 }

@@ -126,7 +126,10 @@ pub enum MethodName {
 
 impl Wanted {
     /// The value in `unit`.
-    pub(super) fn value_in(&self, unit: &str) -> Result<f64, String> {
+    ///
+    /// # Errors
+    /// It is of another dimension or cannot be read.
+    pub fn value_in(&self, unit: &str) -> Result<f64, String> {
         let to = Unit::parse(unit).map_err(|e| e.to_string())?;
         let (value, dimension) = match self {
             Self::Number(value) => (*value, crate::unit::Dimension::NONE),

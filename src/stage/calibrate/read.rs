@@ -2,6 +2,7 @@
 
 use super::params::{FactorParam, TargetParam};
 use crate::artifact::{Artifact, Node, Table, Values};
+use crate::optim::Interval;
 use crate::optim::misfit::ordinates;
 use crate::optim::search::Run;
 use crate::optim::surrogate::Trend;
@@ -20,6 +21,34 @@ pub(super) fn surfaces(
     factors: &[FactorParam],
     targets: &[TargetParam],
 ) -> Result<Trend, StageError> {
+    let chosen = chosen(artifact, factors, targets)?;
+    Ok(Arc::new(move |point: &[f64]| {
+        let value = |(model, places): &Surface| model.value(&places.iter().map(|&i| point[i]).collect::<Vec<_>>());
+        Some(chosen.iter().map(value).collect())
+    }))
+}
+
+/// What the surfaces expect at a point, each with the 95 % interval of its mean response; NaN for the ends where the
+/// fit has no residual to tell from.
+pub(super) fn expected(
+    artifact: &Artifact,
+    factors: &[FactorParam],
+    targets: &[TargetParam],
+    point: &[f64],
+) -> Result<Vec<Interval>, StageError> {
+    let one = |(model, places): &Surface| {
+        let told = model.predict(&places.iter().map(|&i| point[i]).collect::<Vec<_>>(), COVERAGE);
+        let (low, high) = told.confidence.unwrap_or((f64::NAN, f64::NAN));
+        Interval { mean: told.value, low, high }
+    };
+    Ok(chosen(artifact, factors, targets)?.iter().map(one).collect())
+}
+
+/// Coverage of the intervals.
+const COVERAGE: f64 = 0.95;
+
+/// The surface of every target.
+fn chosen(artifact: &Artifact, factors: &[FactorParam], targets: &[TargetParam]) -> Result<Vec<Surface>, StageError> {
     let known = models(artifact)?;
     let mut chosen: Vec<Surface> = Vec::new();
     for target in targets {
@@ -31,10 +60,7 @@ pub(super) fn surfaces(
         })?;
         chosen.push((model.clone(), places(model, &target.response, factors)?));
     }
-    Ok(Arc::new(move |point: &[f64]| {
-        let value = |(model, places): &Surface| model.value(&places.iter().map(|&i| point[i]).collect::<Vec<_>>());
-        Some(chosen.iter().map(value).collect())
-    }))
+    Ok(chosen)
 }
 
 /// How far a range may stand beyond a surface's domain by rounding, in parts of the domain.

@@ -49,7 +49,13 @@ pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
         let knowledge = params.knowledge(set, surfaces.first().map(|a| &**a), &earlier)?;
         let problem = params.problem(set)?;
         solved.push(match params.history.get(set) {
-            None => on_surfaces(job, &params, problem, &knowledge, seed)?,
+            None => {
+                let mut found = on_surfaces(job, &params, problem, &knowledge, seed)?;
+                if let Some(surfaces) = surfaces.first() {
+                    found.expected = read::expected(surfaces, &params.factors, &params.sets[set], &found.point)?;
+                }
+                found
+            }
             Some(told) => {
                 let count = told.iter().filter_map(|t| t.run).count();
                 let own: Vec<Arc<Artifact>> = runs.drain(..count).collect();

@@ -1,0 +1,133 @@
+//! What a calibration found, for a reader and for programs.
+
+use super::Asked;
+use crate::artifact::{Artifact, Table, Values};
+use crate::cli::show::{csv_text, rows_json, text as shown};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// The parameters, what they are predicted to give, and how much that says.
+pub(super) fn text(asked: &Asked, solution: &Artifact) -> String {
+    let mut text = format!("{}\n\n", shown(&parameters(asked, solution)));
+    if let Some(prediction) = solution.table("prediction") {
+        let columns = ["response", "unit", "target", "expected", "low", "high", "deviation_percent"];
+        let columns = columns.iter().filter_map(|name| prediction.column(name).cloned()).collect();
+        let _ = writeln!(text, "{}\n", shown(&Table { about: String::new(), columns }));
+        text.push_str(&warnings(prediction));
+    }
+    text.push_str(&remarks(asked, solution));
+    text
+}
+
+/// One row per parameter: its value, and where it lies in the other solutions.
+fn parameters(asked: &Asked, solution: &Artifact) -> Table {
+    let best = table(solution, "solution");
+    let others = table(solution, "solution_set");
+    let factors: Vec<&str> = best
+        .columns
+        .iter()
+        .map(|column| column.name.as_str())
+        .filter(|name| asked.workflow.context.factors.contains_key(*name))
+        .collect();
+    let ends = |name: &str| {
+        let values = others.reals(name).unwrap_or_default();
+        values.iter().fold([f64::NAN; 2], |[low, high], &value| [value.min(low), value.max(high)])
+    };
+    let one = |name: &str| best.reals(name).and_then(|values| values.first().copied()).unwrap_or(f64::NAN);
+    let unit = |name: &str| best.column(name).map_or_else(String::new, |column| column.unit.clone());
+    let values = |pick: &dyn Fn(&str) -> f64| factors.iter().map(|name| pick(name)).collect::<Vec<f64>>();
+    Table { about: String::new(), columns: Vec::new() }
+        .texts_column("parameter", "", factors.iter().map(|name| (*name).to_owned()).collect())
+        .reals_column("value", "", "", values(&one))
+        .texts_column("unit", "", factors.iter().map(|name| unit(name)).collect())
+        .reals_column("others from", "", "", values(&|name| ends(name)[0]))
+        .reals_column("to", "", "", values(&|name| ends(name)[1]))
+}
+
+/// A result without the table is shown as one with nothing in it.
+fn table<'a>(artifact: &'a Artifact, name: &str) -> std::borrow::Cow<'a, Table> {
+    let empty = || std::borrow::Cow::Owned(Table { about: String::new(), columns: Vec::new() });
+    artifact.table(name).map_or_else(empty, std::borrow::Cow::Borrowed)
+}
+
+/// Targets out of reach, one by one or together.
+fn warnings(prediction: &Table) -> String {
+    let Some(Values::Texts(reach)) = prediction.column("reach").map(|column| &column.values) else {
+        return String::new();
+    };
+    let Some(Values::Texts(names)) = prediction.column("response").map(|column| &column.values) else {
+        return String::new();
+    };
+    let mut text = String::new();
+    for (name, reach) in names.iter().zip(reach).filter(|(_, reach)| reach.starts_with("out of reach")) {
+        let _ = writeln!(text, "the target of `{name}` is {reach} over these ranges: the nearest is given");
+    }
+    let deviations = prediction.reals("deviation_percent").unwrap_or_default();
+    let missed = deviations.iter().any(|deviation| deviation.abs() > MET);
+    if text.is_empty() && missed {
+        text.push_str("each target can be met by itself, all together cannot: the nearest is given\n");
+    }
+    text
+}
+
+/// A deviation up to this, in percent, is no conflict between targets.
+const MET: f64 = 0.1;
+
+/// How good the solution is, and how far it is the only one.
+fn remarks(asked: &Asked, solution: &Artifact) -> String {
+    let best = table(solution, "solution");
+    let one = |name: &str| best.reals(name).and_then(|values| values.first().copied());
+    let stop = match best.column("stop").map(|column| &column.values) {
+        Some(Values::Texts(texts)) => texts.first().cloned().unwrap_or_default(),
+        Some(_) | None => String::new(),
+    };
+    let (misfit, evaluations) = (one("misfit").unwrap_or(f64::NAN), one("evaluations").unwrap_or(f64::NAN));
+    let mut text = format!("misfit {misfit:.1e} after {evaluations} evaluations: {stop}\n");
+    let free = one("free").unwrap_or(0.0);
+    if free > 0.0 {
+        let preferred = asked.workflow.position(&asked.stage).is_some_and(|index| {
+            let settings = asked.workflow.stages[index].stage.settings();
+            settings["preference"].as_object().is_some_and(|own| !own.is_empty())
+        });
+        let near = if preferred { "the preferred point" } else { "the middle of the ranges" };
+        let others = table(solution, "solution_set").rows();
+        let _ = writeln!(
+            text,
+            "not unique: the targets leave {free} directions free; this is the solution nearest {near}, \
+             and {others} others are in the table `solution_set` (--json)"
+        );
+    }
+    text
+}
+
+/// What the fresh specimens gave.
+pub(super) fn verified(verification: &Artifact) -> String {
+    format!("\n{}\n", shown(&table(verification, "summary")))
+}
+
+/// One table as CSV.
+pub(super) fn csv(artifact: &Artifact, name: &str) -> String {
+    csv_text(&table(artifact, name))
+}
+
+/// All of it as one document: tables as lists of rows, with the units of their columns beside them.
+pub(super) fn document(asked: &Asked, solution: &Artifact, verified: &[Arc<Artifact>]) -> Value {
+    let best = table(solution, "solution");
+    let units: serde_json::Map<String, Value> = best
+        .columns
+        .iter()
+        .filter(|column| !column.unit.is_empty())
+        .map(|column| (column.name.clone(), json!(column.unit)))
+        .collect();
+    let rows = |name: &str| rows_json(&table(solution, name));
+    json!({
+        "workflow": asked.workflow.name,
+        "stage": asked.stage,
+        "units": units,
+        "solution": rows("solution").get(0),
+        "prediction": rows("prediction"),
+        "solution_set": rows("solution_set"),
+        "verification": verified.iter().map(|found| rows_json(&table(found, "summary"))).collect::<Vec<_>>(),
+    })
+}

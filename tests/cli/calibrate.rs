@@ -1,0 +1,124 @@
+//! `flow calibrate`: other targets from a finished campaign, and calibrations that cannot be.
+
+use crate::space::{Space, told};
+use serde_json::Value;
+
+const CAMPAIGN: &str = include_str!("campaign.toml");
+
+/// The folder with the campaign, its stages run as named.
+fn space(stages: &[&str]) -> Space {
+    let space = Space::new();
+    space.write("w.toml", CAMPAIGN);
+    if !stages.is_empty() {
+        space.run(stages);
+    }
+    space
+}
+
+fn answer(space: &Space, more: &[&str]) -> Value {
+    let text = space.stdout(&[&["calibrate", "w.toml", "--json"], more].concat());
+    serde_json::from_str(&text).expect("a JSON document")
+}
+
+/// y = 3a + b²/100 + 7 with 1 % scatter: a known truth.
+fn truth(solution: &Value) -> f64 {
+    let at = |name: &str| solution[name].as_f64().expect("a number");
+    3.0 * at("a") + at("b") * at("b") / 100.0 + 7.0
+}
+
+#[test]
+fn other_targets_are_answered_from_the_surfaces_and_the_second_time_from_the_store() {
+    let space = space(&["surfaces"]);
+    let objects = space.objects().len();
+    let found = answer(&space, &["--target", "y=18.5 MPa"]);
+    assert!((truth(&found["solution"]) / 18.5 - 1.0).abs() < 0.02, "{found}");
+    assert_eq!(space.objects().len(), objects + 1, "one solution and nothing else");
+    assert_eq!(found, answer(&space, &["--target", "y=18.5e6 Pa"]));
+    assert_eq!(space.objects().len(), objects + 1);
+    let expected = &found["prediction"][0];
+    let at = |name: &str| expected[name].as_f64().expect("a number");
+    assert!(at("low") < at("expected") && at("expected") < at("high"), "{expected}");
+    assert!((at("expected") - 18.5).abs() < 1e-3, "{expected}");
+    // Two parameters and one target: a line of solutions.
+    assert_eq!(found["solution"]["free"], 1.0);
+    assert!(found["solution_set"].as_array().expect("rows").len() > 10);
+    let text = space.stdout(&["calibrate", "w.toml", "--target", "y=18.5 MPa"]);
+    assert!(text.contains("the targets leave 1 directions free"), "{text}");
+    let csv = space.stdout(&["calibrate", "w.toml", "--target", "y=18.5 MPa", "--csv"]);
+    assert!(csv.starts_with("set,a,b,y [MPa],misfit,"), "{csv}");
+    // The campaign's own calibration is as it was.
+    space.run(&["surfaces"]).expect(&[]);
+}
+
+#[test]
+fn a_verification_runs_its_own_specimens_and_nothing_else() {
+    let space = space(&["surfaces"]);
+    let before = space.objects().len();
+    let found = answer(&space, &["--target", "y=18.5 MPa", "--verify", "--quiet"]);
+    let summary = &found["verification"][0][0];
+    assert_eq!((summary["response"].as_str(), summary["n"].as_i64()), (Some("y"), Some(3)));
+    assert!(summary["relative_error_percent"].as_f64().expect("a number") < 3.0, "{summary}");
+    assert_eq!(space.objects().len(), before + 1 + 3 + 1, "solution, three runs, verification");
+    let csv = space.stdout(&["calibrate", "w.toml", "--target", "y=18.5 MPa", "--verify", "--csv", "--quiet"]);
+    assert!(csv.starts_with("set,response,unit,target,mean"), "{csv}");
+}
+
+#[test]
+fn a_target_out_of_reach_is_named_with_the_nearest_value() {
+    let space = space(&["surfaces"]);
+    let text = space.stdout(&["calibrate", "w.toml", "--target", "y=40 MPa"]);
+    assert!(text.contains("the target of `y` is out of reach, at most 2"), "{text}");
+}
+
+#[test]
+fn an_unfinished_campaign_says_what_to_run_first_and_runs_nothing() {
+    let space = space(&["grid"]);
+    let before = space.objects().len();
+    let target = ["calibrate", "w.toml", "--target", "y=18.5 MPa"];
+    let output = space.flow(&target);
+    assert_eq!(output.status.code(), Some(2), "{}", told(&output));
+    assert!(told(&output).contains("run first: flow run w.toml surfaces\n"), "{}", told(&output));
+    assert!(
+        told(&output).contains("faces, ccd, surfaces of what `calibrate` rests on are missing"),
+        "{}",
+        told(&output)
+    );
+    assert_eq!(space.objects().len(), before);
+    // Its verification may not run the simulator's design either.
+    space.run(&["surfaces"]);
+    space.write("w.toml", &CAMPAIGN.replace("simulator = \"ccd\"", "simulator = \"table\""));
+    let output = space.flow(&[&target[..], &["--verify", "--set", "workflow.title=mine"]].concat());
+    let first = "run first: flow run w.toml table --set 'workflow.title=mine'\n";
+    assert!(told(&output).contains(first), "{}", told(&output));
+    assert!(space.flow(&target).status.success());
+}
+
+#[test]
+fn every_fault_of_the_command_line_is_told() {
+    let space = space(&[]);
+    for (options, message) in [
+        (&["--target", "z=3"][..], "unknown response `z`"),
+        (&["--target", "Y=16 MPa"], "did you mean `y`?"),
+        (&["--target", "y"], "there is no `=`"),
+        (&["--target", "y=16"], "16 is not a value in `MPa`; write for example \"30 MPa\""),
+        (&["--target", "y=16 GP"], "--target y=16 GP: "),
+        (&["--target", "y=16 GPa", "--target", "y=1 MPa"], "`y` is given twice"),
+        (&["--target", "y=0 MPa"], "the target of `y` is 0"),
+        (&["--target", "y=16 MPa", "--stage", "verify"], "`verify` is of kind verify, not calibrate"),
+        (&["--target", "y=16 MPa", "--stage", "calibrat"], "did you mean `calibrate`?"),
+        (&["--target", "y=16 MPa", "--set", "stage.calibrate.simulator=ccd"], "`calibrate`"),
+    ] {
+        let output = space.flow(&[&["calibrate", "w.toml"], options].concat());
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {}", told(&output));
+        assert!(told(&output).contains(message), "{options:?}: wanted `{message}` in {}", told(&output));
+    }
+    let alone = CAMPAIGN.replace(
+        "[stage.verify]\nkind = \"verify\"\nsolution = \"calibrate\"",
+        "[stage.verify]\nkind = \"verify\"\nsolution = \"other\"",
+    );
+    space.write("w.toml", &format!("{alone}\n[stage.other]\nkind = \"calibrate\"\nsurfaces = \"surfaces\"\nfactors = [\"a\", \"b\"]\ntargets = [{{ y = \"16 MPa\" }}]\n"));
+    let output = space.flow(&["calibrate", "w.toml", "--target", "y=16 MPa"]);
+    assert!(told(&output).contains("name one with --stage: calibrate, other"), "{}", told(&output));
+    let output = space.flow(&["calibrate", "w.toml", "--target", "y=16 MPa", "--stage", "calibrate", "--verify"]);
+    assert!(told(&output).contains("no stage verifies `calibrate`"), "{}", told(&output));
+}
