@@ -75,7 +75,8 @@ impl Figure for Cracks {
             let [x, _] = frame.area.centre();
             scene.text(Line::new(&moment.title, size), [x, y + 1.1 * size], Anchor::Middle, 0.0, INK);
             self.draw_moment(&mut scene, &frame, moment);
-            let counts = format!("{} cracks", thousands(moment.cracks.len()));
+            let count = moment.cracks.len();
+            let counts = format!("{} {}", thousands(count), if count == 1 { "crack" } else { "cracks" });
             let at = [x, frame.area.bottom + 1.2 * size];
             scene.text(Line::new(&counts, 0.9 * size), at, Anchor::Middle, 0.0, SOFT);
             if i == 0 {

@@ -78,7 +78,13 @@ impl Stage for Verify {
             let value = |name: &String| table.reals(name).map(|values| (name.clone(), values[set]));
             let point: Point = factors.iter().filter_map(value).collect();
             for replicate in 0..self.replicates {
-                task = task.after("run", Arc::new((simulator.sample)(&point, FRESH + replicate)?));
+                task = task.after(
+                    "run",
+                    Arc::new(
+                        (simulator.sample)(&point, FRESH + replicate)?
+                            .row(set * self.replicates as usize + replicate as usize),
+                    ),
+                );
             }
         }
         Ok(Step::Finish(task))

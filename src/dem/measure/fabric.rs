@@ -1,8 +1,8 @@
-//! How the bodies hang together: coordination, fabric, force chains.
+//! How the bodies hang together: coordination, fabric, forces between particles.
 
 use crate::dem::contact::{Contact, Other};
 use crate::dem::engine::Engine;
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::dem::space::{Space, Tuple};
 
 /// Contacts and bonds per body (a clump is one body).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,28 +55,31 @@ pub fn fabric<S: Space>(engine: &Engine<S>) -> [[f64; 3]; 3] {
     if count > 0.0 { sum.map(|row| row.map(|x| x / count)) } else { sum }
 }
 
-/// One link of a force chain.
-#[derive(Clone, Copy, Debug)]
-pub struct Chain<S: Space> {
-    /// Centre of the first end, m.
-    pub from: Vector<S>,
-    /// Centre of the second end (or the point on the wall), m.
-    pub to: Vector<S>,
+/// The force between two particles that touch or are bonded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Link {
+    /// The two particles, by their places in the caller's list, the smaller first.
+    pub ends: [usize; 2],
     /// Normal force, compression positive, N.
-    pub normal_force: f64,
-    /// Whole force, N.
-    pub force: f64,
+    pub normal: f64,
+    /// Size of the force across the normal, N.
+    pub shear: f64,
+    /// Whether a bond carries part of it.
+    pub bonded: bool,
 }
 
-/// Links that carry at least `share` of the mean contact force.
-pub fn force_chains<S: Space>(engine: &Engine<S>, share: f64) -> Vec<Chain<S>> {
-    let active: Vec<Contact<S>> = engine.contacts().filter(|c| c.active).collect();
-    let sizes: Vec<f64> = active.iter().map(|c| c.force().norm()).collect();
-    let mean = sizes.iter().sum::<f64>() / sizes.len().max(1) as f64;
-    let link = |(contact, &force): (&Contact<S>, &f64)| {
-        let from = engine.position(contact.particle);
-        let to = from.plus(contact.branch);
-        Chain { from, to, normal_force: -contact.force().dot(contact.normal), force }
+/// The forces between particles, in the order of their ends. Force chains are those among them that carry more than the
+/// mean (Radjai et al. 1998, doi:10.1103/PhysRevLett.80.61: the "strong" network).
+pub fn links<S: Space>(engine: &Engine<S>) -> Vec<Link> {
+    let link = |contact: Contact<S>| {
+        let Other::Particle(second) = contact.other else { return None };
+        let force = contact.force();
+        let pull = force.dot(contact.normal);
+        let across = force.minus(contact.normal.times(pull)).norm();
+        let ends = [contact.particle.min(second), contact.particle.max(second)];
+        contact.active.then_some(Link { ends, normal: -pull, shear: across, bonded: contact.bonded })
     };
-    active.iter().zip(&sizes).filter(|(_, size)| **size >= share * mean).map(link).collect()
+    let mut links: Vec<Link> = engine.contacts().filter_map(link).collect();
+    links.sort_unstable_by_key(|link| link.ends);
+    links
 }

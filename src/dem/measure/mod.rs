@@ -10,5 +10,5 @@ pub use balance::unbalanced_ratio;
 pub use cracks::{Crack, Mode};
 pub(crate) use energy::stored;
 pub use energy::{Energy, energy};
-pub use fabric::{Chain, Coordination, coordination, fabric, force_chains};
+pub use fabric::{Coordination, Link, coordination, fabric, links};
 pub use stress::{Region, stress};

@@ -69,7 +69,7 @@ fn checks(run: &Run, start: &[Point], diameter: f64) -> Vec<Check> {
     let central = early.iter().filter(|crack| crack.position[0].abs() <= BAND * diameter).count();
     let share = if early.is_empty() { 1.0 } else { central as f64 / early.len() as f64 };
     let at_peak = run.snapshots.iter().max_by(|a, b| a.stress.total_cmp(&b.stress));
-    let turned = at_peak.map_or(0.0, |state| rotation(start, &state.centres).abs());
+    let turned = at_peak.map_or(0.0, |kept| rotation(start, &kept.state.centres).abs());
     vec![
         Check { name: "cracks near the loaded diameter", value: share, bound: LEAST_SHARE, met: share >= LEAST_SHARE },
         Check { name: "rotation", value: turned, bound: LARGEST_ROTATION, met: turned <= LARGEST_ROTATION },

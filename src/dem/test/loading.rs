@@ -9,9 +9,9 @@ use super::curve::{Macro, Sample, peak};
 use super::judgement::Judgement;
 use super::material::Material;
 use super::rig::Machine;
-use super::snapshot::{Ladder, Snapshot};
+use super::snapshot::{Ladder, Snapshot, State};
 use crate::dem::genesis::specimen::Specimen;
-use crate::dem::measure::{Energy, energy};
+use crate::dem::measure::{Energy, energy, links};
 use crate::dem::{D2, Engine, Failure, Faults, Watch};
 use serde::{Deserialize, Serialize};
 
@@ -125,12 +125,22 @@ pub struct Rule {
     pub strain_limit: f64,
     /// Shares of the peak at which the state is kept, besides the last state.
     pub snapshots: Vec<f64>,
+    /// Whether the forces between the discs are kept with each of these states.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub forces: bool,
 }
 
 impl Default for Rule {
     fn default() -> Self {
         let snapshots = vec![0.5, 0.8, 1.0];
-        Self { sample_strain: 2e-6, stop_fraction: 0.75, seating_stress: 5e5, strain_limit: 0.02, snapshots }
+        Self {
+            sample_strain: 2e-6,
+            stop_fraction: 0.75,
+            seating_stress: 5e5,
+            strain_limit: 0.02,
+            snapshots,
+            forces: false,
+        }
     }
 }
 
@@ -210,7 +220,7 @@ pub fn drive(
             break;
         }
         run.samples.push(sample);
-        ladder.offer(&sample, || state(engine));
+        ladder.offer(&sample, || state(engine, rule));
         largest = largest.max(stress);
         if run.samples.len().is_multiple_of(ENERGY_EVERY) {
             run.energies.push((axial, energy(engine)));
@@ -231,11 +241,14 @@ pub fn drive(
     let top = peak(&run.samples).map_or(0.0, |k| run.samples[k].stress);
     let last = run.samples[run.samples.len() - 1];
     run.energies.push((last.axial, energy(engine)));
-    run.snapshots = ladder.keep(top, &rule.snapshots, Snapshot::new(&last, state(engine)));
+    run.snapshots = ladder.keep(top, &rule.snapshots, Snapshot::new(&last, state(engine, rule)));
     run
 }
 
-/// Position and turn of every particle.
-fn state(engine: &Engine<D2>) -> Vec<[f64; 2]> {
-    (0..engine.particle_count()).map(|i| engine.position(i)).collect()
+/// What a snapshot keeps of the engine.
+fn state(engine: &Engine<D2>, rule: &Rule) -> State {
+    State {
+        centres: (0..engine.particle_count()).map(|i| engine.position(i)).collect(),
+        forces: if rule.forces { links(engine) } else { Vec::new() },
+    }
 }

@@ -6,8 +6,18 @@
 
 use super::curve::Sample;
 use crate::dem::genesis::region::Point;
+use crate::dem::measure::Link;
 
-/// Positions of all balls at one moment.
+/// What is kept of the balls at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Centres (m).
+    pub centres: Vec<Point>,
+    /// Forces between them, where they are wanted.
+    pub forces: Vec<Link>,
+}
+
+/// All balls at one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
     /// Axial strain.
@@ -16,14 +26,14 @@ pub struct Snapshot {
     pub stress: f64,
     /// Cracks so far.
     pub cracks: usize,
-    /// Centres (m).
-    pub centres: Vec<Point>,
+    /// The balls.
+    pub state: State,
 }
 
 impl Snapshot {
     /// The state at a sample.
-    pub fn new(sample: &Sample, centres: Vec<Point>) -> Self {
-        Self { strain: sample.axial, stress: sample.stress, cracks: sample.cracks, centres }
+    pub fn new(sample: &Sample, state: State) -> Self {
+        Self { strain: sample.axial, stress: sample.stress, cracks: sample.cracks, state }
     }
 }
 
@@ -40,7 +50,7 @@ const FORGET: f64 = 1.0 / 3.0;
 
 impl Ladder {
     /// Keeps the state of this sample if it is a rung or a new top.
-    pub fn offer(&mut self, sample: &Sample, state: impl Fn() -> Vec<Point>) {
+    pub fn offer(&mut self, sample: &Sample, state: impl Fn() -> State) {
         if sample.stress > TOP * self.top.as_ref().map_or(0.0, |top| top.stress) {
             self.top = Some(Snapshot::new(sample, state()));
         }
@@ -71,14 +81,14 @@ mod tests {
         let sample = |stress: f64, strain: f64| Sample { axial: strain, lateral: 0.0, stress, cracks: 0 };
         let climb: Vec<f64> = (1..=1000).map(f64::from).chain((500..1000).rev().map(f64::from)).collect();
         for (k, &stress) in climb.iter().enumerate() {
-            ladder.offer(&sample(stress, k as f64), || vec![[stress, 0.0]]);
+            ladder.offer(&sample(stress, k as f64), || State { centres: vec![[stress, 0.0]], forces: vec![] });
         }
         assert!(ladder.rungs.len() < 40);
-        let last = Snapshot::new(&sample(500.0, 1500.0), vec![]);
+        let last = Snapshot::new(&sample(500.0, 1500.0), State::default());
         let kept = ladder.keep(1000.0, &[0.5, 0.8, 1.0], last.clone());
         for (snapshot, wanted) in kept.iter().zip([500.0, 800.0, 1000.0]) {
             assert!((snapshot.stress / wanted - 1.0).abs() < 0.03, "{}", snapshot.stress);
-            assert_eq!(snapshot.centres[0][0], snapshot.stress);
+            assert_eq!(snapshot.state.centres[0][0], snapshot.stress);
             assert!(snapshot.strain < 1000.0);
         }
         assert!(kept[2].stress > 997.0);

@@ -88,6 +88,40 @@ fn a_random_specimen_fails_with_a_record_and_the_same_bits_every_time() {
     assert!(a.judgement.warnings(test.speed).len() == 2, "{:?}", a.judgement);
 }
 
+/// The trace of the stress is Σ f_n l / A over all contacts, and there is nothing across the load. The outermost branches,
+/// from the platens to the centres of the balls that they touch, belong to the platens: about one radius at each end.
+#[test]
+fn forces_that_are_kept_carry_the_load() {
+    let (mut test, specimen, material) = (loading(TestKind::Uniaxial, 0.1), small(), material(20e9, 2.5, 20e6));
+    let plain = run(&test, &specimen, &material);
+    test.rule.forces = true;
+    let kept = run(&test, &specimen, &material);
+    assert_eq!(plain.run.samples, kept.run.samples);
+    assert!(plain.run.snapshots.iter().all(|snapshot| snapshot.state.forces.is_empty()));
+    let [width, height] = specimen.region.extent();
+    for snapshot in &kept.run.snapshots[..3] {
+        let (centres, forces) = (&snapshot.state.centres, &snapshot.state.forces);
+        assert!(forces.windows(2).all(|pair| pair[0].ends < pair[1].ends));
+        let length = |[i, j]: [usize; 2]| {
+            let [dx, dy] = [0, 1].map(|k| centres[j][k] - centres[i][k]);
+            (dx * dx + dy * dy).sqrt()
+        };
+        let trace: f64 = forces.iter().map(|link| link.normal * length(link.ends)).sum();
+        let load = snapshot.stress * width * (height * (1.0 - snapshot.strain) - 2.0 * specimen.mean_radius());
+        assert!((trace / load - 1.0).abs() < 0.02, "{} at {} Pa", trace / load, snapshot.stress);
+    }
+}
+
+/// What finished simulations are known by does not change with the setting that they do not use.
+#[test]
+fn a_test_that_keeps_no_forces_does_not_speak_of_them() {
+    let text = |test: &Loading| serde_json::to_string(test).unwrap();
+    let mut test = loading(TestKind::Uniaxial, 0.02);
+    assert!(!text(&test).contains("forces"));
+    test.rule.forces = true;
+    assert!(text(&test).contains("\"forces\":true"));
+}
+
 /// With moduli and strengths times 4 and speed times 2 every number of the run scales by a power of two: the time step
 /// halves, forces grow fourfold, and the results follow to the last bit.
 #[test]

@@ -6,7 +6,7 @@
 //! | `show` | `of` | tables read |
 //! |---|---|---|
 //! | `stress-strain` | runs | `curve`, `cracks` |
-//! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces` |
+//! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces`, `snapshots` |
 //! | `specimen` | a specimen | its arrays |
 //! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
 //! | `points` | a design or results | `design` or `runs`: two or three factors |

@@ -182,13 +182,27 @@ pub(super) fn rose(sources: &Sources) -> Result<Rose, StageError> {
     Ok(Rose { modes: names.into_iter().enumerate().map(|(k, name)| (name, of(k))).collect(), petals: 18 })
 }
 
+/// The state of the largest stress among those that were kept.
+fn state_at_peak(source: Source) -> Result<(usize, Vec<[f64; 2]>), StageError> {
+    let stress = source.rows(&["snapshots/states"])?.reals("stress")?;
+    let peak = (0..stress.len()).max_by(|&a, &b| stress[a].total_cmp(&stress[b]).then(b.cmp(&a)));
+    let peak = peak.ok_or_else(|| StageError::new("the run kept no state"))?;
+    let centres = source.states().ok_or_else(|| source.lacks("snapshots/centres"))?;
+    let discs = centres.len() / stress.len();
+    Ok((peak, centres[peak * discs..][..discs].to_vec()))
+}
+
 pub(super) fn chains(sources: &Sources) -> Result<Chains, StageError> {
-    let rows = sources.first()?.rows(&["forces"])?;
+    let source = sources.first()?;
+    let rows = source.rows(&["forces"]).map_err(|e| e.hint("write `forces = true` in the stage of the run"))?;
+    let (peak, centres) = state_at_peak(source)?;
     let read = |name: &str| rows.reals(name);
-    let (x1, y1, x2, y2, force) = (read("x1")?, read("y1")?, read("x2")?, read("y2")?, read("normal_force")?);
-    let link = |i: usize| Link { from: [x1[i] * MM, y1[i] * MM], to: [x2[i] * MM, y2[i] * MM], force: force[i] / 1e3 };
-    let links: Vec<Link> = (0..force.len()).map(link).collect();
+    let (state, first, second, force) = (read("state")?, read("first")?, read("second")?, read("normal_force")?);
+    let place = |disc: f64| centres.get(disc as usize).map(|c| c.map(|v| v * MM));
+    let link = |i: usize| Some(Link { from: place(first[i])?, to: place(second[i])?, force: force[i] / 1e3 });
+    let links: Option<Vec<Link>> = (0..force.len()).filter(|&i| state[i] == peak as f64).map(link).collect();
+    let links = links.ok_or_else(|| StageError::new("the forces name discs that the run does not have"))?;
     let points: Vec<[f64; 2]> = links.iter().flat_map(|l| [l.from, l.to]).collect();
     let (low, high, _) = ground(sources, &points)?;
-    Ok(Chains { low, high, links, unit: "kN".into(), least: 0.5 })
+    Ok(Chains { low, high, links, unit: "kN/m".into(), least: 1.0 })
 }

@@ -60,16 +60,28 @@ fn run() -> Artifact {
         .reals_column("normal_y", "", "", count(|_| 0.0))
         .reals_column("size", "m", "", count(|_| 1e-3));
     let forces = table()
-        .reals_column("x1", "m", "", count(|i| 1e-3 * (i - 15.0)))
-        .reals_column("y1", "m", "", count(|_| 0.0))
-        .reals_column("x2", "m", "", count(|i| 1e-3 * (i - 15.0)))
-        .reals_column("y2", "m", "", count(|_| 1e-3))
+        .ints_column("state", "", (0..n).map(i64::from).map(|i| i % 2).collect())
+        .ints_column("first", "", (0..n).map(i64::from).collect())
+        .ints_column("second", "", (0..n).map(i64::from).map(|i| i + 1).collect())
         .reals_column("normal_force", "N", "", count(|i| 100.0 * (i - 4.0)));
+    let states = table().reals_column("stress", "Pa", "", vec![1e6, 3e7]);
+    let centres = Array {
+        shape: vec![2, 31, 2],
+        unit: "m".into(),
+        about: String::new(),
+        values: Values::Reals(
+            (0..62).flat_map(|i| [1e-3 * f64::from(i % 31 - 15), 1e-2 * f64::from(i / 31)]).collect(),
+        ),
+    };
+    let snapshots = Group::new().with("states", Node::Table(states)).with("centres", Node::Array(centres));
     let responses = table()
         .texts_column("response", "", words(["E"]))
         .reals_column("value", "", "", vec![3e10])
         .texts_column("unit", "", words(["Pa"]));
-    artifact("run", vec![("curve", curve), ("cracks", cracks), ("forces", forces), ("responses", responses)])
+    let tables = vec![("curve", curve), ("cracks", cracks), ("forces", forces), ("responses", responses)];
+    let mut run = artifact("run", tables);
+    run.root.put("snapshots", Node::Group(snapshots));
+    run
 }
 
 fn specimen() -> Artifact {
@@ -314,6 +326,13 @@ fn the_numbers_are_those_of_the_inputs() {
     let (x, y) = (data.reals("published").unwrap(), data.reals("computed").unwrap());
     assert_eq!(x.len(), 6);
     assert!(x.iter().zip(&y).all(|(x, y)| y - x == 1.0));
+
+    // Of the forces, those of the state with the largest stress: the odd ones, where its discs are.
+    let chains = made("show = 'force-chains'\nof = 'a'", &[run()], &[]).unwrap();
+    let data = chains.table("data").unwrap();
+    assert_eq!(data.reals("normal_force").unwrap()[..3], [-0.3, -0.1, 0.1]);
+    let first = ["x1", "x2", "y1"].map(|name| data.reals(name).unwrap()[0].round());
+    assert_eq!(first, [-14.0, -13.0, 10.0]);
 
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['mu', 'Ec']";
     let field = made(contour, &[surfaces()], &[]).unwrap();

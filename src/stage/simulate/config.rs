@@ -39,6 +39,9 @@ pub struct Simulate {
     /// Shares of the peak at which the state is kept.
     #[serde(default = "snapshots")]
     pub snapshots: Vec<f64>,
+    /// Whether the forces between the discs are kept with these states, for force chains.
+    #[serde(default)]
+    pub forces: bool,
     /// Local damping.
     #[serde(default = "damping")]
     pub damping: f64,
@@ -169,6 +172,7 @@ impl Simulate {
                 seating_stress: self.seating_stress.get(),
                 strain_limit: self.strain_limit,
                 snapshots: self.snapshots.clone(),
+                forces: self.forces,
                 ..Rule::default()
             },
         }
