@@ -31,6 +31,7 @@
 //! when at their default (`skip_serializing_if`), so that they rerun nothing. Parameters of tasks are plain SI numbers
 //! (the domain's own spec types), built from the config in `next`.
 
+pub mod agreement;
 pub mod anova;
 pub mod calibrate;
 mod columns;
@@ -205,6 +206,7 @@ macro_rules! kinds {
 }
 
 kinds! {
+    agreement::Agreement,
     anova::Anova,
     calibrate::Calibrate,
     command::Command,

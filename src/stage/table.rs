@@ -168,6 +168,7 @@ const ANY: &[&str] = &[
     "surfaces",
     "solution",
     "verification",
+    "agreement",
     "picture",
     "table",
 ];

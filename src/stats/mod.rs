@@ -8,11 +8,13 @@
 //! * [`anova`]: sums of squares of factors and interactions, F, p, contribution
 //! * [`regression`]: polynomial models in natural and coded units, with [`terms`], [`selection`] and [`diagnostics`]
 //! * [`model`]: a fitted polynomial: prediction, intervals, domain
+//! * [`agreement`]: how well two sets of values agree: ratios, ranks
 //! * [`canonical`]: stationary point of a second-order surface, its nature and axes, path of steepest ascent
 //! * [`screening`]: effects of an unreplicated two-level design, Lenth's limits
 //!
 //! All fits go through one orthogonal reduction (`triangle`), small ones in pairs of doubles (`number`).
 
+pub mod agreement;
 pub mod anova;
 pub mod canonical;
 pub mod diagnostics;

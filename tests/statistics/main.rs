@@ -1,6 +1,7 @@
 //! The statistics against certified data, published tables and other programs.
 #![allow(clippy::unwrap_used)]
 
+mod agreement;
 mod faults;
 mod identities;
 mod nist;

@@ -8,6 +8,7 @@ use crate::figure::axis::significant;
 use crate::figure::bars::{Bar, RankedBars};
 use crate::figure::effects::{FactorMeans, MainEffects};
 use crate::figure::points::DesignPoints;
+use crate::stats::agreement::pair_rows;
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {
     params.responses.first().ok_or_else(|| StageError::new("no response is named"))
@@ -177,20 +178,13 @@ fn matched(ours: Rows<'_>, theirs: Rows<'_>, response: &str, keys: &[Label]) -> 
         return Err(StageError::new("the two tables share no factor by which rows could be matched"));
     }
     let read = |rows: Rows<'_>| factors.iter().map(|f| rows.reals(f)).collect::<Result<Vec<_>, _>>();
-    let (a, b) = (read(ours)?, read(theirs)?);
     let (y, x) = (ours.reals(response)?, theirs.reals(response)?);
-    let near = |p: f64, q: f64| (p - q).abs() <= 1e-3 * p.abs().max(q.abs()).max(1e-12);
-    let mut used = vec![false; y.len()];
     let mut out: Matched = (Vec::new(), Vec::new(), Vec::new());
-    for (j, &value) in x.iter().enumerate() {
-        let hit = (0..y.len()).find(|&i| !used[i] && a.iter().zip(&b).all(|(p, q)| near(p[i], q[j])));
-        if let Some(i) = hit {
-            used[i] = true;
-            if value.is_finite() && y[i].is_finite() {
-                out.0.push(value);
-                out.1.push(y[i]);
-                out.2.push((j + 1).to_string());
-            }
+    for (i, j) in pair_rows(&read(ours)?, &read(theirs)?, 1e-3) {
+        if x[j].is_finite() && y[i].is_finite() {
+            out.0.push(x[j]);
+            out.1.push(y[i]);
+            out.2.push((j + 1).to_string());
         }
     }
     Ok(out)

@@ -1,0 +1,284 @@
+//! `kind = "agreement"`: computed results beside values of the same points from elsewhere.
+//!
+//! `of` and `compare` name tables of results in pairs. Rows are paired by the factors that both hold; equal points pair
+//! off in their order. The result has the tables
+//! * `summary` (`response,table,n,median,lower,upper,least,greatest,mean,std,spearman`): the ratio computed/reference
+//!   per pair of tables, and over all of them where there are several;
+//! * `trends` (`response,table,factor,effect,std_error,t,p`): what the ratio depends on: the regression of 100 ln ratio
+//!   on the factors of a table, each effect over the factor's span, in per cent;
+//! * `pairs` (`response,table,row,computed,reference,ratio`): every pair, `row` in the reference.
+
+use super::columns::{Columns, Rows, Wanted, check_names, runs};
+use super::{Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Context, figure::Names};
+use crate::artifact::{Artifact, Group, Node, Table};
+use crate::stats::agreement::{Agreement as Found, agreement, pair_rows};
+use crate::stats::regression::{self, regress};
+use crate::stats::sample::{Factor, Response, Sample};
+use crate::stats::terms::Term;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+/// Settings of an `agreement` stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Agreement {
+    /// The stages with the computed results.
+    pub of: Names,
+    /// As many stages with the values to compare with, in the same order.
+    pub compare: Names,
+    /// Responses that are compared; all that both tables have when not given.
+    #[serde(default)]
+    pub responses: Vec<String>,
+    /// Largest relative difference of a level that still counts as the same: published levels are rounded.
+    #[serde(default = "tolerance")]
+    pub tolerance: f64,
+}
+
+fn tolerance() -> f64 {
+    1e-3
+}
+
+#[derive(Serialize, Deserialize)]
+struct Params {
+    tables: Vec<Pair>,
+    tolerance: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Pair {
+    name: String,
+    ours: Columns,
+    theirs: Columns,
+}
+
+impl Stage for Agreement {
+    fn inputs(&self) -> Vec<Port> {
+        let port = |key, names: &Names| Port { key, stages: names.list(), accepts: &["results"] };
+        vec![port("of", &self.of), port("compare", &self.compare)]
+    }
+
+    fn gives(&self) -> &'static str {
+        "agreement"
+    }
+
+    fn check(&self, context: &Context) -> Vec<Complaint> {
+        let mut found = check_names(context, &[], &self.responses);
+        let (ours, theirs) = (self.of.list().len(), self.compare.list().len());
+        if ours != theirs {
+            let message = format!("`of` names {ours} stages and `compare` {theirs}; they are compared in pairs");
+            found.push(Complaint::new("compare", message).hint("name one table for each stage of `of`"));
+        }
+        if !(self.tolerance >= 0.0 && self.tolerance < 0.5) {
+            let message = format!("`tolerance` is {}; it must lie between 0 and 0.5", self.tolerance);
+            found.push(Complaint::new("tolerance", message).hint("0.001 allows for levels printed with three digits"));
+        }
+        found
+    }
+
+    fn settings(&self) -> Value {
+        json!({
+            "of": self.of.list(), "compare": self.compare.list(), "responses": self.responses,
+            "tolerance": self.tolerance,
+        })
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let mut tables = Vec::new();
+        for ((name, ours), theirs) in self.of.list().into_iter().zip(known.port("of")).zip(known.port("compare")) {
+            let (a, b) = (known.load(ours)?, known.load(theirs)?);
+            let (a, b) = (runs(&a)?, runs(&b)?);
+            let all = Wanted::default();
+            let (first, second) = (Columns::of(a, known.context, all)?, Columns::of(b, known.context, all)?);
+            let shared = |own: Vec<String>, other: Vec<String>| -> Vec<String> {
+                own.into_iter().filter(|name| other.contains(name)).collect()
+            };
+            let factors = shared(first.factor_names(), second.factor_names());
+            let mut responses = shared(first.response_names(), second.response_names());
+            responses.retain(|name| self.responses.is_empty() || self.responses.contains(name));
+            if factors.is_empty() || responses.is_empty() {
+                let message = format!("`{name}` and its reference share no factor, or no response");
+                return Err(StageError::new(message).hint("rows are paired by the factors that both tables hold"));
+            }
+            let wanted = Wanted { factors: &factors, responses: &responses, ..Wanted::default() };
+            let (ours, theirs) = (Columns::of(a, known.context, wanted)?, Columns::of(b, known.context, wanted)?);
+            tables.push(Pair { name, ours, theirs });
+        }
+        let params = Params { tables, tolerance: self.tolerance };
+        let mut task = Task::new(Self::WORKS[0].name, json!(params));
+        for port in ["of", "compare"] {
+            for input in known.port(port) {
+                task = task.input(port, input.content);
+            }
+        }
+        Ok(Step::Finish(task))
+    }
+}
+
+impl Kind for Agreement {
+    const NAME: &'static str = "agreement";
+    const ABOUT: &'static str = "computed results beside values from elsewhere: ratios, ranks, trends";
+    const WORKS: &'static [Work] = &[Work { name: "agreement", version: 1, run: compare }];
+}
+
+/// A pair of values of one point.
+struct Point {
+    response: String,
+    table: String,
+    row: usize,
+    computed: f64,
+    reference: f64,
+}
+
+struct Summary {
+    response: String,
+    table: String,
+    found: Found,
+}
+
+struct Trend {
+    response: String,
+    table: String,
+    factor: String,
+    effect: f64,
+    std_error: Option<f64>,
+    t: Option<f64>,
+    p: Option<f64>,
+}
+
+fn compare(job: &Job) -> Result<Artifact, Failure> {
+    let params: Params = job.params()?;
+    let of = |port: &'static str| job.inputs.iter().filter(move |(name, _)| name == port).map(|(_, artifact)| artifact);
+    let (mut points, mut trends) = (Vec::new(), Vec::new());
+    for ((pair, ours), theirs) in params.tables.iter().zip(of("of")).zip(of("compare")) {
+        let (ours, theirs) = (pair.ours.sample(runs(ours)?)?, pair.theirs.sample(runs(theirs)?)?);
+        let rows = pair_rows(&levels(&ours), &levels_like(&theirs, &ours), params.tolerance);
+        for response in &ours.responses {
+            let Some(other) = theirs.responses.iter().find(|r| r.name == response.name) else { continue };
+            let value = |(i, j): &(usize, usize)| Some((*i, *j, response.values[*i]?, other.values[*j]?));
+            let paired: Vec<(usize, usize, f64, f64)> = rows.iter().filter_map(value).collect();
+            trends.extend(trend(&ours, &response.name, &pair.name, &paired));
+            points.extend(paired.into_iter().map(|(_, j, computed, reference)| Point {
+                response: response.name.clone(),
+                table: pair.name.clone(),
+                row: j + 1,
+                computed,
+                reference,
+            }));
+        }
+    }
+    if points.is_empty() {
+        let hint = "rows are paired by the factors that both tables hold";
+        return Err(StageError::new("no point with a response is in both tables").hint(hint).into());
+    }
+    let root = Group::new()
+        .with("summary", Node::Table(summary_table(&summaries(&points))))
+        .with("trends", Node::Table(trend_table(&trends)))
+        .with("pairs", Node::Table(pair_table(&points)));
+    Ok(Artifact::new("agreement", 1, root))
+}
+
+fn levels(sample: &Sample) -> Vec<&[f64]> {
+    sample.factors.iter().map(|f| f.values.as_slice()).collect()
+}
+
+/// The levels of `sample` in the order of the other's factors.
+fn levels_like<'a>(sample: &'a Sample, other: &Sample) -> Vec<&'a [f64]> {
+    let own = |name: &str| sample.factors.iter().find(|f| f.name == name);
+    other.factors.iter().filter_map(|f| own(&f.name)).map(|f| f.values.as_slice()).collect()
+}
+
+/// Effects on 100 ln(computed/reference) of the factors that vary; none where the pairs cannot tell them apart.
+fn trend(ours: &Sample, response: &str, table: &str, paired: &[(usize, usize, f64, f64)]) -> Vec<Trend> {
+    let usable: Vec<&(usize, usize, f64, f64)> = paired.iter().filter(|(_, _, y, x)| y / x > 0.0).collect();
+    let column = |f: &Factor| Factor::new(&f.name, usable.iter().map(|p| f.values[p.0]).collect());
+    let mut factors: Vec<Factor> = ours.factors.iter().map(column).collect();
+    factors.retain(|f| f.values.iter().any(|v| *v != f.values[0]));
+    let ratio = |p: &&(usize, usize, f64, f64)| 100.0 * crate::math::elementary::ln(p.2 / p.3);
+    let names: Vec<String> = factors.iter().map(|f| f.name.clone()).collect();
+    let sample =
+        Sample { factors, responses: vec![Response::new(response, usable.iter().map(ratio).collect())], weights: None };
+    let terms = Term::first_order(&names);
+    let Ok(fitted) = regress(&sample, response, &terms, &regression::Settings::default()) else { return Vec::new() };
+    let of_factor = |c: &regression::Coefficient| {
+        let factor = names.iter().find(|name| **name == c.term)?;
+        // A coded unit is half the span.
+        Some(Trend {
+            response: response.to_owned(),
+            table: table.to_owned(),
+            factor: factor.clone(),
+            effect: 2.0 * c.estimate,
+            std_error: c.std_error.map(|s| 2.0 * s),
+            t: c.t,
+            p: c.p,
+        })
+    };
+    fitted.coded.iter().filter_map(of_factor).collect()
+}
+
+fn summaries(points: &[Point]) -> Vec<Summary> {
+    let mut keys: Vec<(&str, &str)> = Vec::new();
+    for point in points {
+        let key = (point.response.as_str(), point.table.as_str());
+        if !keys.contains(&key) {
+            keys.push(key);
+        }
+    }
+    keys.sort_by_key(|(response, _)| points.iter().position(|p| p.response == *response));
+    let mut found = Vec::new();
+    let mut add = |response: &str, table: Option<&str>| {
+        let mine = |p: &&Point| p.response == response && table.is_none_or(|table| p.table == table);
+        let (x, y): (Vec<f64>, Vec<f64>) = points.iter().filter(mine).map(|p| (p.reference, p.computed)).unzip();
+        let table = table.unwrap_or("all").to_owned();
+        found.extend(agreement(&x, &y).map(|found| Summary { response: response.to_owned(), table, found }));
+    };
+    for (i, (response, table)) in keys.iter().enumerate() {
+        add(response, Some(table));
+        let last = keys.get(i + 1).is_none_or(|(next, _)| next != response);
+        if last && i > 0 && keys[i - 1].0 == *response {
+            add(response, None);
+        }
+    }
+    found
+}
+
+fn summary_table(lines: &[Summary]) -> Table {
+    let rows = Rows(lines);
+    let ratio = |pick: fn(&Found) -> f64| rows.reals(|l| Some(pick(&l.found)));
+    Table { about: "the ratio computed/reference".to_owned(), columns: Vec::new() }
+        .texts_column("response", "", rows.texts(|l| l.response.as_str()))
+        .texts_column("table", "`all`: all tables together", rows.texts(|l| l.table.as_str()))
+        .ints_column("n", "pairs", rows.ints(|l| l.found.n))
+        .reals_column("median", "", "", ratio(|f| f.quartiles[1]))
+        .reals_column("lower", "", "first quartile", ratio(|f| f.quartiles[0]))
+        .reals_column("upper", "", "third quartile", ratio(|f| f.quartiles[2]))
+        .reals_column("least", "", "", ratio(|f| f.extremes[0]))
+        .reals_column("greatest", "", "", ratio(|f| f.extremes[1]))
+        .reals_column("mean", "", "", ratio(|f| f.mean))
+        .reals_column("std", "", "standard deviation", rows.reals(|l| l.found.deviation))
+        .reals_column("spearman", "", "rank correlation of the values", rows.reals(|l| l.found.spearman))
+}
+
+fn trend_table(lines: &[Trend]) -> Table {
+    let rows = Rows(lines);
+    Table { about: "what the ratio depends on: regression of 100 ln ratio".to_owned(), columns: Vec::new() }
+        .texts_column("response", "", rows.texts(|l| l.response.as_str()))
+        .texts_column("table", "", rows.texts(|l| l.table.as_str()))
+        .texts_column("factor", "", rows.texts(|l| l.factor.as_str()))
+        .reals_column("effect", "%", "change of the ratio over the factor's span", rows.reals(|l| Some(l.effect)))
+        .reals_column("std_error", "%", "", rows.reals(|l| l.std_error))
+        .reals_column("t", "", "", rows.reals(|l| l.t))
+        .reals_column("p", "", "", rows.reals(|l| l.p))
+}
+
+fn pair_table(points: &[Point]) -> Table {
+    let rows = Rows(points);
+    Table { about: "every pair, in the units of the responses".to_owned(), columns: Vec::new() }
+        .texts_column("response", "", rows.texts(|p| p.response.as_str()))
+        .texts_column("table", "", rows.texts(|p| p.table.as_str()))
+        .ints_column("row", "of the reference", rows.ints(|p| p.row))
+        .reals_column("computed", "", "", rows.reals(|p| Some(p.computed)))
+        .reals_column("reference", "", "", rows.reals(|p| Some(p.reference)))
+        .reals_column("ratio", "", "", rows.reals(|p| Some(p.computed / p.reference)))
+}
