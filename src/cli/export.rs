@@ -1,25 +1,60 @@
 //! `flow export`: results as files for people and other programs.
 
+mod bodies;
+mod paraview;
+mod particles;
+mod vtu;
+
 use super::Exit;
 use super::common::{Campaign, system};
 use super::progress::Silent;
-use super::show::csv_text;
-use crate::artifact::{Artifact, Node};
-use crate::run::{Settings, StageStatus, run};
-use clap::Args;
+use super::show::{csv_text, object, parts};
+use crate::artifact::{Artifact, ContentHash, Node};
+use crate::dem::genesis::specimen::Specimen;
+use crate::plan::Workflow;
+use crate::run::{Report, Settings, run};
+use crate::stage::specimen;
+use crate::store::{ObjectId, Store};
+use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-/// Write results as files: pictures as SVG, PDF and PNG, printed tables as CSV, LaTeX and Markdown, all others as CSV.
+/// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.
 #[derive(Args)]
 pub(super) struct Export {
     #[command(flatten)]
     campaign: Campaign,
-    /// The stages; all that have a result when not given.
+    /// The stages, or single runs of them such as `orthogonal[12]`; all that have a result when not given.
+    #[arg(value_name = "STAGE[ROW]")]
     stages: Vec<String>,
+    /// In which form.
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = Form::Files)]
+    to: Form,
     /// The folder that the files are written to.
     #[arg(long, value_name = "FOLDER", default_value = "export")]
-    to: PathBuf,
+    folder: PathBuf,
+}
+
+/// Forms of export.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// Pictures as SVG, PDF and PNG; printed tables as CSV, LaTeX and Markdown; other tables as CSV.
+    Files,
+    /// Every table as CSV, with units in the heads.
+    Csv,
+    /// Specimens and runs for ParaView: VTU, and PVD for the states of a run.
+    Vtu,
+    /// Specimens, and runs with their microparameters, as lists of particles, clumps, groups and contacts (CSV, SI).
+    Particles,
+}
+
+/// A file: its name and bytes.
+type File = (String, Vec<u8>);
+
+/// A result that is exported: its name in the names of files, and the task that made it.
+struct Chosen {
+    name: String,
+    object: ObjectId,
 }
 
 impl Export {
@@ -28,35 +63,117 @@ impl Export {
     }
 
     fn write(&self) -> Result<Exit, Exit> {
-        let workflow = self.campaign.load(&self.stages)?;
+        let asked = self.stages.iter().map(|what| parts(what)).collect::<Result<Vec<_>, Exit>>()?;
+        let names: Vec<String> = asked.iter().map(|(stage, _)| stage.clone()).collect();
+        let workflow = self.campaign.load(&names)?;
         let store = self.campaign.open()?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: self.stages.clone(), memos: true };
+        // Single rows are known only when every task is looked up.
+        let memos = asked.iter().all(|(_, row)| row.is_none());
+        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: names, memos };
         let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
-        std::fs::create_dir_all(&self.to).map_err(|e| system(&e))?;
-        let mut missing = Vec::new();
-        let asked = |name: &String| self.stages.is_empty() || self.stages.contains(name);
-        for stage in report.stages.iter().filter(|stage| asked(&stage.name)) {
-            let StageStatus::Done(content) = &stage.status else {
-                missing.push(stage.name.as_str());
-                continue;
-            };
-            let artifact = store.get(content).map_err(|e| system(&e))?;
-            for (name, bytes) in files(&stage.name, &artifact) {
-                replace(&self.to, &name, &bytes).map_err(|e| system(&e))?;
-                out!("{}", self.to.join(name).display());
+        let (chosen, missing) = choose(&workflow, &report, &asked);
+        std::fs::create_dir_all(&self.folder).map_err(|e| system(&e))?;
+        let mut written = 0;
+        for one in &chosen {
+            let artifact = store.get(&one.object.content).map_err(|e| system(&e))?;
+            let files = self.files(&store, one, &artifact).map_err(|why| {
+                eprintln!("error: {}: {why}", one.name);
+                Exit::BadInput
+            })?;
+            for (name, bytes) in files {
+                replace(&self.folder, &name, &bytes).map_err(|e| system(&e))?;
+                out!("{}", self.folder.join(name).display());
+                written += 1;
             }
         }
-        if missing.is_empty() {
-            return Ok(Exit::Done);
+        if !missing.is_empty() {
+            eprintln!("error: no result yet of {}; run them first", missing.join(", "));
+            return Ok(Exit::Failed);
         }
-        eprintln!("error: no result yet of {}; run them first", missing.join(", "));
-        Ok(Exit::Failed)
+        if written == 0 {
+            eprintln!("error: nothing of these stages can be written in this form");
+            return Ok(Exit::BadInput);
+        }
+        Ok(Exit::Done)
+    }
+
+    /// The files of one result; a result that the form is not for is a fault only where it was asked for by name.
+    fn files(&self, store: &Store, chosen: &Chosen, artifact: &Artifact) -> Result<Vec<File>, String> {
+        let name = &chosen.name;
+        match self.to {
+            Form::Files => Ok(files(name, artifact)),
+            Form::Csv => Ok(tables(name, artifact)),
+            Form::Vtu | Form::Particles => match artifact.kind.as_str() {
+                "specimen" => {
+                    let specimen = load(artifact)?;
+                    if self.to == Form::Vtu {
+                        return Ok(paraview::specimen(name, &specimen));
+                    }
+                    particles::files(name, &specimen, None)
+                }
+                "run" if artifact.table("cracks").is_some() => {
+                    let made = Made::of(store, &chosen.object)?;
+                    if self.to == Form::Vtu {
+                        return paraview::run(name, artifact, &made.specimen);
+                    }
+                    particles::files(name, &made.specimen, Some(&made.parameters))
+                }
+                _ if self.stages.is_empty() => Ok(Vec::new()),
+                kind => Err(format!(
+                    "`{kind}` holds neither a specimen nor a run; single runs of a stage are named as in orthogonal[12]"
+                )),
+            },
+        }
     }
 }
 
-/// The files of a result: name and bytes. Texts and bytes whose names are file formats are written as they are, and
-/// take the place of the tables they were made from.
-fn files(stage: &str, artifact: &Artifact) -> Vec<(String, Vec<u8>)> {
+/// The results that were asked for, or all, and the names of those that are not there yet.
+fn choose(workflow: &Workflow, report: &Report, asked: &[(String, Option<usize>)]) -> (Vec<Chosen>, Vec<String>) {
+    let all: Vec<(String, Option<usize>)> = match asked {
+        [] => report.stages.iter().map(|stage| (stage.name.clone(), None)).collect(),
+        asked => asked.to_vec(),
+    };
+    let (mut chosen, mut missing) = (Vec::new(), Vec::new());
+    for (stage, row) in all {
+        let number = row.map(|row| row + 1);
+        match object(workflow, report, &stage, row) {
+            Some(object) => {
+                let name = number.map_or(stage.clone(), |number| format!("{stage}.{number}"));
+                chosen.push(Chosen { name, object });
+            }
+            None => missing.push(number.map_or(stage.clone(), |number| format!("{stage}[{number}]"))),
+        }
+    }
+    (chosen, missing)
+}
+
+fn load(artifact: &Artifact) -> Result<Specimen, String> {
+    specimen::load(artifact).map_err(|e| e.to_string())
+}
+
+/// What a run was made of, from its task text.
+struct Made {
+    specimen: Specimen,
+    parameters: particles::Parameters,
+}
+
+impl Made {
+    fn of(store: &Store, object: &ObjectId) -> Result<Self, String> {
+        let record = store.find(&object.key).map_err(|e| e.to_string())?;
+        let record = record.ok_or("the store has lost the record of the run")?;
+        let text = store.task_text(&record).map_err(|e| e.to_string())?;
+        let line = |head: &'static str| text.lines().filter_map(move |line| line.strip_prefix(head)?.split_once(' '));
+        let input = line("input ").find(|(name, _)| *name == "specimen").map(|(_, hash)| hash);
+        let content = input.and_then(ContentHash::from_hex).ok_or("the run does not name its specimen")?;
+        let specimen = load(&*store.get(&content).map_err(|e| e.to_string())?)?;
+        let parameters = line("param ").map(|(path, value)| (path.to_owned(), value.to_owned())).collect();
+        Ok(Self { specimen, parameters })
+    }
+}
+
+/// The files of a result: texts and bytes whose names are file formats are written as they are, and take the place of the
+/// tables they were made from.
+fn files(stage: &str, artifact: &Artifact) -> Vec<File> {
     let mut files = Vec::new();
     for (name, node) in artifact.root.iter() {
         let ending = if name == "latex" {
@@ -76,11 +193,17 @@ fn files(stage: &str, artifact: &Artifact) -> Vec<(String, Vec<u8>)> {
     }
     let whole = format!("{stage}.csv");
     if !files.iter().any(|(name, _)| *name == whole) {
-        for (name, table) in artifact.tables() {
-            files.push((format!("{stage}.{}.csv", name.replace('/', ".")), csv_text(table).into_bytes()));
-        }
+        files.extend(tables(stage, artifact));
     }
     files
+}
+
+/// Every table of a result as CSV.
+fn tables(stage: &str, artifact: &Artifact) -> Vec<File> {
+    let tables = artifact.tables().into_iter();
+    tables
+        .map(|(name, table)| (format!("{stage}.{}.csv", name.replace('/', ".")), csv_text(table).into_bytes()))
+        .collect()
 }
 
 /// Writes a file so that a reader sees the old or the new one, never a part.

@@ -32,6 +32,10 @@ const SHIPPED: &[Shipped] = &[
 
 const SU2021: &[(&str, &str)] = &[
     ("su2021/l64.csv", include_str!("../../workflows/su2021/l64.csv")),
+    ("su2021/table02.csv", include_str!("../../workflows/su2021/table02.csv")),
+    ("su2021/table03.csv", include_str!("../../workflows/su2021/table03.csv")),
+    ("su2021/table04.csv", include_str!("../../workflows/su2021/table04.csv")),
+    ("su2021/table05.csv", include_str!("../../workflows/su2021/table05.csv")),
     ("su2021/table06.csv", include_str!("../../workflows/su2021/table06.csv")),
     ("su2021/table07.csv", include_str!("../../workflows/su2021/table07.csv")),
     ("su2021/table08.csv", include_str!("../../workflows/su2021/table08.csv")),
@@ -39,6 +43,8 @@ const SU2021: &[(&str, &str)] = &[
     ("su2021/table10.csv", include_str!("../../workflows/su2021/table10.csv")),
     ("su2021/table11.csv", include_str!("../../workflows/su2021/table11.csv")),
     ("su2021/table12.csv", include_str!("../../workflows/su2021/table12.csv")),
+    ("su2021/table13.csv", include_str!("../../workflows/su2021/table13.csv")),
+    ("su2021/trial.csv", include_str!("../../workflows/su2021/trial.csv")),
 ];
 
 impl New {

@@ -4,6 +4,7 @@ use super::Exit;
 use super::common::{Campaign, system};
 use super::progress::Silent;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
+use crate::plan::Workflow;
 use crate::run::{Report, Settings, StageStatus, run};
 use crate::store::{ObjectId, Store};
 use clap::Args;
@@ -38,19 +39,13 @@ impl Show {
     }
 
     fn print(&self) -> Result<Exit, Exit> {
-        let (stage, row) = self.parts()?;
+        let (stage, row) = parts(&self.what)?;
         let workflow = self.campaign.load(std::slice::from_ref(&stage))?;
         let store = self.campaign.open()?;
         // Single rows are known only when every task is looked up.
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: vec![stage.clone()], memos: false };
         let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
-        let place = workflow.position(&stage);
-        let object = match row {
-            None => stage_object(&report, &stage),
-            Some(row) => {
-                report.tasks.iter().find(|t| Some(t.stage) == place && t.row == Some(row)).and_then(|t| t.object)
-            }
-        };
+        let object = object(&workflow, &report, &stage, row);
         let Some(object) = object else {
             eprintln!("error: `{}` has no result yet{}", self.what, remedy(&self.campaign, &stage));
             return Err(Exit::BadInput);
@@ -60,20 +55,6 @@ impl Show {
             return Ok(Exit::Done);
         }
         self.values(&store, &object)
-    }
-
-    /// Stage and row (from 0) of `stage[row]`.
-    fn parts(&self) -> Result<(String, Option<usize>), Exit> {
-        let Some((stage, row)) = self.what.strip_suffix(']').and_then(|what| what.split_once('[')) else {
-            return Ok((self.what.clone(), None));
-        };
-        match row.trim().parse::<usize>() {
-            Ok(row) if row > 0 => Ok((stage.to_owned(), Some(row - 1))),
-            Ok(_) | Err(_) => {
-                eprintln!("error: `{row}` is not a row; rows are counted from 1, as in orthogonal[12]");
-                Err(Exit::BadInput)
-            }
-        }
     }
 
     fn values(&self, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
@@ -115,8 +96,26 @@ impl Show {
     }
 }
 
-/// The object of a stage's result: that of the last task with its content.
-fn stage_object(report: &Report, stage: &str) -> Option<ObjectId> {
+/// Stage and row (from 0) of `stage[row]`.
+pub(super) fn parts(what: &str) -> Result<(String, Option<usize>), Exit> {
+    let Some((stage, row)) = what.strip_suffix(']').and_then(|what| what.split_once('[')) else {
+        return Ok((what.to_owned(), None));
+    };
+    match row.trim().parse::<usize>() {
+        Ok(row) if row > 0 => Ok((stage.to_owned(), Some(row - 1))),
+        Ok(_) | Err(_) => {
+            eprintln!("error: `{row}` is not a row; rows are counted from 1, as in orthogonal[12]");
+            Err(Exit::BadInput)
+        }
+    }
+}
+
+/// The object of a stage's result (that of the last task with its content), or of one of its rows.
+pub(super) fn object(workflow: &Workflow, report: &Report, stage: &str, row: Option<usize>) -> Option<ObjectId> {
+    if row.is_some() {
+        let place = workflow.position(stage);
+        return report.tasks.iter().find(|task| Some(task.stage) == place && task.row == row)?.object;
+    }
     let status = report.stages.iter().find(|s| s.name == stage).map(|s| &s.status)?;
     let StageStatus::Done(content) = status else { return None };
     report.objects.iter().rev().find(|object| object.content == *content).copied()

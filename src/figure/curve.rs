@@ -49,7 +49,9 @@ impl Figure for StressStrain {
         let page = scene.page().inset(0.8, 1.0, 0.8, 0.8);
         let top = legend::height(&entries, page.width() - 10.0, style);
         let strain = self.strain_axis(if with_cracks { "" } else { self.strain_label() });
-        let stress = Axis::from_zero("Axial stress $\\sigma$ / MPa", self.stress(), 5);
+        // Room above the peak of a single curve for its value.
+        let room = if self.curves.len() == 1 { 1.13 } else { 1.0 };
+        let stress = Axis::from_zero("Axial stress $\\sigma$ / MPa", self.stress().map(|s| room * s), 5);
         let below = self.crack_axis();
         let lower_x = self.strain_axis(self.strain_label());
         let margins = Margins::of(&lower_x, &stress, style).max(Margins::of(&lower_x, &below, style));
@@ -179,9 +181,9 @@ impl StressStrain {
                 if self.curves.len() == 1 {
                     let label = format!("$\\sigma_u$ = {} MPa", significant(stress, 3));
                     let line = Line::new(&label, style.size());
-                    let room = panel.area.right - x > line.width + 2.5;
-                    let (dx, anchor) = if room { (1.8, Anchor::Start) } else { (-1.8, Anchor::End) };
-                    scene.text_centred(line, [x + dx, y - 0.4], anchor, INK);
+                    let middle = x.min(panel.area.right - 0.5 - line.width / 2.0);
+                    let above = (y - 1.2 - 0.6 * style.size()).max(panel.area.top + 0.6 * style.size());
+                    scene.text_centred(line, [middle, above], Anchor::Middle, INK);
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Half-normal plot of effects (Daniel 1959, doi:10.1080/00401706.1959.10489866): noise lies on a line through the
-//! origin, active effects stand off to the right and are named.
+//! origin, active effects stand off to the right and are named. Effects of several degrees of freedom each take the
+//! quantiles of the χ distribution (Wilk & Gnanadesikan 1968, doi:10.1093/biomet/55.1.1).
 
 use super::axis::Axis;
 use super::column::Column;
@@ -33,6 +34,9 @@ pub struct HalfNormal {
     pub error: f64,
     /// Margin of error to mark, and its name; `None` to leave out.
     pub margin: Option<(String, f64)>,
+    /// Degrees of freedom of each effect, 1 or more: with more, sizes are roots of sums of squares, and quantiles are those
+    /// of the χ distribution, which for one degree of freedom is the half-normal one.
+    pub degrees: usize,
 }
 
 impl Figure for HalfNormal {
@@ -42,10 +46,13 @@ impl Figure for HalfNormal {
         let active: Vec<&str> = self.effects.iter().filter(|e| e.active).map(|e| e.name.as_str()).collect();
         scene.description = format!("{} effects; active: {}.", self.effects.len(), active.join(", "));
         let entries = self.entries();
-        let title = self.response.worded("Absolute effect on").title();
+        let several = self.degrees > 1;
+        let title = self.response.worded(if several { "Root sum of squares of" } else { "Absolute effect on" }).title();
         let margin = self.margin.iter().map(|m| m.1);
         let x = Axis::from_zero(title, self.effects.iter().map(|e| 1.04 * e.size).chain(margin), 5);
-        let y = Axis::from_zero("Half-normal quantile $z$ / –", self.effects.iter().map(|e| e.quantile), 5);
+        let quantile = format!("Quantile of $\\chi_{{{}}}$ / –", self.degrees);
+        let quantile = if several { quantile } else { "Half-normal quantile $z$ / –".to_owned() };
+        let y = Axis::from_zero(quantile, self.effects.iter().map(|e| e.quantile), 5);
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
         let top = legend::height(&entries, page.width() - 10.0, style);
         let panel = Panel::fit(Rect { top: page.top + top, ..page }, x, y, style);

@@ -237,6 +237,9 @@ fn draw_spot(scene: &mut Scene, spot: &Spot, at: Point, away: f64, style: &Style
     draw_marker(scene, palette::marker(spot.kind), at, 2.9 - 0.8 * away, color);
     if spot.count > 1 {
         let line = Line::new(&format!("×{}", spot.count), 0.9 * style.size());
+        // A ground of paper keeps the number clear of the edges behind it.
+        let ground = Rect::new(at[0] + 1.7, at[1] - 2.9, line.width + 0.6, 2.6);
+        scene.fill(Path::rect(ground), PAPER);
         scene.text_centred(line, [at[0] + 2.0, at[1] - 1.6], Anchor::Start, INK);
     }
 }

@@ -258,7 +258,10 @@ fn draw_edge(
         let at = [x + reach * away[0], y + reach * away[1]];
         let corner = [at[0] - line.width / 2.0, at[1] + 0.33 * size];
         let place = line.corners(corner, 0.0);
-        if taken.iter().any(|t| super::scene::meet(t, &place)) {
+        // Numbers of two edges that meet keep the width of a digit between them.
+        let near = Line::new(&format!("0{}0", tick.label), size);
+        let apart = near.corners([at[0] - near.width / 2.0, corner[1]], 0.0);
+        if taken.iter().any(|t| super::scene::meet(t, &apart)) {
             continue;
         }
         taken.push(place);

@@ -4,11 +4,11 @@ use super::fault::{Fault, Source};
 use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
 use super::node::{Entry, Node, Sources, Step, Table, Value};
 use super::read::read;
-use super::{Overrides, Workflow, overlay, stages, syntax};
-use crate::stage::Context;
+use super::{Overrides, StageNode, Workflow, overlay, stages, syntax};
+use crate::stage::{Context, Outline};
 use crate::unit::Unit;
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -35,11 +35,12 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
     let mut check = Check { sources: &sources, faults };
     check.root_keys(&root);
     let head = check.head(&mut root);
-    let context = Context {
+    let mut context = Context {
         seed: head.as_ref().map_or(0, |head| head.seed),
         factors: check.named(&mut root, "factor", Check::factor),
         responses: check.named(&mut root, "response", Check::response),
         materials: check.named(&mut root, "material", Check::material),
+        outline: Vec::new(),
     };
     let stages = stages::read_all(&mut check, &mut root, &context);
     let mut faults = check.faults;
@@ -52,6 +53,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         }
         return Err(faults);
     };
+    context.outline = outline(&stages);
     Ok(Workflow {
         name: Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         path: PathBuf::from(name),
@@ -62,6 +64,14 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         profiles,
         stages,
     })
+}
+
+fn outline(stages: &[StageNode]) -> Vec<Outline> {
+    let one = |stage: &StageNode| {
+        let inputs: BTreeSet<usize> = stage.inputs.iter().map(|(_, input)| *input).collect();
+        Outline { name: stage.name.clone(), kind: stage.kind.to_owned(), inputs: inputs.into_iter().collect() }
+    };
+    stages.iter().map(one).collect()
 }
 
 /// Collects faults.

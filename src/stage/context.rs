@@ -17,6 +17,19 @@ pub struct Context {
     pub responses: BTreeMap<String, Response>,
     /// `[material.NAME]` tables: values by path (`mortar.Ec`).
     pub materials: BTreeMap<String, BTreeMap<String, Parameter>>,
+    /// The stages in order, for pictures of the workflow itself; empty until all are read.
+    pub outline: Vec<Outline>,
+}
+
+/// A stage as the workflow's graph shows it.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Outline {
+    /// Its name.
+    pub name: String,
+    /// The word after `kind =`.
+    pub kind: String,
+    /// Places of the stages that it takes results from, each once.
+    pub inputs: Vec<usize>,
 }
 
 /// One value of a material, in SI units.

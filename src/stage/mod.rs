@@ -54,7 +54,7 @@ pub mod table;
 mod task;
 pub mod verify;
 
-pub use context::{Context, Factor, Input, Known, Library, Outcome, Parameter, Point, Response, Sampler};
+pub use context::{Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};

@@ -329,7 +329,7 @@ fn report(quality: &Quality) -> Table {
 ///
 /// # Errors
 /// What is missing or does not fit together.
-pub(super) fn load(artifact: &Artifact) -> Result<Made, StageError> {
+pub fn load(artifact: &Artifact) -> Result<Made, StageError> {
     let stored = Stored::from_artifact(artifact).map_err(|wanted| StageError::new(wanted.to_string()))?;
     let odd = |what: &str| StageError::new(format!("the specimen's {what} do not fit together"));
     if stored.centres.len() != stored.radii.len() || stored.clump_of.len() != stored.radii.len() {

@@ -3,9 +3,17 @@
 //! `table` names the table inside the artifact (its first one when not given), `columns` which of its columns are
 //! printed and in which order, `where` which rows. Several stages are stacked, with a column `stage` in front. With
 //! `compare` the numbers of another stage stand beside ours, row by row with equal values in the columns `by`, and the
-//! deviation in per cent after them. Columns that are factors or responses get their symbols.
+//! deviation in per cent after them; with `published` those of a CSV file do. Columns that are factors or responses get
+//! their symbols.
+//!
+//! `list` prints what the workflow itself says, instead of a table of a result: `factors` (what each sets, its range and
+//! levels), `materials` (microparameters of the named materials, in the units of the factors), `aggregate` (polygons of a
+//! specimen by the size classes given), `ranges` (of the named factors, and of the responses that surfaces were fitted to).
 //!
 //! The CSV has all digits; `digits` and `decimals` are for the two that people read.
+
+mod beside;
+mod list;
 
 use super::figure::{Names, stored};
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -13,6 +21,10 @@ use crate::artifact::{self, Artifact, Group, Node};
 use crate::figure::column::{Column, Digits, Values};
 use crate::figure::table::Table as Printed;
 use crate::figure::text;
+use crate::unit::Length;
+use beside::beside;
+use list::Given;
+pub use list::List;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -23,7 +35,19 @@ use std::collections::BTreeMap;
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// The stages whose tables are printed.
+    #[serde(default)]
     pub of: Names,
+    /// A list made from the workflow, instead of a table of a result.
+    pub list: Option<List>,
+    /// The factors of a list; all when not given.
+    #[serde(default)]
+    pub factors: Vec<String>,
+    /// The materials of a list.
+    #[serde(default)]
+    pub materials: Vec<String>,
+    /// Bounds of the size classes of a list of aggregate.
+    #[serde(default)]
+    pub classes: Vec<Length>,
     /// Which table of the artifact; its first one when not given.
     pub table: Option<String>,
     /// Columns in the order of print; all when not given.
@@ -34,6 +58,8 @@ pub struct Table {
     pub only: BTreeMap<String, String>,
     /// A stage whose numbers stand beside ours.
     pub compare: Option<String>,
+    /// A CSV file, beside the workflow, whose numbers stand beside ours.
+    pub published: Option<String>,
     /// Columns by which rows of the two are matched.
     #[serde(default)]
     pub by: Vec<String>,
@@ -79,6 +105,9 @@ struct Params {
     /// Symbols of the columns that are printed.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     symbols: BTreeMap<String, String>,
+    /// The rows of a list.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    given: Option<Given>,
     /// Names of the stages when several are stacked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     stages: Vec<String>,
@@ -95,17 +124,23 @@ impl Stage for Table {
         "table"
     }
 
-    fn check(&self, _context: &Context) -> Vec<Complaint> {
+    fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = Vec::new();
-        if self.of.list().is_empty() {
-            found.push(Complaint::new("of", "no stage is named"));
+        found.extend(self.list_faults(context));
+        if self.compare.is_some() && self.published.is_some() {
+            found.push(Complaint::new(
+                "published",
+                "`compare` and `published` both name what stands beside our numbers",
+            ));
         }
-        if self.compare.is_some() && self.by.is_empty() {
+        let beside = if self.published.is_some() { "published" } else { "compare" };
+        if (self.compare.is_some() || self.published.is_some()) && self.by.is_empty() {
             let hint = "name the columns that tell a row, such as by = [\"source\"]";
-            found.push(Complaint::new("compare", "`by` is needed to match the rows of the two tables").hint(hint));
+            found.push(Complaint::new(beside, "`by` is needed to match the rows of the two tables").hint(hint));
         }
-        if self.compare.is_none() && !self.by.is_empty() {
-            found.push(Complaint::new("by", "`by` has no effect without `compare`").hint("leave out `by`"));
+        if self.compare.is_none() && self.published.is_none() && !self.by.is_empty() {
+            let message = "`by` has no effect without `compare` or `published`";
+            found.push(Complaint::new("by", message).hint("leave out `by`"));
         }
         if self.digits.is_some_and(|d| d == 0 || d > 17) {
             found.push(Complaint::new("digits", "a number has 1 to 17 significant digits"));
@@ -122,15 +157,22 @@ impl Stage for Table {
         json!({
             "of": self.of.list(), "table": self.table, "columns": self.columns, "where": self.only,
             "compare": self.compare, "by": self.by, "caption": self.caption, "label": self.label, "notes": self.notes,
-            "digits": self.digits, "decimals": self.decimals, "symbols": self.symbols,
+            "digits": self.digits, "decimals": self.decimals, "symbols": self.symbols, "list": self.list,
+            "factors": self.factors, "materials": self.materials, "classes": self.classes, "published": self.published,
         })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
-        let artifact = known.load(known.one("of")?)?;
-        let table = find(&artifact, self.table.as_deref())?;
-        let all = table.columns.iter().map(|c| c.name.clone());
-        let columns: Vec<String> = if self.columns.is_empty() { all.collect() } else { self.columns.clone() };
+        let given = self.given(known)?;
+        let columns = match &given {
+            _ if !self.columns.is_empty() => self.columns.clone(),
+            Some(given) => given.names(),
+            None => {
+                let artifact = known.load(known.one("of")?)?;
+                let table = find(&artifact, self.table.as_deref())?;
+                table.columns.iter().map(|c| c.name.clone()).collect()
+            }
+        };
         let stages = self.of.list();
         let params = Params {
             table: self.table.clone(),
@@ -143,20 +185,26 @@ impl Stage for Table {
             digits: self.digits.unwrap_or(4),
             decimals: self.decimals.clone(),
             symbols: columns.iter().filter_map(|c| Some((c.clone(), self.symbol(c, known.context)?))).collect(),
-            stages: if stages.len() > 1 { stages } else { Vec::new() },
+            stages: if stages.len() > 1 && given.is_none() { stages } else { Vec::new() },
+            given,
         };
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
-        for port in ["of", "compare"] {
+        // A list is in the parameters: what it was made from may change without another list.
+        let ports: &[&str] = if self.list.is_some() { &["compare"] } else { &["of", "compare"] };
+        for port in ports {
             for input in known.port(port) {
                 task = task.input(port, input.content);
             }
+        }
+        if let Some(path) = &self.published {
+            task.files.push(known.library.file("published", path)?);
         }
         Ok(Step::Finish(task))
     }
 }
 
 /// Everything that holds a table.
-const ANY: &[&str] = &[
+pub(super) const ANY: &[&str] = &[
     "results",
     "design",
     "run",
@@ -216,7 +264,13 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
             stack(&mut columns, part)?;
         }
     }
-    if let Some((_, other)) = job.inputs.iter().find(|(name, _)| name == "compare") {
+    if let Some(given) = &params.given {
+        columns = chosen(&given.table(), &params)?;
+    }
+    if job.files.iter().any(|file| file.name == "published") {
+        let other = super::data::parse(&job.file("published")?)?;
+        columns = beside(columns, &other, &params.by)?;
+    } else if let Some((_, other)) = job.inputs.iter().find(|(name, _)| name == "compare") {
         let other = find(other, params.table.as_deref()).or_else(|_| find(other, None))?;
         columns = beside(columns, other, &params.by)?;
     }
@@ -298,57 +352,6 @@ fn stack(columns: &mut [Column], part: Vec<Column>) -> Result<(), StageError> {
         }
     }
     Ok(())
-}
-
-/// After each column of numbers that the other table has too: its value, and the deviation of ours in per cent.
-fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String]) -> Result<Vec<Column>, StageError> {
-    let keys = by.iter().map(|name| {
-        let ours = columns.iter().find(|c| c.key == *name);
-        let ours =
-            ours.ok_or_else(|| StageError::new(format!("`by` names `{name}`, which is not among the columns")))?;
-        Ok((&ours.values, &column_of(other, name)?.values))
-    });
-    let keys = keys.collect::<Result<Vec<_>, StageError>>()?;
-    let rows = columns.first().map_or(0, Column::len);
-    let mut used = vec![false; other.rows()];
-    let partner: Vec<Option<usize>> = (0..rows)
-        .map(|i| {
-            let hit = (0..other.rows()).find(|&j| !used[j] && keys.iter().all(|(a, b)| equal(a, i, b, j)))?;
-            used[hit] = true;
-            Some(hit)
-        })
-        .collect();
-    let mut out = Vec::new();
-    for column in columns {
-        let printed = if by.contains(&column.key) { None } else { other.reals(&column.key) };
-        let (Some(printed), Values::Reals(ours)) = (printed, &column.values) else {
-            out.push(column);
-            continue;
-        };
-        let theirs: Vec<f64> = partner.iter().map(|p| p.map_or(f64::NAN, |j| printed[j])).collect();
-        let deviation = ours.iter().zip(&theirs).map(|(a, b)| 100.0 * (a / b - 1.0)).collect();
-        let (key, digits, unit) = (column.key.clone(), column.digits, column.unit.clone());
-        out.push(column);
-        out.push(Column::reals(&format!("{key} published"), theirs).with_unit(&unit).with_digits(digits));
-        out.push(Column::reals(&format!("{key} deviation"), deviation).with_unit("%").with_digits(Digits::Fixed(1)));
-    }
-    Ok(out)
-}
-
-/// Whether two cells tell the same row; numbers within a thousandth, because printed ones are rounded.
-fn equal(ours: &Values, i: usize, theirs: &artifact::Values, j: usize) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= 1e-3 * a.abs().max(b.abs()).max(1e-12);
-    let number = match theirs {
-        artifact::Values::Reals(v) => Some(v[j]),
-        artifact::Values::Ints(v) => Some(v[j] as f64),
-        artifact::Values::Texts(_) => None,
-    };
-    match (ours, number, theirs) {
-        (Values::Reals(a), Some(b), _) => near(a[i], b),
-        (Values::Whole(a), Some(b), _) => near(a[i] as f64, b),
-        (Values::Words(a), None, artifact::Values::Texts(b)) => a[i] == b[j],
-        _ => false,
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@
 
 mod calibrate;
 mod command;
+mod export;
 mod faults;
 mod kill;
+mod readme;
 mod reruns;
 mod space;

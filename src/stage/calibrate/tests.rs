@@ -84,6 +84,7 @@ fn context() -> Context {
         .into(),
         responses: [("UCS", response("MPa")), ("E", response("GPa"))].map(|(n, r)| (n.to_owned(), r)).into(),
         materials: BTreeMap::new(),
+        outline: Vec::new(),
     }
 }
 

@@ -139,6 +139,8 @@ pub enum Show {
     Solutions,
     /// Targets against verified values.
     Verification,
+    /// The stages that lead to those named, and what flows between them.
+    Dag,
 }
 
 /// What one kind of figure takes.
@@ -170,10 +172,11 @@ impl Show {
             Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
             Show::ObservedPredicted => needs(MODELS, &[], [0, MANY], [0, 0]),
             Show::Pareto => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
-            Show::HalfNormal => needs(&["screening"], &[], [1, 1], [0, MANY]),
+            Show::HalfNormal => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
             Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),
             Show::Solutions => needs(&["solution"], &[], [0, 0], [0, MANY]),
             Show::Verification => needs(&["verification"], &[], [0, MANY], [0, 0]),
+            Show::Dag => needs(super::super::table::ANY, &[], [0, 0], [0, 0]),
         }
     }
 

@@ -14,21 +14,23 @@
 //! | `contour`, `surface` | surfaces (`compare`: a design or results, whose points are marked) | `coefficients`, `domain` |
 //! | `residuals`, `observed-predicted` | anova, screening, surfaces | `residuals` |
 //! | `pareto` | a screening, or an anova | `effects` and `limits`, or `anova` |
-//! | `half-normal` | a screening | `effects`, `limits` |
+//! | `half-normal` | a screening, or an anova | `effects`, `limits`, or `anova` and `fit` |
 //! | `convergence`, `solutions` | solutions | `history`; `solution`, `solution_set` |
 //! | `verification` | a verification | `summary`, `runs` |
+//! | `dag` | the last stages to be shown | nothing: it shows the workflow |
 //!
 //! A picture depends on the numbers it draws, on its labels (symbols and units of the factors and responses it draws)
 //! and on its style: on nothing else, so it is drawn anew when, and only when, one of these changed.
 
 mod config;
 mod design;
+mod flow;
 mod model;
 mod run;
 mod solution;
 mod source;
 
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
 use crate::figure::palette::Map;
 use crate::figure::{self, Figure as Picture, Style, column, text};
@@ -81,6 +83,9 @@ struct Params {
     series: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     band: Option<f64>,
+    /// The stages of a graph.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    outline: Vec<Outline>,
 }
 
 impl Stage for Figure {
@@ -148,7 +153,11 @@ impl Stage for Figure {
             at: self.at.clone(),
             series: self.series(),
             band: self.band,
+            outline: if self.show == Show::Dag { flow::outline(&self.of.list(), known.context) } else { Vec::new() },
         };
+        if self.show == Show::Dag {
+            return Ok(Step::Finish(Task::new(Self::WORKS[0].name, json!(params))));
+        }
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
         for port in ["of", "compare"] {
             for input in known.port(port) {
@@ -252,7 +261,8 @@ impl Figure {
 impl Kind for Figure {
     const NAME: &'static str = "figure";
     const ABOUT: &'static str = "a picture of the results of other stages";
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 1, run: draw }];
+    /// 2: numbers at points of designs stand on a ground of paper; "1 crack"; force chains are those above the mean.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 2, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -277,6 +287,7 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Convergence => Box::new(solution::convergence(&params, &sources)?),
         Show::Solutions => Box::new(solution::solutions(&params, &sources)?),
         Show::Verification => Box::new(solution::verification(&params, &sources)?),
+        Show::Dag => Box::new(flow::dag(&params.outline)),
     };
     let style = Style { points: params.points, map: params.colors, ..Style::wide(params.width) };
     picture_artifact(&*picture, &style)

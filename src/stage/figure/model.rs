@@ -12,6 +12,7 @@ use crate::figure::half_normal::{Effect, HalfNormal};
 use crate::figure::residuals::Residuals;
 use crate::figure::surface::Surface;
 use crate::math::distribution::normal_quantile;
+use crate::math::elementary::ln;
 use crate::stats::terms::Term;
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {
@@ -248,7 +249,47 @@ fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
     })
 }
 
+/// The sources of an analysis of variance by the roots of their sums of squares: χ quantiles of the plot positions
+/// (i − ½)/m, which for two degrees of freedom are √(−2 ln(1 − p)).
+fn chi_plot(params: &Params, source: Source) -> Result<HalfNormal, StageError> {
+    let response = one_response(params)?;
+    let rows = source.rows(&["anova"])?;
+    let which = rows.where_is("response", &response.key)?;
+    let (names, df) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("df")?, &which));
+    let (squares, words) = (pick(&rows.reals("ss")?, &which), pick(&rows.texts("significance")?, &which));
+    let effects: Vec<usize> = (0..names.len()).filter(|&i| names[i] != "residual" && names[i] != "total").collect();
+    let degrees = effects.first().map_or(0.0, |&i| df[i]);
+    if !(degrees == 1.0 || degrees == 2.0) || effects.iter().any(|&i| df[i] != degrees) {
+        return Err(StageError::new(
+            "the sources of the analysis of variance do not all have one, or all two, degrees of freedom",
+        )
+        .hint("show = \"pareto\" compares sources of different degrees of freedom"));
+    }
+    let mut order = effects.clone();
+    order.sort_by(|&a, &b| squares[a].total_cmp(&squares[b]));
+    let position =
+        |i: usize| order.iter().position(|&k| k == i).map_or(0.0, |rank| rank as f64 + 0.5) / order.len() as f64;
+    let quantile = |p: f64| if degrees == 1.0 { normal_quantile(0.5 + 0.5 * p) } else { (-2.0 * ln(1.0 - p)).sqrt() };
+    let residual = (0..names.len()).find(|&i| names[i] == "residual");
+    let effect = |&i: &usize| Effect {
+        name: term_label(&names[i], params),
+        size: squares[i].max(0.0).sqrt(),
+        quantile: quantile(position(i)),
+        active: !words[i].is_empty() && words[i] != "-",
+    };
+    Ok(HalfNormal {
+        response: response.quantity(),
+        effects: effects.iter().map(effect).collect(),
+        error: residual.map_or(f64::NAN, |i| (squares[i] / df[i]).sqrt()),
+        margin: None,
+        degrees: degrees as usize,
+    })
+}
+
 pub(super) fn half_normal(params: &Params, sources: &Sources) -> Result<HalfNormal, StageError> {
+    if sources.first()?.rows(&["anova"]).is_ok() {
+        return chi_plot(params, sources.first()?);
+    }
     let found = effects(params, sources)?;
     let list = (0..found.sizes.len()).map(|i| Effect {
         name: found.names[i].clone(),
@@ -261,6 +302,7 @@ pub(super) fn half_normal(params: &Params, sources: &Sources) -> Result<HalfNorm
         effects: list.collect(),
         error: found.error,
         margin: found.margin.map(|m| ("margin of error".to_owned(), m)),
+        degrees: 1,
     })
 }
 

@@ -80,3 +80,57 @@ fn what_is_missing_is_named() {
     );
     assert_eq!(said(json!({ "table": "x", "digits": 4 })), "the artifact `anova` holds no table `x` (it holds anova)");
 }
+
+fn given(text: &str) -> Option<Given> {
+    struct Nothing;
+    impl crate::stage::Library for Nothing {
+        fn load(&self, _: &crate::artifact::ContentHash) -> Result<Arc<Artifact>, StageError> {
+            Err(StageError::new("nothing is there"))
+        }
+        fn outcome(&self, _: &Task) -> Option<crate::stage::Outcome> {
+            None
+        }
+        fn file(&self, _: &str, _: &str) -> Result<crate::stage::FileInput, StageError> {
+            Err(StageError::new("no file"))
+        }
+    }
+    let mut context = Context::default();
+    let factor = |sets: &str, unit: &str, levels: &[f64]| crate::stage::Factor {
+        sets: sets.into(),
+        unit: unit.into(),
+        levels: levels.to_vec(),
+        ..Default::default()
+    };
+    context.factors.insert("Ec".into(), factor("mortar.Ec", "GPa", &[30.0, 10.0, 20.0]));
+    context.factors.insert("mu".into(), factor("mortar.mu", "", &[0.5, 1.5]));
+    let values = [("mortar.Ec", 1.6e10), ("mortar.mu", 0.5)];
+    let parameter = |value| crate::stage::Parameter { value, dimension: crate::unit::Dimension::NONE };
+    context.materials.insert("trial".into(), values.map(|(path, value)| (path.to_owned(), parameter(value))).into());
+    let stage: super::Table = toml::from_str(text).unwrap();
+    assert_eq!(stage.check(&context), []);
+    stage.given(&Known { context: &context, inputs: Vec::new(), library: &Nothing }).unwrap()
+}
+
+#[test]
+fn factors_and_materials_of_the_workflow_are_listed() {
+    let table = given("list = 'factors'").unwrap().table();
+    assert_eq!((table.reals("low").unwrap(), table.reals("high").unwrap()), (vec![10.0, 0.5], vec![30.0, 1.5]));
+    assert_eq!(table.reals("level_1").unwrap(), [30.0, 0.5]);
+    assert!(table.reals("level_3").unwrap()[1].is_nan());
+    let table = given("list = 'materials'\nmaterials = ['trial']").unwrap().table();
+    assert_eq!(table.reals("trial").unwrap(), [16.0, 0.5]);
+    assert_eq!(given("of = 'anova'"), None);
+}
+
+#[test]
+fn settings_without_effect_on_a_list_are_told() {
+    let said = |text: &str| {
+        let stage: super::Table = toml::from_str(text).unwrap();
+        stage.check(&Context::default()).into_iter().map(|c| c.message).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(said("caption = 'x'"), "no stage is named");
+    assert_eq!(said("list = 'factors'\nof = 'a'"), "`of` has no effect on this list");
+    assert_eq!(said("of = 'a'\nmaterials = ['b']"), "`materials` has no effect here; there is no [material.b]");
+    assert_eq!(said("list = 'aggregate'\nof = 'a'"), "the list needs the bounds of the classes, increasing");
+    assert_eq!(said("of = 'a'\npublished = 'x.csv'"), "`by` is needed to match the rows of the two tables");
+}

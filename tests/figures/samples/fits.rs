@@ -27,6 +27,7 @@ pub(super) fn half_normal() -> HalfNormal {
         effects: order.iter().enumerate().map(effect).collect(),
         error: 2.62,
         margin: Some(("margin of error".into(), 6.7)),
+        degrees: 1,
     }
 }
 

@@ -1,0 +1,52 @@
+//! The graph of the workflow itself: the stages that lead to those named.
+
+use super::super::{Context, Outline};
+use crate::figure::dag::{Dag, Stage};
+
+/// Classes of stages, and the kinds that belong to each; other kinds belong to the last.
+const CLASSES: [(&str, &[&str]); 5] = [
+    ("specimens and runs", &["specimen", "simulate", "command", "formula", "data"]),
+    ("designs", &["design"]),
+    ("statistics", &["range", "anova", "screening", "regression", "rsm"]),
+    ("calibration", &["calibrate", "verify"]),
+    ("tables and figures", &["table", "figure"]),
+];
+
+/// The named stages and all that they need, renumbered, in the order of the workflow.
+pub(super) fn outline(last: &[String], context: &Context) -> Vec<Outline> {
+    let all = &context.outline;
+    let mut wanted: Vec<bool> = all.iter().map(|stage| last.contains(&stage.name)).collect();
+    // A stage comes after those it needs.
+    for place in (0..all.len()).rev().filter(|&place| all[place].inputs.iter().all(|&input| input < place)) {
+        if wanted[place] {
+            all[place].inputs.iter().for_each(|&input| wanted[input] = true);
+        }
+    }
+    let kept: Vec<usize> = (0..all.len()).filter(|&place| wanted[place]).collect();
+    let renumbered = |input: &usize| kept.binary_search(input).ok();
+    let one = |&place: &usize| {
+        let inputs = all[place].inputs.iter().filter_map(renumbered).collect();
+        Outline { inputs, ..all[place].clone() }
+    };
+    kept.iter().map(one).collect()
+}
+
+/// The picture, with the classes that occur.
+pub(super) fn dag(outline: &[Outline]) -> Dag {
+    let class = |stage: &Outline| CLASSES.iter().position(|(_, kinds)| kinds.contains(&stage.kind.as_str()));
+    let found: Vec<usize> = outline.iter().map(|stage| class(stage).unwrap_or(CLASSES.len() - 1)).collect();
+    let used: Vec<usize> = (0..CLASSES.len()).filter(|class| found.contains(class)).collect();
+    let place = |class: &usize| used.binary_search(class).unwrap_or(0);
+    let stages = outline.iter().zip(&found);
+    Dag {
+        stages: stages
+            .map(|(stage, own)| Stage { name: stage.name.clone(), note: stage.kind.clone(), class: place(own) })
+            .collect(),
+        edges: outline
+            .iter()
+            .enumerate()
+            .flat_map(|(to, stage)| stage.inputs.iter().map(move |&from| (from, to)))
+            .collect(),
+        classes: used.iter().map(|&class| CLASSES[class].0.to_owned()).collect(),
+    }
+}
