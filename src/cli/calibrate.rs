@@ -135,8 +135,8 @@ impl Calibrate {
         match &fit[..] {
             [one] => Ok(workflow.stages[*one].name.clone()),
             [] if all.clone().next().is_some() => Err(format!(
-                "{} of this workflow calibrate by simulations; an answer at once needs a calibration with `surfaces` and \
-                 without `simulator`",
+                "no calibration of this workflow searches on surfaces alone: {}\n  \
+                 an answer at once needs one with `surfaces` and without `simulator`",
                 names(&all.collect::<Vec<_>>())
             )),
             [] => Err(

@@ -33,6 +33,8 @@ struct Live {
     told: Instant,
     /// Tasks that ended since, other than from the store.
     ended: usize,
+    /// Where the stage itself says it stands; empty for stages that do not decide by outcomes.
+    note: String,
     bar: Option<ProgressBar>,
 }
 
@@ -69,7 +71,20 @@ impl<'a> Progress<'a> {
         let mut stages = self.stages();
         if !stages.contains_key(stage) {
             let now = Instant::now();
-            stages.insert(stage.to_owned(), Live { started: now, told: now, ended: 0, bar: self.bar(stage) });
+            let (ended, note, bar) = (0, String::new(), self.bar(stage));
+            stages.insert(stage.to_owned(), Live { started: now, told: now, ended, note, bar });
+        }
+    }
+
+    fn asked(&self, stage: &str, count: crate::run::TaskCount, note: &str) {
+        self.started(stage);
+        if let Some(live) = self.stages().get_mut(stage) {
+            note.clone_into(&mut live.note);
+            if let Some(bar) = &live.bar {
+                bar.set_length(count.total as u64);
+                bar.set_position(count.ended() as u64);
+                bar.set_message(format!("{} cached; {note}", count.cached));
+            }
         }
     }
 
@@ -79,12 +94,12 @@ impl<'a> Progress<'a> {
         live.ended += 1;
         let elapsed = live.started.elapsed().as_secs_f64();
         let left = count.total - count.ended();
-        let message = pace(
-            live.ended,
-            left,
-            elapsed,
-            self.expected.get_or_init(&self.look_up).get(stage).map(|s| s / self.workers as f64),
-        );
+        let expected = self.expected.get_or_init(&self.look_up).get(stage).map(|s| s / self.workers as f64);
+        let pace = pace(live.ended, left, elapsed, expected);
+        let message = match live.note.as_str() {
+            "" => pace,
+            note => format!("{} cached; {note}; {pace}", count.cached),
+        };
         if let Some(bar) = &live.bar {
             bar.set_length(count.total as u64);
             bar.set_position(count.ended() as u64);
@@ -97,7 +112,7 @@ impl<'a> Progress<'a> {
 
     fn closed(&self, report: &StageReport) {
         let live = self.stages().remove(&report.name);
-        if let Some(bar) = live.and_then(|live| live.bar) {
+        if let Some(bar) = live.as_ref().and_then(|live| live.bar.as_ref()) {
             bar.finish_and_clear();
         }
         let name = &report.name;
@@ -107,7 +122,9 @@ impl<'a> Progress<'a> {
             StageStatus::Done(_) => {
                 let time =
                     if report.tasks.ran > 0 { format!(" in {}", duration(report.seconds)) } else { String::new() };
-                self.say(&format!("{name:16} done: {} ran{time}, {} cached", report.tasks.ran, report.tasks.cached));
+                let note = live.filter(|live| !live.note.is_empty()).map(|live| format!("; {}", live.note));
+                let (ran, cached) = (report.tasks.ran, report.tasks.cached);
+                self.say(&format!("{name:16} done: {ran} ran{time}, {cached} cached{}", note.unwrap_or_default()));
             }
             StageStatus::Open => {}
         }
@@ -125,6 +142,7 @@ impl Watch for Progress<'_> {
                     bar.set_message(format!("{row}{part}{}", progress.note));
                 }
             }
+            Event::Asked { stage, count, note } => self.asked(stage, count, note),
             Event::Ended { stage, row, count, failure } => {
                 if let Some(why) = failure {
                     let row = row.map_or_else(String::new, |row| format!("[{}]", row + 1));

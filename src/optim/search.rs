@@ -96,7 +96,14 @@ pub fn next(
     knowledge: &Knowledge,
     history: &[Run],
 ) -> Result<Next, Error> {
-    let mut search = Search::new(problem, method, limits, seed, knowledge);
+    replay(&mut Search::new(problem, method, limits, seed, knowledge), history, |_| ())
+}
+
+/// Tells a fresh search its history; `seen` is shown the search after every whole batch.
+///
+/// # Errors
+/// As [`next`].
+pub fn replay(search: &mut Search, history: &[Run], mut seen: impl FnMut(&Search)) -> Result<Next, Error> {
     let mut told = history;
     loop {
         if let Some(stop) = search.stop() {
@@ -114,6 +121,7 @@ pub fn next(
         }
         let (batch, rest) = told.split_at(asked.len());
         search.tell(&batch.iter().map(|run| run.responses.clone()).collect::<Vec<_>>());
+        seen(search);
         told = rest;
     }
 }

@@ -65,6 +65,15 @@ pub enum Event<'a> {
         /// Where it stands.
         progress: &'a Progress,
     },
+    /// A stage that decides by outcomes asked for more.
+    Asked {
+        /// The stage.
+        stage: &'a str,
+        /// Its counts.
+        count: TaskCount,
+        /// Where it stands.
+        note: &'a str,
+    },
     /// A task ended, well or not.
     Ended {
         /// The stage.
@@ -202,8 +211,13 @@ impl Loop<'_> {
             if self.stages.recall(self.workflow, index, self.store) {
                 continue;
             }
-            for node in self.stages.step(self.workflow, index, self.store, &mut self.board) {
+            let (new, stands) = self.stages.step(self.workflow, index, self.store, &mut self.board);
+            for node in new {
                 self.settle(node);
+            }
+            if let Some(note) = stands.filter(|_| !self.settings.dry) {
+                let (stage, count) = (&self.workflow.stages[index].name, self.board.count(index));
+                self.watch.event(Event::Asked { stage, count, note: &note });
             }
         }
         let keeps = (!self.settings.dry).then_some(self.store);

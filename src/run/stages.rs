@@ -139,16 +139,26 @@ impl Stages {
         true
     }
 
-    /// Asks a stage for its next step; answers with the nodes that are new on the board.
-    pub(super) fn step(&mut self, workflow: &Workflow, index: usize, store: &Store, board: &mut Board) -> Vec<NodeId> {
+    /// Asks a stage for its next step; answers with the nodes that are new on the board, and with where the stage stands
+    /// when it asked for outcomes.
+    pub(super) fn step(
+        &mut self,
+        workflow: &Workflow,
+        index: usize,
+        store: &Store,
+        board: &mut Board,
+    ) -> (Vec<NodeId>, Option<String>) {
         let shelf = Shelf { workflow, store, board, files: RefCell::default() };
         let step = workflow.stages[index].stage.next(&self.known(workflow, index, &shelf));
         let files = shelf.files.into_inner();
-        let mut new = Vec::new();
+        let (mut new, mut stands) = (Vec::new(), None);
         let mut put = |task| board.put(&Arc::new(task), index, &mut new);
         let state = match step {
             Ok(Step::Finish(task)) => State::Finishing(put(task)),
-            Ok(Step::Ask(tasks)) => State::Asking(tasks.into_iter().map(put).collect()),
+            Ok(Step::Ask(tasks, note)) => {
+                stands = Some(note);
+                State::Asking(tasks.into_iter().map(put).collect())
+            }
             Err(error) => State::Ended(StageStatus::Failed(in_words(error))),
         };
         let place = &mut self.places[index];
@@ -159,7 +169,7 @@ impl Stages {
         }
         place.files.extend(files);
         place.state = state;
-        new
+        (new, stands)
     }
 
     /// What a stage knows once its inputs are there.

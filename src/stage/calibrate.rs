@@ -32,7 +32,7 @@ pub use config::{Calibrate, Constraint, Curve, MethodName, Wanted};
 
 use super::{Complaint, Context, Kind, Known, Outcome, Point, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::Artifact;
-use crate::optim::search::{Next, Run, next};
+use crate::optim::search::{Search, State};
 use params::{Params, Told};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -80,63 +80,83 @@ impl Stage for Calibrate {
             task.params = json!(params);
             return Ok(Step::Finish(task));
         }
-        let mut wanted = Vec::new();
+        let (mut wanted, mut stands) = (Vec::new(), Vec::new());
         for set in 0..params.sets.len() {
-            let (told, runs, asked) = self.simulated(known, &params, set)?;
-            params.history.push(told);
-            wanted.extend(asked);
-            for run in runs {
+            let replayed = self.simulated(known, &params, set)?;
+            params.history.push(replayed.told);
+            wanted.extend(replayed.wanted);
+            stands.push(replayed.state);
+            for run in replayed.runs {
                 task = task.after("run", Arc::new(run));
             }
         }
         if !wanted.is_empty() {
-            return Ok(Step::Ask(wanted));
+            return Ok(Step::Ask(wanted, in_words(&stands)));
         }
         task.params = json!(params);
         Ok(Step::Finish(task))
     }
 }
 
-/// What was told, by which tasks, and which are wanted next.
-type Replayed = (Vec<Told>, Vec<Task>, Vec<Task>);
+/// Where the search of one set stands.
+struct Replayed {
+    told: Vec<Told>,
+    /// The tasks that told it, in order.
+    runs: Vec<Task>,
+    /// The tasks that it must see next; none when it is over.
+    wanted: Vec<Task>,
+    state: State,
+}
+
+/// Evaluations, best and recommended misfit, set by set.
+fn in_words(sets: &[State]) -> String {
+    let each = |pick: &dyn Fn(&State) -> String| sets.iter().map(pick).collect::<Vec<_>>().join("/");
+    let failed: usize = sets.iter().map(|set| set.failed).sum();
+    let misfit = |misfit: Option<f64>| misfit.map_or_else(|| "–".to_owned(), |misfit| format!("{misfit:.2e}"));
+    format!(
+        "{} evaluations{}, misfit best {}, recommended {}",
+        each(&|set| set.evaluations.to_string()),
+        if failed > 0 { format!(" ({failed} failed)") } else { String::new() },
+        each(&|set| misfit(set.best.as_ref().map(|best| best.misfit))),
+        each(&|set| misfit(set.recommended.as_ref().map(|own| own.misfit))),
+    )
+}
 
 impl Calibrate {
-    /// Replays one set against the outcomes there are: what was told, by which tasks, and which are wanted next.
+    /// Replays one set against the outcomes there are.
     fn simulated(&self, known: &Known, params: &Params, set: usize) -> Result<Replayed, StageError> {
         let problem = params.problem(set)?;
         let load = |key: &str| known.port(key).map(|input| known.load(input)).collect::<Result<Vec<_>, _>>();
         let (surfaces, earlier) = (load("surfaces")?, load("learn_from")?);
         let knowledge = params.knowledge(set, surfaces.first().map(|a| &**a), &earlier)?;
         let simulator = known.one("simulator")?;
-        let (mut told, mut runs, mut history) = (Vec::new(), Vec::new(), Vec::new());
-        loop {
-            let step = next(&problem, &params.method, &params.limits, known.context.seed, &knowledge, &history);
-            let asked = match step.map_err(|fault| StageError::new(fault.to_string()))? {
-                Next::Stop(..) => return Ok((told, runs, Vec::new())),
-                Next::Ask(points) => points,
-            };
-            let (mut wanted, first) = (Vec::new(), history.len());
-            for (i, point) in asked.iter().enumerate() {
-                let task = self.task(simulator, params, point, first + i)?;
+        let mut search = Search::new(&problem, &params.method, &params.limits, known.context.seed, &knowledge);
+        let (mut told, mut runs) = (Vec::new(), Vec::new());
+        while search.stop().is_none() {
+            let (mut answers, mut wanted) = (Vec::new(), Vec::new());
+            let first = told.len();
+            for (i, point) in search.ask().into_iter().enumerate() {
+                let task = self.task(simulator, params, &point, first + i)?;
                 match known.library.outcome(&task) {
                     Some(Outcome::Done(content)) if wanted.is_empty() => {
-                        let run = known.library.load(&content)?;
-                        history.push(Run { point: point.clone(), responses: params.read(set, &run)?.ok() });
-                        told.push(Told { point: point.clone(), run: Some(runs.len()), failure: String::new() });
+                        answers.push(params.read(set, &*known.library.load(&content)?)?.ok());
+                        told.push(Told { point, run: Some(runs.len()), failure: String::new() });
                         runs.push(task);
                     }
                     Some(Outcome::Failed(failure)) if wanted.is_empty() => {
-                        history.push(Run { point: point.clone(), responses: None });
-                        told.push(Told { point: point.clone(), run: None, failure });
+                        answers.push(None);
+                        told.push(Told { point, run: None, failure });
                     }
                     Some(_) => {}
                     None => wanted.push(task),
                 }
             }
             if !wanted.is_empty() {
-                return Ok((told, runs, wanted));
+                return Ok(Replayed { told, runs, wanted, state: search.state() });
             }
+            search.tell(&answers);
         }
+        Ok(Replayed { told, runs, wanted: Vec::new(), state: search.state() })
     }
 
     /// The task that tries one point; `index` counts the simulations of its set from 0.

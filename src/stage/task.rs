@@ -87,8 +87,8 @@ pub struct FileInput {
 pub enum Step {
     /// The result of this task is the stage's result.
     Finish(Task),
-    /// Outcomes it must see first.
-    Ask(Vec<Task>),
+    /// Outcomes it must see first, and where it stands in a few words.
+    Ask(Vec<Task>, String),
 }
 
 /// A function that tasks name.

@@ -131,6 +131,12 @@ fn history(params: &Params, solved: &[Solved]) -> Table {
     columns(table, params, &rows)
         .reals_column("misfit", "", "of this evaluation", all.iter().map(|(_, line)| line.misfit).collect())
         .reals_column("best", "", "best misfit so far", all.iter().map(|(_, line)| line.best).collect())
+        .reals_column(
+            "recommended",
+            "",
+            "misfit expected at the point that was recommended then",
+            all.iter().map(|(_, line)| line.recommended).collect(),
+        )
         .texts_column("failure", "empty when it went well", all.iter().map(|(_, line)| line.failure.clone()).collect())
 }
 

@@ -3,7 +3,7 @@
 use super::params::{Params, Told};
 use super::{read, record};
 use crate::artifact::Artifact;
-use crate::optim::search::{Knowledge, Method, Next, Run, Search, State, next};
+use crate::optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
 use crate::optim::solution_set::{SolutionSet, explore};
 use crate::optim::surrogate::models::Models;
 use crate::optim::surrogate::{Model, Trend};
@@ -19,6 +19,8 @@ pub(super) struct Line {
     pub responses: Vec<f64>,
     pub misfit: f64,
     pub best: f64,
+    /// Misfit of the recommended point once the batch of this evaluation was known; NaN before there is one.
+    pub recommended: f64,
     pub failure: String,
 }
 
@@ -95,7 +97,8 @@ fn on_surfaces(
             if misfit < best {
                 best = misfit;
                 let (point, responses) = (point.clone(), responses.clone());
-                history.push(Line { evaluation: count, point, responses, misfit, best, failure: String::new() });
+                let (evaluation, recommended, failure) = (count, best, String::new());
+                history.push(Line { evaluation, point, responses, misfit, best, recommended, failure });
             }
         }
         search.tell(&answers);
@@ -139,7 +142,12 @@ fn simulated(
         runs.push(Run { point: told.point.clone(), responses });
         failures.push(failure);
     }
-    let step = next(&problem, &params.method, &params.limits, seed, knowledge, &runs);
+    let mut recommended = Vec::new();
+    let mut search = Search::new(&problem, &params.method, &params.limits, seed, knowledge);
+    let step = replay(&mut search, &runs, |search| {
+        let State { evaluations, recommended: own, .. } = search.state();
+        recommended.resize(evaluations, own.map_or(f64::NAN, |own| own.misfit));
+    });
     let Next::Stop(stop, state) = step.map_err(|fault| StageError::new(fault.to_string()))? else {
         return Err(StageError::new("the simulations of this calibration are not complete").into());
     };
@@ -149,7 +157,9 @@ fn simulated(
             .hint("look at the ranges of the factors, and at one run with `flow show`")
             .into());
     }
-    let history = lines(&problem, &runs, &failures);
+    // The last batch can be cut short by the budget.
+    recommended.resize(runs.len(), state.recommended.as_ref().map_or(f64::NAN, |own| own.misfit));
+    let history = lines(&problem, &runs, &failures, &recommended);
     let State { evaluations, failed, recommended, .. } = state;
     let recommended = recommended.ok_or_else(|| StageError::new("no run gave responses"))?;
     let models = fitted(params, &problem, knowledge, &runs);
@@ -175,14 +185,15 @@ fn fitted(params: &Params, problem: &Problem, knowledge: &Knowledge, runs: &[Run
     Models::fit(&all, problem, settings.model == Model::GaussianProcess, trend)
 }
 
-fn lines(problem: &Problem, runs: &[Run], failures: &[String]) -> Vec<Line> {
+fn lines(problem: &Problem, runs: &[Run], failures: &[String], recommended: &[f64]) -> Vec<Line> {
     let mut best = f64::INFINITY;
     let line = |(i, (run, failure)): (usize, (&Run, &String))| {
         let misfit = run.responses.as_ref().map_or(f64::NAN, |y| problem.misfit.of(y));
         best = best.min(misfit);
         let missing = vec![f64::NAN; problem.misfit.targets().len()];
         let responses = run.responses.clone().unwrap_or(missing);
-        Line { evaluation: i + 1, point: run.point.clone(), responses, misfit, best, failure: failure.clone() }
+        let (point, failure) = (run.point.clone(), failure.clone());
+        Line { evaluation: i + 1, point, responses, misfit, best, recommended: recommended[i], failure }
     };
     runs.iter().zip(failures).enumerate().map(line).collect()
 }

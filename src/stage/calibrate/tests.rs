@@ -151,7 +151,12 @@ fn simulations_in_the_loop_find_the_parameters_and_their_interval() {
     let prediction = artifact.table("prediction").unwrap();
     let at = |name: &str| prediction.reals(name).unwrap();
     assert!((0..3).all(|i| at("low")[i] < at("expected")[i] && at("expected")[i] < at("high")[i]));
-    assert_eq!(artifact.table("history").unwrap().rows(), 48);
+    let history = artifact.table("history").unwrap();
+    assert_eq!(history.rows(), 48);
+    let recommended = history.reals("recommended").unwrap();
+    // One value per batch, and that of the solution at the end of each set.
+    assert!(recommended[4] == recommended[7] && recommended[7] != recommended[8], "{recommended:?}");
+    assert_eq!([recommended[23], recommended[47]], solution.reals("misfit").unwrap()[..]);
     assert!(artifact.table("solution_set").unwrap().rows() >= 50);
 }
 
@@ -165,8 +170,10 @@ fn an_interrupted_calibration_goes_on_where_it_stood() {
     loop {
         let step = stage.next(&known(&context, &broken)).unwrap();
         match step {
-            Step::Ask(tasks) => {
+            Step::Ask(tasks, note) => {
                 assert!(!tasks.is_empty());
+                let told = broken.simulations();
+                assert!(told > 0 || note == "0/0 evaluations, misfit best –/–, recommended –/–", "{note}");
                 assert!(tasks.iter().all(|task| whole.done.borrow().iter().any(|(known, _)| known == task)));
                 broken.patience += 7;
             }

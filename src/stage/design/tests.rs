@@ -46,7 +46,7 @@ fn task(text: &str) -> Task {
     let known = Known { context: &context, inputs: vec![], library: &NoLibrary(None) };
     match stage(text).next(&known).unwrap() {
         Step::Finish(task) => task,
-        Step::Ask(_) => panic!("a design asks for nothing"),
+        Step::Ask(..) => panic!("a design asks for nothing"),
     }
 }
 

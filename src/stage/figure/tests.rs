@@ -241,7 +241,7 @@ fn task_of(figure: &Figure, context: &Context, from: &[Artifact], compare: &[Art
     let known = Known { context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
     match figure.next(&known).unwrap() {
         Step::Finish(task) => task,
-        Step::Ask(_) => panic!("a figure asks for nothing"),
+        Step::Ask(..) => panic!("a figure asks for nothing"),
     }
 }
 
