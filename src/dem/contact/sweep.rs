@@ -148,14 +148,15 @@ fn drag<L: Lane>(
     for (k, &i) in first.iter().enumerate() {
         inverse.0[k] = task.inverse_mass[i as usize] + second.map_or(0.0, |j| task.inverse_mass[j[k] as usize]);
     }
-    // Two bodies that cannot move have no effective mass; the floor keeps the quotient finite and the velocity is 0.
-    let inverse = L::load(&inverse, 0).max(L::splat(f64::MIN_POSITIVE));
+    // Two bodies that are both held have no effective mass, and no dashpot.
+    let inverse = L::load(&inverse, 0);
+    let free = inverse.above(L::splat(0.0));
+    let inverse = inverse.max(L::splat(f64::MIN_POSITIVE));
     let kn = L::load(&rows[KN], at);
-    let critical = (kn / inverse).sqrt();
-    let shear = (kn * L::splat(constants.shear_share) / inverse).sqrt();
+    let critical = |k: L| L::select(free, (k / inverse).sqrt(), L::splat(0.0));
     Viscous {
-        normal: L::splat(2.0 * constants.dashpot[0] / task.dt) * critical,
-        shear: L::splat(2.0 * constants.dashpot[1] / task.dt) * shear,
+        normal: L::splat(2.0 * constants.dashpot[0] / task.dt) * critical(kn),
+        shear: L::splat(2.0 * constants.dashpot[1] / task.dt) * critical(kn * L::splat(constants.shear_share)),
     }
 }
 

@@ -9,8 +9,6 @@ mod domain;
 mod list;
 mod march;
 mod run;
-#[cfg(test)]
-mod tests;
 mod timestep;
 mod validate;
 

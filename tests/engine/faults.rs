@@ -1,6 +1,7 @@
 //! Bad input is refused by name, and runs that fail say why.
 
-use super::*;
+use crate::block::*;
+use flow::dem::*;
 
 /// Faults of a small block after a change.
 fn faults(change: impl FnOnce(&mut Model<D2>)) -> Vec<Fault> {

@@ -1,23 +1,52 @@
-//! The engine's own mechanics: small systems against closed forms, and bits against bits.
+//! Bodies that several families use: a bonded block with a clump between platens, and short words for small models.
 
-mod beam;
-mod bits;
-mod clump;
-mod energy;
-mod faults;
-mod memory;
-mod pair;
-mod twin;
+use flow::dem::*;
+use flow::math::random::Stream;
 
-use crate::dem::*;
-use crate::math::random::Stream;
+use flow::dem::space::Tuple;
 
-pub(super) const GRAIN: Group = Group(0);
-pub(super) const STONE: Group = Group(1);
-pub(super) const PLATEN: Group = Group(2);
+pub(crate) const GRAIN: Group = Group(0);
+pub(crate) const STONE: Group = Group(1);
+pub(crate) const PLATEN: Group = Group(2);
+
+/// A vector along one axis.
+pub(crate) fn along<S: Space>(axis: usize, length: f64) -> Vector<S> {
+    Vector::<S>::build(|k| if k == axis { length } else { 0.0 })
+}
+
+/// A spin about the axis out of the plane.
+pub(crate) fn about<S: Space>(rate: f64) -> Spin<S> {
+    Spin::<S>::build(|k| if k + 1 == Spin::<S>::LENGTH { rate } else { 0.0 })
+}
+
+/// The component of a spin or moment out of the plane.
+pub(crate) fn turning<S: Space>(spin: Spin<S>) -> f64 {
+    spin.at(Spin::<S>::LENGTH - 1)
+}
+
+/// A wall along the first axis through the origin, looking up the second.
+pub(crate) fn floor<S: Space>() -> Wall<S> {
+    Wall {
+        point: along::<S>(1, 0.0),
+        normal: along::<S>(1, 1.0),
+        motion: Motion::Velocity(along::<S>(0, 0.0)),
+        group: PLATEN,
+    }
+}
+
+/// A model of balls (and walls) that all follow one law.
+pub(crate) fn model<S: Space>(
+    particles: Vec<Particle<S>>,
+    walls: Vec<Wall<S>>,
+    law: Interaction,
+    settings: Settings<S>,
+) -> Model<S> {
+    let contacts = ContactTable::new().with(GRAIN, GRAIN, law).with(GRAIN, PLATEN, law);
+    Model { particles, clumps: vec![], walls, contacts, settings }
+}
 
 /// Concrete-like values: spring and bond of 20 GPa, k_n/k_s 2.5, strengths of 20 MPa with 20 % scatter.
-pub(super) fn bonded() -> Interaction {
+pub(crate) fn bonded() -> Interaction {
     let bond = ParallelBond {
         radius_multiplier: 1.0,
         stiffness: BondStiffness::Modulus { modulus: 20e9, ratio: 2.5 },
@@ -31,7 +60,7 @@ pub(super) fn bonded() -> Interaction {
 }
 
 /// A table of mortar, stone (rigid clumps) and smooth platens.
-pub(super) fn table() -> ContactTable {
+pub(crate) fn table() -> ContactTable {
     let smooth = Interaction::unbonded(Linear::modulus(20e9, 2.5, 0.0));
     let rough = Interaction::unbonded(Linear::modulus(40e9, 2.5, 0.5));
     ContactTable::new()
@@ -44,8 +73,7 @@ pub(super) fn table() -> ContactTable {
 
 /// A close-packed block of balls of slightly random radius, `columns` × `rows` (× `columns`), with a clump in the middle
 /// and a platen below and above that close on each other.
-pub(super) fn block<S: Space>(columns: usize, rows: usize, speed: f64) -> Model<S> {
-    use crate::dem::space::Tuple;
+pub(crate) fn block<S: Space>(columns: usize, rows: usize, speed: f64) -> Model<S> {
     let mut stream = Stream::new(5, "block", 0);
     let (r, height) = (0.5e-3, 3.0_f64.sqrt() * 0.5e-3);
     let layers = if S::DIMENSION == 3 { columns } else { 1 };

@@ -1,6 +1,7 @@
 //! What contacts remember: reference gaps outlive a loss of contact, renewals of the list change nothing.
 
-use super::*;
+use crate::block::*;
+use flow::dem::*;
 
 /// A ball on a floor with an overlap that was taken as the state of rest.
 fn resting() -> Engine<D2> {

@@ -1,7 +1,9 @@
 //! A plane run equals its flat twin in space.
 
-use super::*;
-use crate::dem::space::Tuple;
+use crate::block::*;
+use flow::dem::space::Tuple;
+use flow::dem::*;
+use flow::math::random::Stream;
 
 /// Contact-bonded balls with stiffnesses and inertias that do not know the space, thrown at each other.
 fn thrown<S: Space>() -> Engine<S> {
@@ -32,15 +34,14 @@ fn thrown<S: Space>() -> Engine<S> {
     engine
 }
 
-#[test]
-fn a_plane_run_equals_its_flat_twin() {
+/// Largest difference of a position of the two runs over the radius.
+pub(crate) fn difference() -> f64 {
     let (plane, solid) = (thrown::<D2>(), thrown::<D3>());
     assert!(plane.cracks().len() > 10, "{}", plane.cracks().len());
     assert_eq!(plane.cracks().len(), solid.cracks().len());
-    for p in 0..plane.particle_count() {
+    let one = |p: usize| {
         let (a, b) = (plane.position(p), solid.position(p));
-        let (v, w) = (plane.spin(p)[0], solid.spin(p)[2]);
-        assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9 && b[2] == 0.0, "{a:?} {b:?}");
-        assert!((v - w).abs() < 1e-6, "{v} {w}");
-    }
+        [a[0] - b[0], a[1] - b[1], b[2]].norm() / 0.5
+    };
+    (0..plane.particle_count()).map(one).fold(0.0, f64::max)
 }

@@ -1,11 +1,12 @@
 //! The same bits for every number of threads and every lane width.
 
-use super::*;
-use crate::dem::simd::Width;
+use crate::block::*;
+use flow::dem::simd::Width;
+use flow::dem::*;
 
 /// blake3 of everything a run leaves.
 fn digest<S: Space>(engine: &Engine<S>) -> String {
-    use crate::dem::space::Tuple;
+    use flow::dem::space::Tuple;
     let mut hash = blake3::Hasher::new();
     let mut put = |x: f64| {
         hash.update(&x.to_bits().to_le_bytes());

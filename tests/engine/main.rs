@@ -1,0 +1,25 @@
+//! The engine against closed forms, invariances and itself.
+//!
+//! Each family of cases computes rows (what, source, expected, got, allowed); a test per family checks them, and the
+//! page `VALIDATION.md` beside this file lists them all. `cargo test --test engine -- --ignored write` writes the page
+//! anew; a test keeps it in step with what is computed.
+#![allow(clippy::unwrap_used)]
+// Loops over axes read better with their index.
+#![allow(clippy::needless_range_loop)]
+
+mod balance;
+mod beam;
+mod bits;
+mod block;
+mod bond;
+mod case;
+mod clump;
+mod energy;
+mod faults;
+mod friction;
+mod impact;
+mod invariance;
+mod memory;
+mod page;
+mod step;
+mod twin;
