@@ -2,12 +2,13 @@
 
 use super::Exit;
 use super::common::{Campaign, system};
+use super::output::replace;
 use super::progress::Silent;
 use super::show::csv_text;
 use crate::artifact::{Artifact, Node};
 use crate::run::{Settings, StageStatus, run};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 /// Write results as files: pictures as SVG, PDF and PNG, printed tables as CSV, LaTeX and Markdown, all others as CSV.
@@ -42,7 +43,7 @@ impl Export {
             };
             let artifact = store.get(content).map_err(|e| system(&e))?;
             for (name, bytes) in files(&stage.name, &artifact) {
-                replace(&self.to, &name, &bytes).map_err(|e| system(&e))?;
+                replace(&self.to.join(&name), &bytes).map_err(|e| system(&e))?;
                 out!("{}", self.to.join(name).display());
             }
         }
@@ -81,12 +82,4 @@ fn files(stage: &str, artifact: &Artifact) -> Vec<(String, Vec<u8>)> {
         }
     }
     files
-}
-
-/// Writes a file so that a reader sees the old or the new one, never a part.
-fn replace(folder: &Path, name: &str, bytes: &[u8]) -> std::io::Result<()> {
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    std::io::Write::write_all(&mut file, bytes)?;
-    file.persist(folder.join(name))?;
-    Ok(())
 }

@@ -252,7 +252,8 @@ impl Figure {
 impl Kind for Figure {
     const NAME: &'static str = "figure";
     const ABOUT: &'static str = "a picture of the results of other stages";
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 1, run: draw }];
+    /// 2: surfaces say where their axes lie.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 2, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
