@@ -4,7 +4,7 @@
 //! An arrow is the only import allowed, directly or further along it; `tests/layers.rs` holds the code to it.
 //!
 //! ```text
-//! cli → run → { exec, plan, store }
+//! cli → report → run → { exec, plan, store }
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → { math, unit }
 //! { run, plan, stage, store } → artifact → math
 //! ```
@@ -12,6 +12,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`cli`] | what a person types and reads; the only place that prints |
+//! | [`report`] | a campaign as one HTML page |
 //! | [`run`] | the run loop, and the only state that changes during a run |
 //! | [`exec`] | threads that take work; knows neither tasks nor physics |
 //! | [`plan`] | TOML text → checked workflow; tasks → texts and keys; reasons of reruns |
@@ -40,6 +41,7 @@ pub mod figure;
 pub mod math;
 pub mod optim;
 pub mod plan;
+pub mod report;
 pub mod run;
 pub mod stage;
 pub mod stats;

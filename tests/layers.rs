@@ -12,6 +12,14 @@ const ORDER: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
+            "report", "run", "exec", "plan", "store", "stage", "dem", "design", "stats", "optim", "figure", "artifact",
+            "math", "unit",
+        ],
+    ),
+    // A page is made of what a dry run finds and the store holds; it prints nothing, so the command line calls it.
+    (
+        "report",
+        &[
             "run", "exec", "plan", "store", "stage", "dem", "design", "stats", "optim", "figure", "artifact", "math",
             "unit",
         ],
@@ -45,6 +53,7 @@ const KEEPERS: &[(&str, &[&str])] = &[
     ("comfy_table", &["cli"]),
     ("ctrlc", &["cli"]),
     ("csv", &["stage", "cli"]),
+    ("maud", &["report"]),
     ("regex", &["stage"]),
 ];
 

@@ -7,6 +7,7 @@ mod vtu;
 
 use super::Exit;
 use super::common::{Campaign, system};
+use super::output::replace;
 use super::progress::Silent;
 use super::show::{csv_text, object, parts};
 use crate::artifact::{Artifact, ContentHash, Node};
@@ -16,7 +17,7 @@ use crate::run::{Report, Settings, run};
 use crate::stage::specimen;
 use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 /// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.
@@ -81,7 +82,7 @@ impl Export {
                 Exit::BadInput
             })?;
             for (name, bytes) in files {
-                replace(&self.folder, &name, &bytes).map_err(|e| system(&e))?;
+                replace(&self.folder.join(&name), &bytes).map_err(|e| system(&e))?;
                 out!("{}", self.folder.join(name).display());
                 written += 1;
             }
@@ -204,12 +205,4 @@ fn tables(stage: &str, artifact: &Artifact) -> Vec<File> {
     tables
         .map(|(name, table)| (format!("{stage}.{}.csv", name.replace('/', ".")), csv_text(table).into_bytes()))
         .collect()
-}
-
-/// Writes a file so that a reader sees the old or the new one, never a part.
-fn replace(folder: &Path, name: &str, bytes: &[u8]) -> std::io::Result<()> {
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    std::io::Write::write_all(&mut file, bytes)?;
-    file.persist(folder.join(name))?;
-    Ok(())
 }

@@ -16,6 +16,7 @@ mod message;
 mod new;
 mod plan;
 mod progress;
+mod report;
 mod run;
 mod schema;
 mod show;
@@ -46,6 +47,8 @@ enum Command {
     Check(check::Check),
     /// Show the stages, what they take from one another, and what is done of them.
     Graph(graph::Graph),
+    /// Write a page with every table and figure of a campaign.
+    Report(report::Report),
     /// Write results as files: pictures, printed tables, CSV.
     Export(export::Export),
     /// Compare two campaigns: what was set otherwise, what came out otherwise.
@@ -81,6 +84,7 @@ pub fn main() -> ExitCode {
         Command::Run(run) => run.go(),
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
+        Command::Report(report) => report.go(),
         Command::Export(export) => export.go(),
         Command::Calibrate(calibrate) => calibrate.go(),
         Command::Diff(diff) => diff.go(),

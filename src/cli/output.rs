@@ -1,7 +1,8 @@
-//! Standard output, for results.
+//! Where results go: standard output, and files.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 /// Prints one line of a result: `println!` that ends quietly when nobody reads any more.
 macro_rules! out {
@@ -23,4 +24,21 @@ pub(super) fn write(text: &str) {
         let exit = if error.kind() == ErrorKind::BrokenPipe { super::Exit::Done } else { super::Exit::System };
         std::process::exit(exit as i32);
     }
+}
+
+/// Writes a file so that a reader sees the old or the new one, never a part. What is no plain file, such as a pipe, is
+/// written to as it stands.
+pub(super) fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if std::fs::symlink_metadata(path).is_ok_and(|found| !found.is_file()) {
+        return std::fs::write(path, bytes);
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    // As any other program's files: the user's mask decides who may read them.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.persist(path)?;
+    Ok(())
 }

@@ -2,8 +2,9 @@
 
 use super::Exit;
 use super::common::Campaign;
-use super::progress::{Silent, duration};
+use super::progress::Silent;
 use crate::exec::cores;
+use crate::report::duration;
 use crate::run::{Past, Report, Settings, StageReport, StageStatus, TaskReport, TaskState, run};
 use clap::Args;
 use std::sync::atomic::AtomicBool;

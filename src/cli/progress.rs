@@ -1,5 +1,6 @@
 //! What a person sees while a campaign runs: a live table on a terminal, plain lines elsewhere.
 
+use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, Watch};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::HashMap;
@@ -164,27 +165,9 @@ fn pace(ended: usize, left: usize, elapsed: f64, expected: Option<f64>) -> Strin
     format!("{rate}, {} elapsed, {} left", duration(elapsed), duration(each * left as f64))
 }
 
-/// A time in seconds, in words.
-pub(super) fn duration(seconds: f64) -> String {
-    if seconds < 0.95 {
-        return format!("{:.0} ms", 1000.0 * seconds);
-    }
-    if seconds < 59.5 {
-        return if seconds < 9.95 { format!("{seconds:.1} s") } else { format!("{seconds:.0} s") };
-    }
-    let minutes = (seconds / 60.0).round() as u64;
-    if minutes < 60 { format!("{minutes} min") } else { format!("{} h {:02} min", minutes / 60, minutes % 60) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn times_are_told_in_fitting_units() {
-        let told = [0.0123, 3.21, 42.4, 600.0, 5430.0].map(duration);
-        assert_eq!(told, ["12 ms", "3.2 s", "42 s", "10 min", "1 h 31 min"]);
-    }
 
     #[test]
     fn the_rest_is_expected_from_earlier_runs_until_this_one_has_told_enough() {

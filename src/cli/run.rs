@@ -2,9 +2,10 @@
 
 use super::Exit;
 use super::common::{Campaign, system};
-use super::progress::{Progress, Silent, duration};
+use super::progress::{Progress, Silent};
 use crate::exec::cores;
 use crate::plan::Workflow;
+use crate::report::duration;
 use crate::run::{Past, Report, Settings, StageStatus, TaskState, Watch, record, run};
 use crate::store::Store;
 use clap::Args;

@@ -2,8 +2,9 @@
 
 use super::Exit;
 use super::common::{Campaign, Color, system};
-use super::progress::{Silent, duration};
+use super::progress::Silent;
 use crate::artifact::Key;
+use crate::report::duration;
 use crate::run::{Settings, run};
 use crate::store::{Amount, Store};
 use clap::{Args, Subcommand};
@@ -153,7 +154,8 @@ fn reach(path: &std::path::Path, folder: &std::path::Path, store: &Store, keys: 
 }
 
 /// A size in words.
-fn bytes(n: u64) -> String {
+/// A size in bytes, in words.
+pub(super) fn bytes(n: u64) -> String {
     let units = ["B", "kB", "MB", "GB", "TB"];
     let (mut value, mut unit) = (n as f64, 0);
     while value >= 999.5 && unit + 1 < units.len() {

@@ -48,6 +48,17 @@ impl Box3 {
     fn place(&self, v: [f64; 3]) -> Point {
         self.corner([self.unit(0, v[0]), self.unit(1, v[1]), self.unit(2, v[2])])
     }
+
+    /// Facts that let a script tell values under a pointer: the ends of the three axes, then the places on the page of
+    /// their common low corner and of the high end of each.
+    fn facts(&self) -> Vec<(&'static str, String)> {
+        let ends = self.axes.iter().flat_map(|axis| [axis.low, axis.high]).map(|end| end.to_string());
+        let low = [-1.0; 3];
+        let high = |axis: usize| std::array::from_fn(|k| if k == axis { 1.0 } else { -1.0 });
+        let places = [low, high(0), high(1), high(2)].into_iter().flat_map(|corner| self.corner(corner));
+        let places = places.map(|length| format!("{length:.3}"));
+        vec![("space", ends.chain(places).collect::<Vec<_>>().join(" "))]
+    }
 }
 
 impl Figure for Surface {
@@ -66,7 +77,9 @@ impl Figure for Surface {
         let space = self.space(area, (low, high));
         draw_walls(&mut scene, &space);
         self.draw_floor(&mut scene, &space, &bands, style);
+        let first = scene.items.len();
         self.draw_facets(&mut scene, &space, &bands, style);
+        scene.group_from(first, None, space.facts());
         draw_titles(&mut scene, &space, [&f.x.short(), &f.y.short(), &f.z.short()], style);
         if !f.note.is_empty() {
             let at = [page.left, page.top + 0.8 * size];

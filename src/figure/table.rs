@@ -52,7 +52,7 @@ fn lossless(x: f64) -> String {
 }
 
 /// A cell for people, with a hyphen for minus; `None` when missing.
-fn shown(column: &Column, row: usize) -> Option<String> {
+pub fn shown(column: &Column, row: usize) -> Option<String> {
     let Values::Reals(v) = &column.values else { return Some(exact(column, row)).filter(|c| !c.is_empty()) };
     let x = *v.get(row)?;
     if !x.is_finite() {

@@ -262,7 +262,8 @@ impl Kind for Figure {
     const NAME: &'static str = "figure";
     const ABOUT: &'static str = "a picture of the results of other stages";
     /// 2: numbers at points of designs stand on a ground of paper; "1 crack"; force chains are those above the mean.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 2, run: draw }];
+    /// 3: surfaces say where their axes lie.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 3, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

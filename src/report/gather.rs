@@ -1,0 +1,100 @@
+//! Reading a campaign from the store.
+
+use super::paper::{Cost, Paper, Part, State};
+use crate::artifact::ContentHash;
+use crate::plan::{StageNode, Workflow};
+use crate::run::{Report, Settings, StageStatus, Watch, run};
+use crate::stage::KINDS;
+use crate::store::{Campaign, Store, StoreError};
+use std::collections::HashSet;
+use std::sync::atomic::AtomicBool;
+
+/// What was asked for on the command line, besides the workflow.
+#[derive(Clone, Debug, Default)]
+pub struct Asked {
+    /// Text of the workflow file.
+    pub text: String,
+    /// Overrides as they were typed.
+    pub sets: Vec<String>,
+    /// The store as it was named; empty for the default.
+    pub store: String,
+}
+
+/// Reads what the store has of a workflow. Computes nothing; damaged objects are set aside and count as missing.
+///
+/// # Errors
+/// The store cannot be read.
+pub fn gather(workflow: &Workflow, asked: Asked, store: &Store, watch: &dyn Watch) -> Result<Paper, StoreError> {
+    // Without memos every task is seen, whichever program ran it, so that the page depends on the results alone.
+    let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: false };
+    let report = run(workflow, store, &settings, watch, &AtomicBool::new(false));
+    let costs = costs(workflow, &report, store)?;
+    let mut parts = Vec::with_capacity(workflow.stages.len());
+    for (node, cost) in workflow.stages.iter().zip(costs) {
+        let status = report.stages.iter().find(|stage| stage.name == node.name).map(|stage| &stage.status);
+        parts.push(part(node, state(status, store)?, cost));
+    }
+    Ok(Paper {
+        title: if workflow.title.is_empty() { workflow.name.clone() } else { workflow.title.clone() },
+        about: workflow.about.clone(),
+        file: workflow.path.display().to_string(),
+        runs: runs(workflow, &asked.sets, store)?,
+        text: asked.text,
+        profile: workflow.profile.clone(),
+        sets: asked.sets,
+        store: asked.store,
+        context: workflow.context.clone(),
+        parts,
+    })
+}
+
+fn part(node: &StageNode, state: State, cost: Cost) -> Part {
+    let about = KINDS.iter().find(|kind| kind.name == node.kind).map_or("", |kind| kind.about);
+    Part {
+        name: node.name.clone(),
+        kind: node.kind.to_owned(),
+        about: about.to_owned(),
+        inputs: node.inputs.iter().map(|&(port, input)| (port.to_owned(), input)).collect(),
+        settings: node.stage.settings(),
+        state,
+        cost,
+    }
+}
+
+fn state(status: Option<&StageStatus>, store: &Store) -> Result<State, StoreError> {
+    let done = |content: &ContentHash| match store.get(content) {
+        Ok(artifact) => Ok(State::Done { content: *content, artifact }),
+        Err(error) if error.is_missing() => Ok(State::Broken(error.to_string())),
+        Err(error) => Err(error),
+    };
+    match status {
+        Some(StageStatus::Done(content)) => done(content),
+        Some(StageStatus::Failed(why)) => Ok(State::Broken(why.clone())),
+        Some(StageStatus::Skipped(cause)) => Ok(State::Broken(format!("it needs `{cause}`, which cannot run"))),
+        Some(StageStatus::Open) | None => Ok(State::Missing),
+    }
+}
+
+/// What the tasks of each stage cost.
+fn costs(workflow: &Workflow, report: &Report, store: &Store) -> Result<Vec<Cost>, StoreError> {
+    let mut costs = vec![Cost::default(); workflow.stages.len()];
+    let mut seen = HashSet::new();
+    for task in &report.tasks {
+        let Some(object) = task.object.filter(|object| seen.insert(object.key)) else { continue };
+        let Some(record) = store.find(&object.key)? else { continue };
+        costs[task.stage].add(record.started, record.seconds, &record.origin);
+    }
+    Ok(costs)
+}
+
+/// Recorded runs of this workflow with these overrides.
+fn runs(workflow: &Workflow, sets: &[String], store: &Store) -> Result<Vec<Campaign>, StoreError> {
+    let path = workflow.path.display().to_string();
+    let profile = workflow.profile.clone().unwrap_or_default();
+    let mut runs = Vec::new();
+    for number in store.campaigns()? {
+        let same = |run: &Campaign| run.workflow == path && run.profile == profile && run.set == sets;
+        runs.extend(store.campaign(number)?.filter(same));
+    }
+    Ok(runs)
+}

@@ -1,0 +1,38 @@
+//! The report: one HTML page that holds a campaign, complete in itself.
+//!
+//! [`gather`] reads what the page shows from the store (every object is checked before it is opened, nothing is
+//! computed); [`page`] writes it. In between lies a [`Paper`], plain data, so that the page is a pure function: the same
+//! workflow and store give the same bytes. Times are those of the records.
+//!
+//! * [`gather`](mod@gather): workflow and store → [`Paper`]
+//! * `page`: head, masthead, contents; `summary`, `provenance`: the first sections; `stage`: a section per stage
+//! * `table`, `figure`: what sections are made of; `svg` lets only harmless pictures in, `values` gives their numbers
+//! * `warning`, `symbol`, `time`: what raises a warning; symbols as HTML; times in words
+//! * `page.css`, `page.js`: the look and what moves; the page reads, links and prints without the script
+//!
+//! Nothing that comes from a workflow or a store becomes markup: texts are escaped by `maud`, pictures pass through
+//! `svg`, numbers for the script are JSON in which `<` cannot occur, and the page forbids itself every script, style,
+//! picture and address that is not its own.
+
+mod dag;
+mod figure;
+mod gather;
+mod page;
+mod paper;
+mod provenance;
+mod stage;
+mod summary;
+mod svg;
+mod symbol;
+mod table;
+mod time;
+mod values;
+mod warning;
+
+pub use gather::{Asked, gather};
+pub use page::page;
+pub use paper::{Cost, Paper, Part, State};
+pub use time::duration;
+
+#[cfg(test)]
+mod tests;

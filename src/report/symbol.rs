@@ -1,0 +1,123 @@
+//! Symbols of factors and responses as HTML: italics, subscripts, superscripts, bars.
+//!
+//! The label is set by [`crate::figure::text`], and the places of its glyphs say what each of them is, so pages and
+//! pictures read the same notation.
+
+use crate::figure::font::Face;
+use crate::figure::text::{self, Line};
+use crate::stage::Context;
+use maud::{Markup, PreEscaped, html};
+
+/// How a glyph stands.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct Manner {
+    italic: bool,
+    /// −1 below the line, 1 above it.
+    level: i8,
+    bar: bool,
+}
+
+/// A label with mathematics between dollar signs.
+pub(super) fn label(label: &str) -> Markup {
+    let line = Line::new(label, 1.0);
+    let mut parts: Vec<(Manner, String)> = Vec::new();
+    let mut end = 0.0;
+    for glyph in &line.glyphs {
+        let level = if glyph.at[1] > 0.0 { -1 } else { i8::from(glyph.at[1] < 0.0) };
+        let middle = glyph.at[0] + glyph.face.advance(glyph.id) * glyph.size / 2.0;
+        let bar = line.rules.iter().any(|rule| rule.left <= middle && middle <= rule.right);
+        let manner = Manner { italic: glyph.face == Face::Italic, level, bar };
+        let apart = glyph.at[0] - end > 0.12 && !parts.is_empty();
+        end = glyph.at[0] + glyph.face.advance(glyph.id) * glyph.size;
+        if apart {
+            push(&mut parts, Manner::default(), '\u{202f}');
+        }
+        push(&mut parts, manner, glyph.character);
+    }
+    html! { @for (manner, text) in &parts { (part(*manner, text)) } }
+}
+
+fn push(parts: &mut Vec<(Manner, String)>, manner: Manner, character: char) {
+    match parts.last_mut() {
+        Some((last, text)) if *last == manner => text.push(character),
+        _ => parts.push((manner, character.to_string())),
+    }
+}
+
+fn part(manner: Manner, text: &str) -> Markup {
+    let barred = if manner.bar {
+        html! { span.bar { (text) } }
+    } else {
+        html! { (text) }
+    };
+    let sloped = if manner.italic {
+        html! { i { (barred) } }
+    } else {
+        barred
+    };
+    match manner.level {
+        -1 => html! { sub { (sloped) } },
+        1 => html! { sup { (sloped) } },
+        _ => sloped,
+    }
+}
+
+/// A unit: superscripts, dots between factors.
+pub(super) fn unit(unit: &str) -> Markup {
+    label(&text::unit_markup(unit))
+}
+
+/// The symbol of a factor or response; nothing when it has none.
+pub(super) fn of(context: &Context, name: &str) -> Option<Markup> {
+    let symbol = raw(context, name)?;
+    Some(label(&format!("${symbol}$")))
+}
+
+/// The symbol of a factor or response in the notation of labels.
+pub(super) fn raw<'a>(context: &'a Context, name: &str) -> Option<&'a str> {
+    let factor = context.factors.get(name).map(|factor| factor.symbol.as_str());
+    let response = || context.responses.get(name).map(|response| response.symbol.as_str());
+    factor.or_else(response).filter(|symbol| !symbol.is_empty())
+}
+
+/// A term such as `Ec*mu^2` with the symbols of its factors; nothing when none of its parts has one.
+pub(super) fn term(context: &Context, term: &str) -> Option<Markup> {
+    let parts: Vec<(&str, Option<&str>)> = term
+        .split('*')
+        .map(|part| part.trim().split_once('^').map_or((part.trim(), None), |(f, p)| (f, Some(p))))
+        .collect();
+    parts.iter().any(|(factor, _)| raw(context, factor).is_some()).then(|| {
+        html! {
+            @for (i, (factor, power)) in parts.iter().enumerate() {
+                @if i > 0 { (PreEscaped("\u{202f}·\u{202f}")) }
+                @if let Some(symbol) = of(context, factor) { (symbol) } @else { (factor) }
+                @if let Some(power) = power { sup { (power) } }
+            }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::Factor;
+
+    #[test]
+    fn the_notation_of_labels_becomes_markup() {
+        let set = |text: &str| label(text).into_string();
+        assert_eq!(set(r"$\bar\sigma_c$"), "<i><span class=\"bar\">σ</span></i><sub>c</sub>");
+        assert_eq!(set(r"$R^2$"), "<i>R</i><sup>2</sup>");
+        assert_eq!(set("a < b & c"), "a &lt; b &amp; c");
+        assert_eq!(unit("kg/m^3").into_string(), "kg/m<sup>3</sup>");
+    }
+
+    #[test]
+    fn terms_are_told_by_the_symbols_of_their_factors() {
+        let factor = Factor { symbol: "E_c".to_owned(), ..Factor::default() };
+        let context = Context { factors: [("Ec".to_owned(), factor)].into(), ..Context::default() };
+        let set = |text: &str| term(&context, text).map(maud::PreEscaped::into_string);
+        assert_eq!(set("Ec^2").unwrap(), "<i>E</i><sub>c</sub><sup>2</sup>");
+        assert!(set("Ec*mu").unwrap().ends_with("·\u{202f}mu"));
+        assert_eq!(set("residual"), None);
+    }
+}

@@ -1,0 +1,288 @@
+//! A table of the page: heads with symbols and units, numbers as people read them, deviations with a sign and a word.
+//!
+//! A cell whose number is rounded carries the number with nine digits in `data-v`, from which the script sorts and
+//! copies; heads carry the plain name and unit in `data-k`.
+
+use super::symbol;
+use crate::artifact::{self, Values};
+use crate::figure::column::{self, Column, Digits};
+use crate::figure::table::shown;
+use crate::stage::Context;
+use maud::{Markup, PreEscaped, html};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// A table to be shown.
+pub(super) struct Sheet<'a> {
+    table: &'a artifact::Table,
+    context: &'a Context,
+    caption: Markup,
+    notes: Vec<String>,
+    /// The command that shows all of it.
+    command: String,
+    /// Most rows in the page.
+    most: usize,
+    digits: usize,
+    decimals: BTreeMap<String, usize>,
+    symbols: BTreeMap<String, String>,
+}
+
+/// Most rows of a table that a stage prints, and of any other.
+const PRINTED: usize = 500;
+const OTHERS: usize = 100;
+
+/// Within so many per cent two values are close, and beyond the second they are far apart.
+pub(super) const CLOSE: f64 = 5.0;
+pub(super) const FAR: f64 = 20.0;
+
+impl<'a> Sheet<'a> {
+    /// A table as it lies in an artifact.
+    pub(super) fn new(table: &'a artifact::Table, context: &'a Context, caption: Markup, command: String) -> Self {
+        Self {
+            table,
+            context,
+            caption,
+            notes: Vec::new(),
+            command,
+            most: OTHERS,
+            digits: 5,
+            decimals: BTreeMap::new(),
+            symbols: BTreeMap::new(),
+        }
+    }
+
+    /// The same as a `table` stage with these settings prints it.
+    pub(super) fn printed(mut self, settings: &Value) -> Self {
+        let list = |key: &str| settings[key].as_array().into_iter().flatten();
+        let map = |key: &str| settings[key].as_object().into_iter().flatten();
+        let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        self.most = PRINTED;
+        self.digits = settings["digits"].as_u64().map_or(4, |digits| digits as usize);
+        self.decimals = map("decimals").filter_map(|(k, v)| Some((k.clone(), v.as_u64()? as usize))).collect();
+        self.symbols = map("symbols").map(|(k, v)| (k.clone(), text(v))).collect();
+        self.notes = list("notes").map(text).collect();
+        self
+    }
+
+    pub(super) fn markup(&self) -> Markup {
+        let columns: Vec<Shown> = self.table.columns.iter().map(|column| self.column(column)).collect();
+        let rows = self.table.rows();
+        let named = columns.first().is_some_and(|first| first.is_text());
+        html! {
+            div.sheet {
+                table {
+                    caption { span { (self.caption) } }
+                    thead { tr { @for column in &columns { (self.head(column)) } } }
+                    tbody {
+                        @for row in 0..rows.min(self.most) {
+                            tr {
+                                @for (place, column) in columns.iter().enumerate() {
+                                    (self.cell(column, row, named && place == 0))
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            @for note in &self.notes { p.note { (note) } }
+            @if rows > self.most {
+                p.note { "The first " (self.most) " of " (rows) " rows; all of them: " code { (self.command) " --csv" } }
+            }
+        }
+    }
+
+    fn column(&self, column: &'a artifact::Column) -> Shown<'a> {
+        let values = match &column.values {
+            Values::Reals(values) => column::Values::Reals(values.clone()),
+            Values::Ints(values) => column::Values::Whole(values.clone()),
+            Values::Texts(values) => column::Values::Words(values.clone()),
+        };
+        let exact = match &column.values {
+            Values::Reals(values) => values.iter().all(|x| !x.is_finite() || format!("{x}").len() <= 6),
+            Values::Ints(_) | Values::Texts(_) => true,
+        };
+        let mark = Mark::of(column);
+        let digits = match self.decimals.get(&column.name) {
+            Some(&decimals) => Digits::Fixed(decimals),
+            None if mark.is_some() => Digits::Fixed(1),
+            None if exact => Digits::Shortest,
+            None => Digits::Significant(self.digits),
+        };
+        let own = Column { key: column.name.clone(), symbol: String::new(), unit: column.unit.clone(), values, digits };
+        Shown { column: own, about: &column.about, mark }
+    }
+
+    fn head(&self, shown: &Shown) -> Markup {
+        let key = shown.column.key.as_str();
+        let (quantity, word) = key.split_once(' ').unwrap_or((key, ""));
+        let symbol = match self.symbols.get(quantity) {
+            Some(symbol) => Some(symbol::label(&format!("${symbol}$"))),
+            None => symbol::of(self.context, quantity),
+        };
+        let unit = shown.column.unit.as_str();
+        let plain = if unit.is_empty() { key.to_owned() } else { format!("{key} [{unit}]") };
+        html! {
+            th scope="col" class=[shown.is_text().then_some("t")] data-k=(plain) title=[(!shown.about.is_empty()).then_some(shown.about)] {
+                @if let Some(symbol) = symbol { (symbol) @if !word.is_empty() { " " (word) } } @else { (key.replace('_', " ")) }
+                @if !unit.is_empty() { " " small { (symbol::unit(unit)) } }
+            }
+        }
+    }
+
+    fn cell(&self, shown: &Shown, row: usize, is_name: bool) -> Markup {
+        let inside = shown.cell(row);
+        match &shown.column.values {
+            column::Values::Words(words) => {
+                let word = words.get(row).map_or("", String::as_str);
+                let markup = self.words(shown, word);
+                let full = markup.is_some().then_some(word);
+                let markup = markup.unwrap_or_else(|| html! { (word) });
+                let class = if word.starts_with("differs") { "t far" } else { "t" };
+                if is_name {
+                    html! { th.t scope="row" data-v=[full] { (markup) } }
+                } else {
+                    html! { td class=(class) data-v=[full] { (markup) } }
+                }
+            }
+            column::Values::Reals(values) => {
+                let value = values.get(row).copied().unwrap_or(f64::NAN);
+                let Some(inside) = inside else { return html! { td {} } };
+                match shown.mark.map(|mark| (mark, mark.judge(value))) {
+                    Some((mark, judged)) => html! {
+                        td class=(judged.class) data-v=(nine(value)) {
+                            @if mark == Mark::Signed && value > 0.0 { "+" } (number(&inside)) " " em { (judged.sign) " " (judged.word) }
+                        }
+                    },
+                    None => {
+                        let full = Some(nine(value)).filter(|full| *full != inside);
+                        html! { td data-v=[full] { (number(&inside)) } }
+                    }
+                }
+            }
+            column::Values::Whole(_) => html! { td { (number(&inside.unwrap_or_default())) } },
+        }
+    }
+
+    /// A word that names a factor, a response or a term of them, with its symbol.
+    fn words(&self, shown: &Shown, word: &str) -> Option<Markup> {
+        const NAMES: [&str; 4] = ["factor", "response", "source", "term"];
+        NAMES.contains(&shown.column.key.as_str()).then(|| symbol::term(self.context, word)).flatten()
+    }
+}
+
+/// A column with how it is shown.
+struct Shown<'a> {
+    column: Column,
+    about: &'a str,
+    mark: Option<Mark>,
+}
+
+impl Shown<'_> {
+    fn is_text(&self) -> bool {
+        matches!(self.column.values, column::Values::Words(_))
+    }
+
+    fn cell(&self, row: usize) -> Option<String> {
+        shown(&self.column, row)
+    }
+}
+
+/// A column that says how far two values are apart, in per cent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mark {
+    /// Computed minus the other.
+    Signed,
+    /// The size of it.
+    Size,
+}
+
+/// What a deviation comes to.
+pub(super) struct Judged {
+    pub(super) class: &'static str,
+    pub(super) sign: &'static str,
+    pub(super) word: &'static str,
+}
+
+impl Mark {
+    /// What a column says, by its name.
+    pub(super) fn of(column: &artifact::Column) -> Option<Self> {
+        match column.name.as_str() {
+            "deviation_percent" => Some(Self::Signed),
+            "relative_error_percent" => Some(Self::Size),
+            name if name.ends_with(" deviation") && column.unit == "%" => Some(Self::Signed),
+            _ => None,
+        }
+    }
+
+    pub(super) fn judge(self, value: f64) -> Judged {
+        let judged = |class, sign, word| Judged { class, sign, word };
+        let (far, up) = (value.abs() > FAR, value > 0.0);
+        match self {
+            _ if value.is_nan() => judged("", "", ""),
+            _ if value.abs() <= CLOSE => judged("close", "≈", "close"),
+            Self::Signed if far && up => judged("far", "↑", "far high"),
+            Self::Signed if far => judged("far", "↓", "far low"),
+            Self::Signed if up => judged("off", "↑", "high"),
+            Self::Signed => judged("off", "↓", "low"),
+            Self::Size if far => judged("far", "≠", "far off"),
+            Self::Size => judged("off", "≠", "off"),
+        }
+    }
+}
+
+/// A number as it is set: true minus signs, powers of ten.
+pub(super) fn number(text: &str) -> Markup {
+    let minus = |text: &str| text.replace('-', "−");
+    match text.split_once('e') {
+        Some((mantissa, power)) if power.trim_start_matches('-').bytes().all(|b| b.is_ascii_digit()) => {
+            html! { (minus(mantissa)) (PreEscaped("·10")) sup { (minus(power)) } }
+        }
+        _ => html! { (minus(text)) },
+    }
+}
+
+/// A number with nine digits at most, as programs read it.
+pub(super) fn nine(value: f64) -> String {
+    let rounded: f64 = format!("{value:.8e}").parse().unwrap_or(value);
+    if rounded != 0.0 && !(1e-5..1e15).contains(&rounded.abs()) { format!("{rounded:e}") } else { format!("{rounded}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_set_and_kept() {
+        assert_eq!(number("-1.5").into_string(), "−1.5");
+        assert_eq!(number("8.94e-41").into_string(), "8.94·10<sup>−41</sup>");
+        assert_eq!(number("residual").into_string(), "residual");
+        assert_eq!(
+            [nine(0.1 + 0.2), nine(1.0 / 3.0), nine(2.5e-9), nine(-0.0)],
+            ["0.3", "0.333333333", "2.5e-9", "-0"]
+        );
+    }
+
+    #[test]
+    fn deviations_have_a_sign_and_a_word() {
+        let told = |mark: Mark, value: f64| {
+            let judged = mark.judge(value);
+            format!("{} {}", judged.sign, judged.word)
+        };
+        assert_eq!(told(Mark::Signed, -4.9), "≈ close");
+        assert_eq!([told(Mark::Signed, 5.1), told(Mark::Signed, -21.0)], ["↑ high", "↓ far low"]);
+        assert_eq!([told(Mark::Size, 12.0), told(Mark::Size, 20.1)], ["≠ off", "≠ far off"]);
+        assert_eq!(told(Mark::Signed, f64::NAN), " ");
+    }
+
+    #[test]
+    fn cells_are_text_whatever_they_hold() {
+        let table = artifact::Table::default()
+            .texts_column("term", "", vec!["</td><script>alert(1)</script>".to_owned()])
+            .reals_column("UCS deviation", "%", "\"><img>", vec![12.345])
+            .reals_column("p", "<b>", "", vec![1e-7]);
+        let context = Context::default();
+        let text = Sheet::new(&table, &context, html! { "c" }, String::new()).markup().into_string();
+        assert!(!text.contains("<script") && !text.contains("<img") && !text.contains("<b>"), "{text}");
+        assert!(text.contains("+12.3 <em>↑ high</em>") && text.contains("data-v=\"12.345\""), "{text}");
+    }
+}

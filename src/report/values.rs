@@ -1,0 +1,247 @@
+//! The numbers of a figure for the script, which tells those under the pointer or the arrow keys.
+//!
+//! Pictures say where their axes lie (`data-x`, `data-y`, `data-space`); this adds what is drawn there, panel by panel
+//! in the order of the picture. Three forms, tagged by `form`:
+//!
+//! * `curve`: per curve axial strain in %, stress, lateral strain in %, and counts of cracks by mode, on one index;
+//! * `field`: a response on a regular grid of two factors, thinned; between its nodes the script takes the parabola
+//!   through three of them along each side, which is exact for second-order surfaces;
+//! * `points`: per panel places with their words.
+
+use crate::artifact::{Table, Values};
+use crate::figure::text::Line;
+use crate::stage::Context;
+use serde_json::{Value, json};
+
+/// Nodes along one side of a thinned field.
+const NODES: usize = 21;
+
+/// Most places of one figure.
+const MOST: usize = 4000;
+
+/// The values of a figure that shows `show`; nothing when the script cannot tell them.
+pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
+    if show != "contour" && show != "surface" && data.rows() > MOST {
+        return None;
+    }
+    match show {
+        "stress-strain" => curves(data),
+        "contour" | "surface" => field(data, context),
+        "agreement" | "observed-predicted" => pairs(data, context),
+        "main-effects" => effects(data, context),
+        "residuals" => residuals(data),
+        "convergence" => convergence(data),
+        "half-normal" => half_normal(data),
+        _ => None,
+    }
+}
+
+/// JSON that may stand in a script element: no `<` in it, and nothing that ends a line of a script.
+pub(super) fn in_script(value: &Value) -> String {
+    let text = value.to_string();
+    let escaped = text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026");
+    escaped.replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+/// Numbers with six digits; what is missing is null.
+fn short(values: impl IntoIterator<Item = f64>) -> Vec<Value> {
+    let round = |v: f64| format!("{v:.5e}").parse::<f64>().unwrap_or(v);
+    values.into_iter().map(|v| if v.is_finite() { json!(round(v)) } else { Value::Null }).collect()
+}
+
+fn texts<'a>(data: &'a Table, name: &str) -> Option<&'a [String]> {
+    match &data.column(name)?.values {
+        Values::Texts(values) => Some(values),
+        Values::Reals(_) | Values::Ints(_) => None,
+    }
+}
+
+/// A name for people: the symbol of a factor or response, or the name itself.
+fn name_of(context: &Context, key: &str) -> String {
+    super::symbol::raw(context, key).map_or_else(|| key.to_owned(), |s| Line::new(&format!("${s}$"), 1.0).plain)
+}
+
+fn curves(data: &Table) -> Option<Value> {
+    let mut curves = Vec::new();
+    for number in 0..data.columns.len() {
+        let tag = if number == 0 { String::new() } else { format!("_{number}") };
+        let Some(strain) = data.reals(&format!("axial_strain{tag}")) else { continue };
+        let percent = |values: Vec<f64>| short(values.into_iter().map(|e| 100.0 * e));
+        let counted = data.columns.iter().filter_map(|column| {
+            let mode = column.name.strip_prefix("cracks_")?.strip_suffix(tag.as_str())?;
+            // Of another curve: its number is still there.
+            let other = mode.rsplit_once('_').is_some_and(|(_, end)| end.parse::<u32>().is_ok());
+            Some(json!({ "name": mode, "values": short(data.reals(&column.name)?) })).filter(|_| !other)
+        });
+        curves.push(json!({
+            "name": if number == 0 { String::new() } else { format!("curve {number}") },
+            "strain": percent(strain),
+            "stress": short(data.reals(&format!("axial_stress{tag}"))?),
+            "lateral": data.reals(&format!("lateral_strain{tag}")).map(percent),
+            "cracks": counted.collect::<Vec<_>>(),
+        }));
+    }
+    (!curves.is_empty()).then(|| json!({ "form": "curve", "curves": curves }))
+}
+
+fn field(data: &Table, context: &Context) -> Option<Value> {
+    let [x, y, z] = data.columns.as_slice() else { return None };
+    let (xs, ys, zs) = (data.reals(&x.name)?, data.reals(&y.name)?, data.reals(&z.name)?);
+    // Rows go along x first.
+    let across = ys.iter().take_while(|v| Some(*v) == ys.first()).count();
+    let up = xs.len().checked_div(across)?;
+    if across < 3 || up < 3 || across * up != zs.len() {
+        return None;
+    }
+    let thin = |n: usize| {
+        let parts = (2..NODES).rev().find(|parts| (n - 1) % parts == 0).unwrap_or(n - 1);
+        (0..=parts).map(|k| k * (n - 1) / parts).collect::<Vec<_>>()
+    };
+    let (columns, rows) = (thin(across), thin(up));
+    let nodes = rows.iter().flat_map(|j| columns.iter().map(move |i| j * across + i));
+    let axis = |column: &crate::artifact::Column, values: &[f64], count: usize| {
+        let ends = short([*values.first()?, *values.last()?]);
+        Some(json!({ "name": name_of(context, &column.name), "unit": column.unit, "ends": ends, "count": count }))
+    };
+    Some(json!({
+        "form": "field",
+        "x": axis(x, &xs, columns.len())?,
+        "y": axis(y, &ys, rows.len())?,
+        "z": { "name": name_of(context, &z.name), "unit": z.unit, "values": short(nodes.map(|k| zs[k])) },
+    }))
+}
+
+/// A place with its words.
+type Point = (f64, f64, String);
+
+fn points(panels: Vec<Vec<Point>>) -> Option<Value> {
+    let panel = |points: &Vec<Point>| {
+        let whole = points.iter().filter(|(x, y, _)| x.is_finite() && y.is_finite());
+        let (x, (y, words)): (Vec<f64>, (Vec<f64>, Vec<&String>)) =
+            whole.map(|(x, y, words)| (*x, (*y, words))).unzip();
+        json!({ "x": short(x), "y": short(y), "words": words })
+    };
+    let all: Vec<Value> = panels.iter().map(panel).collect();
+    (!all.is_empty()).then(|| json!({ "form": "points", "panels": all }))
+}
+
+/// Rows that share the word in a column, in the order of first sight.
+fn groups(words: &[String]) -> Vec<(&str, Vec<usize>)> {
+    let mut groups: Vec<(&str, Vec<usize>)> = Vec::new();
+    for (i, word) in words.iter().enumerate() {
+        match groups.iter_mut().find(|(known, _)| known == word) {
+            Some((_, rows)) => rows.push(i),
+            None => groups.push((word, vec![i])),
+        }
+    }
+    groups
+}
+
+/// A number for people, with its unit.
+fn told(value: f64, unit: &str) -> String {
+    let text = crate::figure::axis::significant(value, 4);
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
+}
+
+fn pairs(data: &Table, context: &Context) -> Option<Value> {
+    let [.., a, b] = data.columns.as_slice() else { return None };
+    let (xs, ys) = (data.reals(&a.name)?, data.reals(&b.name)?);
+    let (units, origins, rows) = (texts(data, "unit")?, texts(data, "origin")?, texts(data, "row")?);
+    let panel = |(response, members): (&str, Vec<usize>)| {
+        let sign = name_of(context, response);
+        let words = |i: usize| {
+            let origin = if origins[i].is_empty() { String::new() } else { format!("{}, ", origins[i]) };
+            let deviation = crate::figure::axis::fixed(100.0 * (ys[i] / xs[i] - 1.0), 1);
+            let (x, y) = (told(xs[i], &units[i]), told(ys[i], &units[i]));
+            format!("{origin}run {}: {sign} {} {x}, {} {y} ({deviation} %)", rows[i], a.name, b.name)
+        };
+        members.into_iter().map(|i| (xs[i], ys[i], words(i))).collect()
+    };
+    points(groups(texts(data, "response")?).into_iter().map(panel).collect())
+}
+
+fn effects(data: &Table, context: &Context) -> Option<Value> {
+    let (levels, units) = (data.reals("level")?, texts(data, "level_unit")?);
+    let means = data.column("mean")?;
+    let (values, unit) = (data.reals("mean")?, &means.unit);
+    let panel = |(factor, rows): (&str, Vec<usize>)| {
+        let sign = name_of(context, factor);
+        let words = |i: usize| format!("{sign} = {}: mean {}", told(levels[i], &units[i]), told(values[i], unit));
+        rows.into_iter().map(|i| (levels[i], values[i], words(i))).collect()
+    };
+    points(groups(texts(data, "factor")?).into_iter().map(panel).collect())
+}
+
+fn residuals(data: &Table) -> Option<Value> {
+    let runs = texts(data, "run")?;
+    let ys = data.reals("studentized_residual")?;
+    let (fitted, quantile, leverage) = (data.reals("fitted")?, data.reals("normal_quantile")?, data.reals("leverage")?);
+    let order: Vec<f64> = (1..=runs.len()).map(|i| i as f64).collect();
+    let panel = |(xs, what): (&Vec<f64>, &str)| {
+        let words =
+            |i: usize| format!("run {}: {what} {}, studentized residual {}", runs[i], told(xs[i], ""), told(ys[i], ""));
+        (0..runs.len()).map(|i| (xs[i], ys[i], words(i))).collect()
+    };
+    let views = [(&quantile, "normal quantile"), (&fitted, "fitted"), (&order, "place"), (&leverage, "leverage")];
+    points(views.into_iter().map(panel).collect())
+}
+
+fn convergence(data: &Table) -> Option<Value> {
+    let [_, effort, ..] = data.columns.as_slice() else { return None };
+    let (runs, xs, ys) = (texts(data, "run")?, data.reals(&effort.name)?, data.reals("best")?);
+    let words = |i: usize| format!("{}, {} {}: best misfit {}", runs[i], effort.name, told(xs[i], ""), told(ys[i], ""));
+    points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
+}
+
+fn half_normal(data: &Table) -> Option<Value> {
+    let [_, sizes, ..] = data.columns.as_slice() else { return None };
+    let (names, xs, ys) = (texts(data, "effect")?, data.reals(&sizes.name)?, data.reals("half_normal_quantile")?);
+    let words = |i: usize| format!("{}: {}", Line::new(&names[i], 1.0).plain, told(xs[i], &sizes.unit));
+    points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_a_script_cannot_leave_it() {
+        let text = in_script(&json!({ "name": "</script><!--<img>&\u{2028}" }));
+        assert!(!text.contains(['<', '>', '&', '\u{2028}']), "{text}");
+        let back: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(back["name"], "</script><!--<img>&\u{2028}");
+    }
+
+    #[test]
+    fn a_field_is_thinned_to_nodes_of_its_grid() {
+        let axis: Vec<f64> = (0..61).map(f64::from).collect();
+        let grid = || axis.iter().flat_map(|y| axis.iter().map(move |x| (*x, *y)));
+        let data = Table::default()
+            .reals_column("a", "GPa", "", grid().map(|p| p.0).collect())
+            .reals_column("b", "", "", grid().map(|p| p.1).collect())
+            .reals_column("c", "MPa", "", grid().map(|p| p.0 + 100.0 * p.1).collect());
+        let value = of("surface", &data, &Context::default()).unwrap();
+        assert_eq!((&value["x"]["count"], &value["x"]["ends"]), (&json!(21), &json!([0.0, 60.0])));
+        let values = value["z"]["values"].as_array().unwrap();
+        assert_eq!(
+            (values.len(), &values[1], &values[21], &values[440]),
+            (441, &json!(3.0), &json!(300.0), &json!(6060.0))
+        );
+        assert_eq!(of("surface", &Table::default(), &Context::default()), None);
+    }
+
+    #[test]
+    fn curves_have_their_own_cracks() {
+        let data = Table::default()
+            .reals_column("axial_strain_1", "", "", vec![0.0, 0.001])
+            .reals_column("axial_stress_1", "MPa", "", vec![0.0, 10.0])
+            .reals_column("cracks_tension_1", "", "", vec![0.0, 1.0])
+            .reals_column("axial_strain_2", "", "", vec![0.0, f64::NAN])
+            .reals_column("axial_stress_2", "MPa", "", vec![0.0, 20.0]);
+        let value = of("stress-strain", &data, &Context::default()).unwrap();
+        assert_eq!(value["curves"].as_array().unwrap().len(), 2);
+        assert_eq!(value["curves"][0]["cracks"][0], json!({ "name": "tension", "values": [0.0, 1.0] }));
+        assert_eq!(value["curves"][1]["strain"], json!([0.0, null]));
+        assert_eq!((&value["curves"][0]["strain"][1], &value["curves"][1]["cracks"]), (&json!(0.1), &json!([])));
+    }
+}
