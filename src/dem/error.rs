@@ -103,7 +103,7 @@ pub struct Faults(pub Vec<Fault>);
 /// Why a run ended badly: data, not a crash.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// A body left the bounds.
+    /// A body left the bounds (or went further than half an edge out of a periodic cell).
     #[error("particle {particle} left the bounds at step {step}")]
     Escape {
         /// Place in the caller's list.

@@ -56,11 +56,25 @@ pub struct Dashpot {
     pub tensile: bool,
 }
 
+/// How the normal force of the linear spring follows the gap g.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NormalForce {
+    /// F_n = k_n (g_r − g), 0 where that pulls.
+    #[default]
+    Absolute,
+    /// F_n ← max(0, F_n − k_n Δg) while the surfaces overlap, else 0: a spring that was let go grips again from where it is,
+    /// and a change of stiffness leaves the force as it is. A new overlap starts as in the absolute form.
+    Incremental,
+}
+
 /// Linear contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear {
     /// Spring.
     pub stiffness: Stiffness,
+    /// How its normal force follows the gap.
+    pub normal_force: NormalForce,
     /// Coulomb friction μ.
     pub friction: f64,
     /// Dashpots.
@@ -71,12 +85,12 @@ impl Linear {
     /// From E*, κ and μ in the present convention, without dashpots.
     pub fn modulus(modulus: f64, ratio: f64, friction: f64) -> Self {
         let stiffness = Stiffness::Modulus { modulus, ratio, convention: Convention::Present };
-        Self { stiffness, friction, dashpot: Dashpot::default() }
+        Self { stiffness, normal_force: NormalForce::Absolute, friction, dashpot: Dashpot::default() }
     }
 
     /// From k_n, k_s and μ, without dashpots.
     pub fn direct(kn: f64, ks: f64, friction: f64) -> Self {
-        Self { stiffness: Stiffness::Direct { kn, ks }, friction, dashpot: Dashpot::default() }
+        Self { stiffness: Stiffness::Direct { kn, ks }, ..Self::modulus(1.0, 1.0, friction) }
     }
 }
 

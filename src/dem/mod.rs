@@ -73,13 +73,13 @@ pub mod simd;
 pub mod space;
 pub mod test;
 
-pub use boundary::{Motion, Servo, Wall};
+pub use boundary::{Cell, Motion, Servo, Wall};
 pub use contact::{Contact, Other};
 pub use engine::{Ended, Engine, Masses, Model, Settings, Watch};
 pub use error::{Failure, Fault, Faults};
 pub use interaction::{
-    Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Interaction, Linear, ParallelBond, ShearBreak,
-    Stiffness,
+    Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Interaction, Linear, NormalForce,
+    ParallelBond, ShearBreak, Stiffness,
 };
 pub use particle::{Clump, Group, Particle};
 pub use space::{D2, D3, Space, Spin, Vector};

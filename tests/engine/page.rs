@@ -21,8 +21,11 @@ fn families() -> Vec<Family> {
     vec![
         crate::impact::family(),
         crate::friction::family(),
+        crate::incremental::family(),
         crate::bond::family(),
         crate::beam::family(),
+        crate::lattice::family(),
+        crate::packing::family(),
         crate::step::family(),
         crate::clump::family(),
         crate::balance::family(),

@@ -5,5 +5,5 @@ mod sweep;
 mod view;
 
 pub(crate) use section::{Key, LawKind, Packed, Section};
-pub(crate) use sweep::{Break, Face, Sweep, sweep_section};
+pub(crate) use sweep::{Break, Face, Second, Sweep, sweep_section};
 pub use view::{Contact, Other};

@@ -1,6 +1,6 @@
 //! Contacts of one class, in blocks of eight; between them the classes hold the whole list.
 //!
-//! The order of contacts (class, wall, i, j) decides the order of every sum, so it depends on nothing but the contacts.
+//! The order of contacts (class, wall or image, i, j) decides the order of every sum, so it depends on nothing but the contacts.
 
 use crate::dem::interaction::Bond;
 use crate::dem::law::{KN, LEDGER, REFERENCE, Rows};
@@ -35,6 +35,8 @@ pub(crate) struct Key {
     pub(crate) at_wall: bool,
     /// The second particle (above i), or the wall.
     pub(crate) j: u32,
+    /// Image of the second particle in a periodic cell; 0 for itself.
+    pub(crate) image: u8,
 }
 
 /// Contacts of one class: between particles, or with one wall.
@@ -44,6 +46,8 @@ pub(crate) struct Section {
     pub(crate) class: usize,
     /// The wall, for contacts with one.
     pub(crate) wall: Option<u32>,
+    /// Image of the second ends in a periodic cell; 0 for themselves.
+    pub(crate) image: u8,
     /// Real contacts; the last block is filled up with idle ones.
     pub(crate) count: usize,
     /// The contacts before this one belong to another stretch, which computes them too.
@@ -72,6 +76,7 @@ impl Section {
         Self {
             class,
             wall,
+            image: 0,
             count: contacts,
             own_from: 0,
             ends: vec![dummy; blocks],
@@ -83,13 +88,13 @@ impl Section {
 
     /// Its place in the order of sections.
     pub(crate) fn rank(&self) -> (bool, usize, u32) {
-        (self.wall.is_some(), self.class, self.wall.unwrap_or(0))
+        (self.wall.is_some(), self.class, self.wall.unwrap_or(u32::from(self.image)))
     }
 
     /// The key of contact `c`.
     pub(crate) fn key(&self, c: usize) -> Key {
         let [i, j] = self.ends[c / WIDEST].map(|end| end[c % WIDEST]);
-        Key { i, at_wall: self.wall.is_some(), j: self.wall.unwrap_or(j) }
+        Key { i, at_wall: self.wall.is_some(), j: self.wall.unwrap_or(j), image: self.image }
     }
 
     /// Sets the ends of contact `c`.
@@ -178,7 +183,7 @@ impl Packed {
         &mut self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
     }
 
-    /// Sections in the order (wall or not, class, wall), contacts by (i, j) within each; of the contacts that touch
+    /// Sections in the order (wall or not, class, wall or image), contacts by (i, j) within each; of the contacts that touch
     /// `particles`, a stretch of all `total` ones.
     pub(crate) fn sections<S: Space>(&self, total: usize, particles: &Range<usize>) -> Vec<Section> {
         let own = |p: u32| particles.contains(&(p as usize));
@@ -189,7 +194,7 @@ impl Packed {
         let mut order: Vec<u32> = (0..self.keys.len() as u32).filter(touches).collect();
         let place = |k: u32| {
             let (key, class) = self.keys[k as usize];
-            (key.at_wall, class, if key.at_wall { key.j } else { 0 }, key.i, key.j)
+            (key.at_wall, class, if key.at_wall { key.j } else { u32::from(key.image) }, key.i, key.j)
         };
         order.sort_unstable_by_key(|&k| place(k));
         let same = |a: &u32, b: &u32| {
@@ -203,6 +208,7 @@ impl Packed {
         let (key, class) = self.keys[chunk[0] as usize];
         let wall = key.at_wall.then_some(key.j);
         let mut section = Section::new::<S>(class as usize, wall, chunk.len(), total);
+        section.image = key.image;
         // i < j, so a contact whose i lies elsewhere has it before the stretch.
         section.own_from = chunk.partition_point(|&k| (self.keys[k as usize].0.i as usize) < particles.start);
         for (c, &k) in chunk.iter().enumerate() {

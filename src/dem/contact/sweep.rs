@@ -1,6 +1,7 @@
 //! The one contact loop: geometry, law, loads, for every block of a section.
 
 use super::section::{LawKind, Section};
+use crate::dem::boundary::Image;
 use crate::dem::law::{
     BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Rows, Viscous,
 };
@@ -16,6 +17,17 @@ pub(crate) struct Face<S: Space> {
     pub(crate) normal: Vector<S>,
     /// Velocity.
     pub(crate) velocity: Vector<S>,
+}
+
+/// What the second ends of a section are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Second<'a, S: Space> {
+    /// Balls.
+    Balls,
+    /// Images of balls in a periodic cell.
+    Images(&'a Image<S>),
+    /// A wall.
+    Wall(&'a Face<S>),
 }
 
 /// What a sweep reads besides its section.
@@ -56,6 +68,15 @@ fn pair_touch<S: Space, L: Lane>(i: &End<S, L>, j: &End<S, L>, dt: L) -> Touch<S
     S::touch(i, j, apart.times(inverse), gap, [i.radius + half, j.radius + half], inverse, dt)
 }
 
+/// An end at its image.
+#[inline(always)]
+fn shifted<S: Space, L: Lane>(mut end: End<S, L>, image: &Image<S>) -> End<S, L> {
+    let lanes = |v: Vector<S>| S::Vector::<L>::build(|k| L::splat(v.at(k)));
+    end.position = end.position.plus(lanes(image.shift));
+    end.velocity = end.velocity.plus(lanes(image.velocity));
+    end
+}
+
 /// Touch of a ball and a wall.
 #[inline(always)]
 fn wall_touch<S: Space, L: Lane>(i: &End<S, L>, face: &Face<S>, dt: L) -> Touch<S, L> {
@@ -78,23 +99,23 @@ fn wall_touch<S: Space, L: Lane>(i: &End<S, L>, face: &Face<S>, dt: L) -> Touch<
 pub(crate) fn sweep_section<S: Space, L: Lane>(
     kind: LawKind,
     constants: &Constants,
-    face: Option<&Face<S>>,
+    second: Second<'_, S>,
     section: &mut Section,
     task: &Sweep<'_>,
     loads: &mut [Quad],
     breaks: &mut Vec<Break>,
 ) {
     match kind {
-        LawKind::Linear => blocks::<S, L, LinearLaw>(constants, face, section, task, loads, breaks),
-        LawKind::ContactBond => blocks::<S, L, ContactBondLaw>(constants, face, section, task, loads, breaks),
-        LawKind::ParallelBond => blocks::<S, L, ParallelBondLaw>(constants, face, section, task, loads, breaks),
+        LawKind::Linear => blocks::<S, L, LinearLaw>(constants, second, section, task, loads, breaks),
+        LawKind::ContactBond => blocks::<S, L, ContactBondLaw>(constants, second, section, task, loads, breaks),
+        LawKind::ParallelBond => blocks::<S, L, ParallelBondLaw>(constants, second, section, task, loads, breaks),
     }
 }
 
 #[inline(always)]
 fn blocks<S: Space, L: Lane, K: Law<S>>(
     constants: &Constants,
-    face: Option<&Face<S>>,
+    second: Second<'_, S>,
     section: &mut Section,
     task: &Sweep<'_>,
     loads: &mut [Quad],
@@ -106,20 +127,28 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
     let wall = section.wall;
     for (b, (ends, rows)) in section.ends.iter().zip(section.rows.chunks_exact_mut(Rows::<S>::COUNT)).enumerate() {
         for at in (0..WIDEST).step_by(L::WIDTH) {
-            let (first, second) = (&ends[0][at..at + L::WIDTH], &ends[1][at..at + L::WIDTH]);
+            let (first, others) = (&ends[0][at..at + L::WIDTH], &ends[1][at..at + L::WIDTH]);
             let i = S::ends::<L>(task.records, first);
-            let touch = match face {
-                None => pair_touch(&i, &S::ends::<L>(task.records, second), dt),
-                Some(face) => wall_touch(&i, face, dt),
+            let touch = match second {
+                Second::Balls => pair_touch(&i, &S::ends::<L>(task.records, others), dt),
+                Second::Images(image) => pair_touch(&i, &shifted(S::ends::<L>(task.records, others), image), dt),
+                Second::Wall(face) => wall_touch(&i, face, dt),
             };
-            let drag = viscous.then(|| drag(constants, task, first, face.is_none().then_some(second), rows, at));
+            let balls = (!matches!(second, Second::Wall(_))).then_some(others);
+            let drag = viscous.then(|| drag(constants, task, first, balls, rows, at));
             let mut ledger = Ledger(section.ledger.get_mut(b * LEDGER..(b + 1) * LEDGER));
             let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at, &mut ledger);
-            match face {
-                None => S::push_both(loads, [first, second], &touch, &load),
-                Some(face) => {
+            match second {
+                Second::Balls => S::push_both(loads, [first, others], &touch, &load),
+                Second::Images(image) => {
                     if ledger.open() {
-                        ledger.charge(BOUNDARY, at, wall_work(face, task.dt, &touch, &load));
+                        ledger.charge(BOUNDARY, at, work(image.velocity, task.dt, &touch, &load));
+                    }
+                    S::push_both(loads, [first, others], &touch, &load);
+                }
+                Second::Wall(face) => {
+                    if ledger.open() {
+                        ledger.charge(BOUNDARY, at, work(face.velocity, task.dt, &touch, &load));
                     }
                     S::push_one(loads, first, &touch, &load);
                     react(&mut section.reactions[b * S::DIMENSION..], at, &touch, &load);
@@ -128,7 +157,7 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
             if let Some(broken) = broken {
                 let (tension, shear) = (L::bits(broken.tension), L::bits(broken.shear));
                 let places = Places::new(&i, &touch);
-                note(class, wall, [first, second], [tension, tension | shear], &places, breaks);
+                note(class, wall, [first, others], [tension, tension | shear], &places, breaks);
             }
         }
     }
@@ -160,10 +189,10 @@ fn drag<L: Lane>(
     }
 }
 
-/// Work of a moving wall on the ball, J.
+/// Work of a moving wall on the ball, or of a moving cell on what it holds, J.
 #[inline(always)]
-fn wall_work<S: Space, L: Lane>(face: &Face<S>, dt: f64, touch: &Touch<S, L>, load: &Load<S, L>) -> L {
-    let way = face.velocity.times(dt);
+fn work<S: Space, L: Lane>(velocity: Vector<S>, dt: f64, touch: &Touch<S, L>, load: &Load<S, L>) -> L {
+    let way = velocity.times(dt);
     S::force(touch, load).dot(S::Vector::<L>::build(|k| L::splat(way.at(k))))
 }
 

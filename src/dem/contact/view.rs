@@ -24,6 +24,8 @@ pub struct Contact<S: Space> {
     pub point: Vector<S>,
     /// From the centre of the first end to that of the second (to the contact point at a wall), m.
     pub branch: Vector<S>,
+    /// From the second end to its image that is meant, m; zero but across the faces of a periodic cell.
+    pub shift: Vector<S>,
     /// Distance of the surfaces, m.
     pub gap: f64,
     /// Reference gap of the linear spring, m.

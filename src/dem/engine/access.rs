@@ -161,6 +161,16 @@ impl<S: Space> Engine<S> {
         sum
     }
 
+    /// Edges of the periodic cell now, m; as many as the space has dimensions.
+    pub fn cell_edges(&self) -> Option<Vec<Vector<S>>> {
+        self.cell.as_ref().map(|cell| cell.edges[..S::DIMENSION].to_vec())
+    }
+
+    /// Volume of the periodic cell now (area in the plane), m³ (m²).
+    pub fn cell_volume(&self) -> Option<f64> {
+        self.cell.as_ref().map(|cell| cell.volume())
+    }
+
     /// All listed contacts, in the engine's order.
     pub fn contacts(&self) -> impl Iterator<Item = Contact<S>> + '_ {
         self.stretches().flat_map(move |(section, own)| own.map(move |c| self.contact(section, c)))
@@ -175,7 +185,7 @@ impl<S: Space> Engine<S> {
         if key.at_wall {
             return self.walls[key.j as usize].face.normal.times(-1.0);
         }
-        let apart = self.position_of(key.j as usize).minus(self.position_of(key.i as usize));
+        let apart = self.apart(key);
         apart.times(1.0 / apart.norm())
     }
 
@@ -208,6 +218,7 @@ impl<S: Space> Engine<S> {
             normal,
             point: x.plus(normal.times(reach)),
             branch: normal.times(if key.at_wall { reach } else { self.radii[i] + self.radii[j] + gap }),
+            shift: self.shift(key),
             gap,
             reference: value(REFERENCE),
             bonded,

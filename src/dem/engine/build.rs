@@ -2,7 +2,7 @@
 
 use super::{Class, Engine, Model, MovingWall};
 use crate::dem::body::{Rigid, set_kinematics, spin_place};
-use crate::dem::boundary::{Motion, Wall};
+use crate::dem::boundary::{Motion, MovingCell, Wall};
 use crate::dem::contact::{Face, LawKind};
 use crate::dem::error::Faults;
 use crate::dem::interaction::ContactTable;
@@ -35,6 +35,9 @@ impl<S: Space> Engine<S> {
         engine.relist();
         engine.derive_step();
         engine.choose_masses();
+        if let Some(cell) = &model.settings.cell {
+            engine.strain_cell(cell.rate)?;
+        }
         Ok(engine)
     }
 
@@ -75,6 +78,7 @@ impl<S: Space> Engine<S> {
             clump_place: vec![0; model.clumps.len()],
             clump_caller: Vec::with_capacity(model.clumps.len()),
             walls: Vec::with_capacity(model.walls.len()),
+            cell: model.settings.cell.as_ref().map(MovingCell::new),
             domains: Vec::new(),
             threads: 1,
             width: Width::detect(),

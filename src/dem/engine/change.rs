@@ -7,7 +7,7 @@ use crate::dem::boundary::{Motion, Wall};
 use crate::dem::contact::LawKind;
 use crate::dem::error::Faults;
 use crate::dem::interaction::ContactTable;
-use crate::dem::law::{KN, Rows};
+use crate::dem::law::Rows;
 use crate::dem::simd::{Same, Width};
 use crate::dem::space::{Space, Spin, Tuple, Vector};
 
@@ -97,10 +97,35 @@ impl<S: Space> Engine<S> {
                 rows[Rows::<S>::COHESION] = f64::INFINITY;
                 rows[Rows::<S>::BOND..].fill(0.0);
             }
-            rows[KN] = self.linear_stiffness(key);
+            self.set_stiffness(key, rows);
         }
         self.adopt(&all);
         self.renew();
+        Ok(())
+    }
+
+    /// Strains a periodic cell from now on with the velocity gradient `rate` (1/s). The bodies take part from the start:
+    /// their velocities gain what the change of the gradient gives at their places.
+    ///
+    /// # Errors
+    /// No cell, or a rate that is not finite.
+    pub fn strain_cell(&mut self, rate: [[f64; 3]; 3]) -> Result<(), Faults> {
+        super::validate::check_rate(self.cell.is_some(), &rate)?;
+        let Some(cell) = &mut self.cell else { return Ok(()) };
+        let mut gain = cell.clone();
+        gain.rate = std::array::from_fn(|a| std::array::from_fn(|b| rate[a][b] - cell.rate[a][b]));
+        cell.rate = rate;
+        let low = gain.low;
+        for p in (0..self.caller.len()).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
+            let (x, v) = (self.position_of(p), crate::dem::body::velocity::<S>(&self.records, p));
+            let (v, w) = (v.plus(gain.carried(x.minus(low))), crate::dem::body::spin::<S>(&self.records, p));
+            set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, v, w);
+        }
+        for clump in &mut self.clumps {
+            let velocity = clump.velocity.plus(gain.carried(clump.centre.minus(low)));
+            clump.set_motion(velocity, clump.spin);
+            clump.place(&mut Same(&mut self.records));
+        }
         Ok(())
     }
 
@@ -109,7 +134,7 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// All faults of the wall.
     pub fn add_wall(&mut self, wall: &Wall<S>) -> Result<usize, Faults> {
-        super::validate::check_wall(self.walls.len(), wall)?;
+        super::validate::check_wall(self.walls.len(), wall, self.cell.is_some())?;
         self.walls.push(moving(wall));
         if let Err(faults) = super::validate::check_table(&self.table, &self.meetings()) {
             self.walls.pop();

@@ -50,6 +50,9 @@ impl<S: Space> Engine<S> {
     pub(super) fn adopt(&mut self, listed: &Packed) {
         self.divide(listed);
         self.origins = (0..self.caller.len()).map(|p| position::<S>(&self.records, p)).collect();
+        if let Some(cell) = &mut self.cell {
+            cell.origin = cell.edges;
+        }
         for wall in &mut self.walls {
             wall.origin = wall.face.point;
             wall.stiffness = 0.0;
@@ -80,22 +83,42 @@ impl<S: Space> Engine<S> {
     fn candidates(&self) -> Vec<Key> {
         let n = self.caller.len();
         let positions: Vec<Vector<S>> = (0..n).map(|p| position::<S>(&self.records, p)).collect();
-        let flat: Vec<[f64; 3]> =
-            positions.iter().map(|x| std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })).collect();
+        let flat: Vec<[f64; 3]> = positions.iter().map(coordinates::<S>).collect();
         let mut keys: Vec<Key> = pairs(&flat, &self.radii, &self.bodies, self.margin)
             .into_iter()
-            .map(|(i, j)| Key { i, at_wall: false, j })
+            .map(|(i, j)| Key { i, at_wall: false, j, image: 0 })
             .collect();
         for (w, wall) in self.walls.iter().enumerate().filter(|(_, wall)| wall.present) {
             for (p, x) in positions.iter().enumerate() {
                 let gap = x.minus(wall.face.point).dot(wall.face.normal) - self.radii[p];
                 if gap < self.margin {
-                    keys.push(Key { i: p as u32, at_wall: true, j: w as u32 });
+                    keys.push(Key { i: p as u32, at_wall: true, j: w as u32, image: 0 });
                 }
             }
         }
+        keys.extend(self.across(&positions));
         keys.sort_unstable();
         keys
+    }
+
+    /// Keys of the contacts across the faces of a periodic cell, each once: from the particle that comes first.
+    fn across(&self, positions: &[Vector<S>]) -> Vec<Key> {
+        let Some(cell) = &self.cell else { return Vec::new() };
+        let largest = self.radii.iter().copied().fold(0.0, f64::max);
+        let images = cell.images_near(positions, 2.0 * largest + self.margin);
+        let n = positions.len();
+        let places = positions.iter().chain(images.iter().map(|(_, _, y)| y));
+        let flat: Vec<[f64; 3]> = places.map(coordinates::<S>).collect();
+        let origins: Vec<usize> = (0..n).chain(images.iter().map(|&(p, ..)| p)).collect();
+        let radii: Vec<f64> = origins.iter().map(|&p| self.radii[p]).collect();
+        let bodies: Vec<u32> = origins.iter().map(|&p| self.bodies[p]).collect();
+        let found = pairs(&flat, &radii, &bodies, self.margin).into_iter();
+        let outward = found.filter(|&(i, k)| (i as usize) < n && k as usize >= n && (i as usize) < origins[k as usize]);
+        let key = |(i, k): (u32, u32)| {
+            let (j, image, _) = images[k as usize - n];
+            Key { i, at_wall: false, j: j as u32, image }
+        };
+        outward.map(key).collect()
     }
 
     /// The new list: what was found, with the state of the old contacts, and old ones that must not be forgotten.
@@ -114,7 +137,7 @@ impl<S: Space> Engine<S> {
                 listed.push_new::<S>(key, self.class_of(key), 0.0);
             }
             let last = listed.keys.len() - 1;
-            listed.rows_mut::<S>(last)[KN] = self.linear_stiffness(key);
+            self.set_stiffness(key, listed.rows_mut::<S>(last));
         }
         for k in next..old.keys.len() {
             self.keep_if_needed(old, k, &mut listed);
@@ -143,8 +166,35 @@ impl<S: Space> Engine<S> {
             let face = &self.walls[key.j as usize].face;
             return x.minus(face.point).dot(face.normal) - self.radii[i];
         }
-        let j = key.j as usize;
-        position::<S>(&self.records, j).minus(x).norm() - (self.radii[i] + self.radii[j])
+        self.apart(key).norm() - (self.radii[i] + self.radii[key.j as usize])
+    }
+
+    /// From the centre of the first particle of a pair to that of the second, or to its image, m.
+    pub(super) fn apart(&self, key: Key) -> Vector<S> {
+        let [x, y] = [key.i, key.j].map(|p| position::<S>(&self.records, p as usize));
+        let apart = y.minus(x);
+        if key.image == 0 { apart } else { apart.plus(self.shift(key)) }
+    }
+
+    /// From the second particle of a pair to the image that is meant, m.
+    pub(super) fn shift(&self, key: Key) -> Vector<S> {
+        match &self.cell {
+            Some(cell) if key.image != 0 => cell.image(key.image).shift,
+            _ => Vector::<S>::zero(),
+        }
+    }
+
+    /// Gives a contact the stiffness of its class and radii. An incremental spring keeps its force.
+    pub(super) fn set_stiffness(&self, key: Key, rows: &mut [f64]) {
+        let (class, kn) = (self.class_of(key), self.linear_stiffness(key));
+        if self.classes[class as usize].constants.incremental && rows[KN] > 0.0 && rows[KN] != kn {
+            let gap = self.gap(key);
+            let overlap = rows[REFERENCE] - gap;
+            if overlap > 0.0 {
+                rows[REFERENCE] = gap + overlap * rows[KN] / kn;
+            }
+        }
+        rows[KN] = kn;
     }
 
     /// Radii that a contact stands between, ∞ for a wall.
@@ -170,6 +220,12 @@ impl<S: Space> Engine<S> {
     pub(super) fn true_travel(&self) -> f64 {
         let moved = |(p, origin): (usize, &Vector<S>)| position::<S>(&self.records, p).minus(*origin).norm();
         let balls = self.origins.iter().enumerate().map(moved).fold(0.0, f64::max);
-        self.walls.iter().map(|w| w.face.point.minus(w.origin).norm()).fold(balls, f64::max)
+        let bodies = self.walls.iter().map(|w| w.face.point.minus(w.origin).norm()).fold(balls, f64::max);
+        self.cell.as_ref().map_or(bodies, |cell| bodies + 0.5 * cell.travelled())
     }
+}
+
+/// Three coordinates, the third 0 in the plane.
+pub(super) fn coordinates<S: Space>(x: &Vector<S>) -> [f64; 3] {
+    std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })
 }

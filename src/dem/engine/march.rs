@@ -7,8 +7,8 @@
 use super::domain::Domain;
 use super::{Class, Engine, MovingWall};
 use crate::dem::body::Rigid;
-use crate::dem::boundary::Motion;
-use crate::dem::contact::{Break, Sweep, sweep_section};
+use crate::dem::boundary::{Motion, MovingCell};
+use crate::dem::contact::{Break, Second, Sweep, sweep_section};
 use crate::dem::damping::damped;
 use crate::dem::simd::{Board, Kernel, Lane, Quad, Rows, Update};
 use crate::dem::space::{Space, Tuple};
@@ -74,6 +74,7 @@ impl Notes {
 #[derive(Clone, Debug)]
 pub(super) struct Outcome<S: Space> {
     pub(super) walls: Vec<MovingWall<S>>,
+    pub(super) cell: Option<MovingCell<S>>,
     pub(super) steps: u64,
     pub(super) travelled: f64,
     pub(super) stale: bool,
@@ -88,6 +89,7 @@ pub(super) struct March<'a, S: Space> {
     pub(super) domain: &'a mut Domain,
     pub(super) clumps: &'a mut [Rigid<S>],
     pub(super) walls: Vec<MovingWall<S>>,
+    pub(super) cell: Option<MovingCell<S>>,
     pub(super) board: Board<'a>,
 }
 
@@ -97,14 +99,17 @@ impl<S: Space> Kernel for March<'_, S> {
     #[inline(always)]
     fn run<L: Lane>(mut self) -> Outcome<S> {
         let orders = self.orders;
-        let mut end =
-            Outcome { walls: Vec::new(), steps: 0, travelled: orders.travelled, stale: false, unstable: None };
+        let (steps, travelled) = (0, orders.travelled);
+        let mut end = Outcome { walls: Vec::new(), cell: None, steps, travelled, stale: false, unstable: None };
         while end.steps < orders.steps && !end.stale {
             let parity = (end.steps % 2) as usize;
             self.forces::<L>(orders.first_step + end.steps);
             let update = Integrate { orders, domain: &mut *self.domain, clumps: &mut *self.clumps };
             let fastest = self.board.update(update);
             move_walls(&mut self.walls, orders.dt);
+            if let Some(cell) = &mut self.cell {
+                cell.advance(orders.dt);
+            }
             self.tell(parity, fastest);
             self.board.meet();
             end.steps += 1;
@@ -112,6 +117,7 @@ impl<S: Space> Kernel for March<'_, S> {
             let speeds = &orders.notes.speeds[parity];
             let balls = speeds.iter().map(|s| f64::from_bits(s.load(Ordering::Relaxed))).fold(0.0, f64::max);
             let fastest = self.walls.iter().map(|w| w.face.velocity.norm()).fold(balls, f64::max);
+            let fastest = self.cell.as_ref().map_or(fastest, |cell| fastest + 0.5 * cell.speed());
             let way = fastest * orders.dt;
             end.travelled += way;
             end.stale = 2.0 * end.travelled > orders.reach;
@@ -119,7 +125,7 @@ impl<S: Space> Kernel for March<'_, S> {
                 (end.stale, end.unstable) = (true, Some(way));
             }
         }
-        end.walls = self.walls;
+        (end.walls, end.cell) = (self.walls, self.cell);
         end
     }
 }
@@ -133,8 +139,13 @@ impl<S: Space> March<'_, S> {
         let mut broken: Vec<Break> = Vec::new();
         for section in sections {
             let class = &self.orders.classes[section.class];
-            let face = section.wall.map(|w| &self.walls[w as usize].face);
-            sweep_section::<S, L>(class.law, &class.constants, face, section, &task, loads, &mut broken);
+            let image = self.cell.as_ref().filter(|_| section.image != 0).map(|cell| cell.image(section.image));
+            let second = match (section.wall, &image) {
+                (Some(w), _) => Second::Wall(&self.walls[w as usize].face),
+                (None, Some(image)) => Second::Images(image),
+                (None, None) => Second::Balls,
+            };
+            sweep_section::<S, L>(class.law, &class.constants, second, section, &task, loads, &mut broken);
         }
         // A bond across two stretches breaks in both; its first particle's owner reports it.
         breaks.extend(broken.into_iter().filter(|b| particles.contains(&(b.i as usize))).map(|b| (step, b)));

@@ -13,7 +13,7 @@ mod timestep;
 mod validate;
 
 use super::body::Rigid;
-use super::boundary::{Motion, Wall};
+use super::boundary::{Cell, Motion, MovingCell, Wall};
 use super::contact::{Face, LawKind};
 use super::interaction::ContactTable;
 use super::law::{Constants, LEDGER};
@@ -39,6 +39,8 @@ pub struct Settings<S: Space> {
     pub masses: Masses,
     /// Corners of the box that no particle's centre may leave, m.
     pub bounds: Option<[Vector<S>; 2]>,
+    /// A periodic cell, instead of walls. Velocities of the model come on top of the cell's own motion.
+    pub cell: Option<Cell<S>>,
     /// Overlap over the smaller radius above which a start is refused; infinite while a packing is being made.
     pub overlap_limit: f64,
 }
@@ -53,6 +55,7 @@ impl<S: Space> Default for Settings<S> {
             fixed_step: None,
             masses: Masses::Real,
             bounds: None,
+            cell: None,
             overlap_limit: 0.5,
         }
     }
@@ -136,6 +139,7 @@ pub struct Engine<S: Space> {
     clump_place: Vec<u32>,
     clump_caller: Vec<u32>,
     walls: Vec<MovingWall<S>>,
+    cell: Option<MovingCell<S>>,
     domains: Vec<Domain>,
     threads: usize,
     width: Width,

@@ -80,9 +80,9 @@ impl<S: Space> Engine<S> {
         for (index, domain) in domains.iter_mut().enumerate() {
             let (own, others) = rest.split_at_mut(domain.clumps.len());
             rest = others;
-            let (orders, walls, width) = (&orders, self.walls.clone(), self.width);
+            let (orders, walls, cell, width) = (&orders, self.walls.clone(), self.cell.clone(), self.width);
             tasks.push(move |board: Board<'_>| {
-                dispatch(width, March { orders, index, domain, clumps: own, walls, board })
+                dispatch(width, March { orders, index, domain, clumps: own, walls, cell, board })
             });
         }
         let mut outcomes = exchange(&mut records, &mut self.spare, &ranges, tasks);
@@ -92,7 +92,7 @@ impl<S: Space> Engine<S> {
 
     /// Takes over what a march left, and judges it.
     fn take_in(&mut self, outcome: Outcome<S>) -> Result<(), Failure> {
-        self.walls = outcome.walls;
+        (self.walls, self.cell) = (outcome.walls, outcome.cell);
         self.note_cracks();
         self.step += outcome.steps;
         self.travelled = outcome.travelled;
@@ -126,7 +126,8 @@ impl<S: Space> Engine<S> {
             }
             let outside =
                 |[low, high]: [Vector<S>; 2]| (0..S::DIMENSION).any(|k| x.at(k) < low.at(k) || x.at(k) > high.at(k));
-            if self.settings.bounds.is_some_and(outside) {
+            let strayed = self.cell.as_ref().is_some_and(|cell| !cell.holds(x));
+            if strayed || self.settings.bounds.is_some_and(outside) {
                 return Err(Failure::Escape { particle, step: self.step });
             }
         }
@@ -138,7 +139,7 @@ impl<S: Space> Engine<S> {
         let mut breaks: Vec<(u64, Break)> = self.domains.iter_mut().flat_map(|d| d.breaks.drain(..)).collect();
         breaks.sort_unstable_by_key(|(step, b)| (*step, b.at_wall, b.class, b.i, b.j));
         for (step, b) in breaks {
-            let key = Key { i: b.i, at_wall: b.at_wall, j: b.j };
+            let key = Key { i: b.i, at_wall: b.at_wall, j: b.j, image: 0 };
             let (i, j) = (b.i as usize, b.j as usize);
             let [first, second] = self.contact_radii(key);
             self.cracks.push(Crack {

@@ -100,7 +100,7 @@ impl<S: Space> Engine<S> {
         let normal = if key.at_wall {
             self.walls[key.j as usize].face.normal.times(-1.0)
         } else {
-            let apart = position::<S>(&self.records, key.j as usize).minus(x);
+            let apart = self.apart(key);
             apart.times(1.0 / apart.norm())
         };
         let point = x.plus(normal.times(first + 0.5 * gap));
@@ -109,6 +109,7 @@ impl<S: Space> Engine<S> {
         for p in ends {
             let body = self.bodies[p] as usize;
             let centre = self.clumps.get(body).map_or_else(|| position::<S>(&self.records, p), |clump| clump.centre);
+            let centre = if p == i { centre } else { centre.plus(self.shift(key)) };
             let r = flat::<S>(point.minus(centre));
             let across = [r[1] * n[2] - r[2] * n[1], r[2] * n[0] - r[0] * n[2], r[0] * n[1] - r[1] * n[0]];
             let square: f64 = r.iter().map(|x| x * x).sum();

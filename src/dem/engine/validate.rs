@@ -1,7 +1,8 @@
 //! Checks of a model: all faults at once.
 
 use super::Model;
-use crate::dem::boundary::{Motion, Wall};
+use super::list::coordinates;
+use crate::dem::boundary::{Motion, MovingCell, Wall};
 use crate::dem::error::{Fault, Faults};
 use crate::dem::interaction::{Bond, BondStiffness, ContactTable, Interaction, Stiffness};
 use crate::dem::neighbour::pairs;
@@ -12,6 +13,7 @@ use std::collections::BTreeMap;
 const POSITIVE: &str = "a number above 0";
 const NOT_NEGATIVE: &str = "0 or more";
 const FINITE: &str = "a finite number";
+const WALLS_IN_CELL: &str = "number of walls in a periodic cell";
 
 fn ok(faults: Vec<Fault>) -> Result<(), Faults> {
     if faults.is_empty() { Ok(()) } else { Err(Faults(faults)) }
@@ -30,6 +32,7 @@ pub(super) fn check<S: Space>(model: &Model<S>) -> Result<(), Faults> {
         faults.extend(wall_faults(w, wall));
     }
     settings(model, &mut faults);
+    cell(model, &mut faults);
     let members = model.particles.iter().map(|p| p.group).zip(clump_of.iter().copied());
     let meetings = meetings(members, model.walls.iter().map(|w| w.group));
     faults.extend(table_faults(&model.contacts, &meetings));
@@ -45,8 +48,48 @@ pub(super) fn check_table(table: &ContactTable, meetings: &[(Group, Group)]) -> 
 }
 
 /// Checks one wall.
-pub(super) fn check_wall<S: Space>(w: usize, wall: &Wall<S>) -> Result<(), Faults> {
-    ok(wall_faults(w, wall))
+pub(super) fn check_wall<S: Space>(w: usize, wall: &Wall<S>, in_cell: bool) -> Result<(), Faults> {
+    let mut faults = wall_faults(w, wall);
+    faults.extend(in_cell.then_some(Fault::Setting { quantity: WALLS_IN_CELL, value: 1.0, wanted: "none" }));
+    ok(faults)
+}
+
+/// Checks the velocity gradient of a cell.
+pub(super) fn check_rate(has_cell: bool, rate: &[[f64; 3]; 3]) -> Result<(), Faults> {
+    let mut faults = rate_faults(rate);
+    faults.extend((!has_cell).then_some(Fault::Setting { quantity: "periodic cell", value: 0.0, wanted: "one" }));
+    ok(faults)
+}
+
+fn rate_faults(rate: &[[f64; 3]; 3]) -> Vec<Fault> {
+    let bad = rate.iter().flatten().find(|x| !x.is_finite());
+    bad.map(|&value| Fault::Setting { quantity: "rate of the cell", value, wanted: FINITE }).into_iter().collect()
+}
+
+/// A cell: large enough that no pair meets twice, all bodies inside, no walls.
+fn cell<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) {
+    let Some(cell) = &model.settings.cell else { return };
+    let largest = model.particles.iter().map(|p| p.radius).fold(0.0, f64::max);
+    for k in 0..S::DIMENSION {
+        let (low, edge) = (cell.low.at(k), cell.edges.at(k));
+        if !low.is_finite() {
+            faults.push(Fault::Setting { quantity: "corner of the cell", value: low, wanted: FINITE });
+        }
+        if !(edge >= 6.0 * largest && edge.is_finite()) {
+            let wanted = "at least six times the largest radius";
+            faults.push(Fault::Setting { quantity: "edge of the cell", value: edge, wanted });
+        }
+        let outside = |x: f64| !(x >= low && x <= low + edge);
+        for (particle, p) in model.particles.iter().enumerate().filter(|(_, p)| outside(p.position.at(k))) {
+            let value = p.position.at(k);
+            faults.push(Fault::Particle { particle, quantity: "position", value, wanted: "inside the cell" });
+        }
+    }
+    faults.extend(rate_faults(&cell.rate));
+    if !model.walls.is_empty() {
+        let value = model.walls.len() as f64;
+        faults.push(Fault::Setting { quantity: WALLS_IN_CELL, value, wanted: "none" });
+    }
 }
 
 /// Pairs of groups that can meet: of different bodies, and of particles with walls.
@@ -231,18 +274,32 @@ fn interaction_faults(interaction: &Interaction, check: &mut impl FnMut(&'static
     check(strengths[2].0, strengths[2].1, strengths[2].1 >= 0.0 && strengths[2].1.is_finite(), NOT_NEGATIVE);
 }
 
-/// Starts too deep in one another, or with one centre.
+/// Starts too deep in one another, or with one centre, also across the faces of a cell.
 fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
-    let coordinates =
-        |x: &Vector<S>| -> [f64; 3] { std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 }) };
-    let positions: Vec<[f64; 3]> = model.particles.iter().map(|p| coordinates(&p.position)).collect();
-    let radii: Vec<f64> = model.particles.iter().map(|p| p.radius).collect();
-    for (i, j) in pairs(&positions, &radii, body, 0.0) {
-        let (a, b) = (&model.particles[i as usize], &model.particles[j as usize]);
-        let distance = b.position.minus(a.position).norm();
-        let overlap = (a.radius + b.radius - distance) / a.radius.min(b.radius);
+    let mut places: Vec<Vector<S>> = model.particles.iter().map(|p| p.position).collect();
+    let mut origins: Vec<usize> = (0..places.len()).collect();
+    if let Some(cell) = model.settings.cell.as_ref().map(MovingCell::new) {
+        let largest = model.particles.iter().map(|p| p.radius).fold(0.0, f64::max);
+        for (p, _, place) in cell.images_near(&places, 2.0 * largest) {
+            origins.push(p);
+            places.push(place);
+        }
+    }
+    let flat: Vec<[f64; 3]> = places.iter().map(coordinates::<S>).collect();
+    let radii: Vec<f64> = origins.iter().map(|&p| model.particles[p].radius).collect();
+    let bodies: Vec<u32> = origins.iter().map(|&p| body[p]).collect();
+    let n = model.particles.len();
+    for (i, j) in pairs(&flat, &radii, &bodies, 0.0) {
+        let [i, j] = [i, j].map(|k| k as usize);
+        let (a, b) = (origins[i], origins[j]);
+        // Across a face each pair is found from both sides; two images meet as their bodies do.
+        if i >= n || (j >= n && a > b) {
+            continue;
+        }
+        let distance = places[j].minus(places[i]).norm();
+        let overlap = (radii[i] + radii[j] - distance) / radii[i].min(radii[j]);
         if overlap > model.settings.overlap_limit || distance == 0.0 {
-            faults.push(Fault::Overlap { a: i as usize, b: j as usize, overlap });
+            faults.push(Fault::Overlap { a, b, overlap });
         }
     }
 }

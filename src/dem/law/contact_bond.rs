@@ -4,7 +4,7 @@
 //! (PFC 3), or drops its shear force (present PFC) when the class says so. No moment. The bond is in force where its
 //! tensile capacity is finite.
 
-use super::linear::slip_energy;
+use super::linear::{followed, slip_energy};
 use super::{
     BROKEN, Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
 };
@@ -28,7 +28,8 @@ impl<S: Space> Law<S> for ContactBondLaw {
         let kn = L::load(&rows[KN], at);
         let capacity = [L::load(&rows[Rows::<S>::TENSION], at), L::load(&rows[Rows::<S>::COHESION], at)];
         let before = infinite.above(capacity[0]);
-        let overlap = L::load(&rows[REFERENCE], at) - touch.gap;
+        let reference = L::load(&rows[REFERENCE], at);
+        let overlap = reference - touch.gap;
         let elastic = kn * overlap;
         let old = S::turned(load_shear::<S, L>(rows, SHEAR, at), touch);
         let ks = kn * L::splat(constants.shear_share);
@@ -45,6 +46,11 @@ impl<S: Space> Law<S> for ContactBondLaw {
             L::select(broken, after.at(k), whole)
         });
         store_shear::<S, L>(rows, SHEAR, at, shear);
+        if constants.incremental {
+            let free = followed(reference, touch.gap);
+            let held = L::select(broken, free, reference);
+            L::select(before, held, free).store(&mut rows[REFERENCE], at);
+        }
         if ledger.open() {
             // A break spends the pull of the spring and the shear force that is not kept; a slip what friction takes.
             let pull = (-elastic).max(zero);

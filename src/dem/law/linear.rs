@@ -1,6 +1,7 @@
 //! Linear contact: F_n = k_n max(0, g_r − g), F_s ← turned(F_s) + k_s Δ_s, |F_s| ≤ μ F_n.
 //!
 //! Absolute normal force, incremental shear (Cundall & Strack 1979, doi:10.1680/geot.1979.29.1.47; PFC `linear`).
+//! In the incremental form g_r follows the gap while the spring would pull: g_r ← max(g_r, min(g, 0)).
 //! g_r is the reference gap; it belongs to the pair and outlives a loss of contact. Dashpots act while the surfaces
 //! touch: 2 β √(m k) v in each direction, the shear one only while the contact does not slip. SI units; Δ_s is the
 //! displacement of j's surface relative to i's, F_s acts on i.
@@ -24,8 +25,12 @@ pub(crate) fn spring<S: Space, L: Lane>(
 ) -> (L, S::Shear<L>) {
     let zero = L::splat(0.0);
     let kn = L::load(&rows[KN], at);
-    let overlap = L::load(&rows[REFERENCE], at) - touch.gap;
+    let reference = L::load(&rows[REFERENCE], at);
+    let overlap = reference - touch.gap;
     let compression = kn * overlap.max(zero);
+    if constants.incremental {
+        followed(reference, touch.gap).store(&mut rows[REFERENCE], at);
+    }
     let limit = L::splat(constants.friction) * compression;
     let old = S::turned(load_shear::<S, L>(rows, SHEAR, at), touch);
     let ks = kn * L::splat(constants.shear_share);
@@ -46,6 +51,13 @@ pub(crate) fn spring<S: Space, L: Lane>(
         ledger.charge(DASHPOT, at, normal + drag.dot(touch.slide));
     }
     (L::select(touching, damped, zero), shear.plus(drag))
+}
+
+/// Reference gap of an incremental spring: it follows the surfaces as they part, up to the loss of contact, so that the
+/// force begins anew from there.
+#[inline(always)]
+pub(crate) fn followed<L: Lane>(reference: L, gap: L) -> L {
+    reference.max(gap.min(L::splat(0.0)))
 }
 
 /// Friction work of a step, (F_old + F_new)/2 · (F_trial − F_new)/k_s: what the shear displacement did and the spring did

@@ -11,7 +11,7 @@ pub(crate) use contact_bond::ContactBondLaw;
 pub(crate) use linear::LinearLaw;
 pub(crate) use parallel_bond::ParallelBondLaw;
 
-use super::interaction::{Bond, Interaction, ShearBreak};
+use super::interaction::{Bond, Interaction, NormalForce, ShearBreak};
 use super::simd::{Lane, Row};
 use super::space::{Load, Space, Touch, Tuple};
 
@@ -59,6 +59,8 @@ pub(crate) struct Constants {
     pub(crate) moment_factor: f64,
     /// tan φ.
     pub(crate) slope: f64,
+    /// Whether the reference gap follows a spring that is let go.
+    pub(crate) incremental: bool,
     /// β_n, β_s.
     pub(crate) dashpot: [f64; 2],
     /// Whether an unbonded dashpot may pull.
@@ -77,6 +79,7 @@ impl Constants {
             multiplier: 1.0,
             moment_factor: 0.0,
             slope: 0.0,
+            incremental: linear.normal_force == NormalForce::Incremental,
             dashpot: [linear.dashpot.normal, linear.dashpot.shear],
             tensile_dashpot: linear.dashpot.tensile,
             zero_shear: false,

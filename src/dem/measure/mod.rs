@@ -11,4 +11,4 @@ pub use cracks::{Crack, Mode};
 pub(crate) use energy::stored;
 pub use energy::{Energy, energy};
 pub use fabric::{Coordination, Link, coordination, fabric, links};
-pub use stress::{Region, stress};
+pub use stress::{Region, cell_stress, stress};

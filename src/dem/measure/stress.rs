@@ -44,8 +44,20 @@ impl<S: Space> Region<S> {
     }
 }
 
+/// Mean stress of a periodic cell, Pa, compression positive, row by row; nothing without a cell.
+pub fn cell_stress<S: Space>(engine: &Engine<S>) -> Option<[[f64; 3]; 3]> {
+    let volume = engine.cell_volume()?;
+    Some(virial(engine, |_| true).map(|row| row.map(|x| x / volume)))
+}
+
 /// Mean stress of a region, Pa, compression positive, row by row.
 pub fn stress<S: Space>(engine: &Engine<S>, region: &Region<S>) -> [[f64; 3]; 3] {
+    let volume = region.volume();
+    virial(engine, |x| region.holds(x)).map(|row| row.map(|x| x / volume))
+}
+
+/// −Σ f_a (x_c − X)_b over the contacts whose point is wanted, N·m.
+fn virial<S: Space>(engine: &Engine<S>, wanted: impl Fn(Vector<S>) -> bool) -> [[f64; 3]; 3] {
     let mut sum = [[0.0; 3]; 3];
     let centre = |particle: usize| match engine.clump_of(particle) {
         Some(clump) => engine.clump_centre(clump),
@@ -58,13 +70,12 @@ pub fn stress<S: Space>(engine: &Engine<S>, region: &Region<S>) -> [[f64; 3]; 3]
             }
         }
     };
-    for contact in engine.contacts().filter(|c| c.active && region.holds(c.point)) {
+    for contact in engine.contacts().filter(|c| c.active && wanted(c.point)) {
         let force = contact.force();
         add(force, contact.point.minus(centre(contact.particle)));
         if let Other::Particle(second) = contact.other {
-            add(force.times(-1.0), contact.point.minus(centre(second)));
+            add(force.times(-1.0), contact.point.minus(centre(second).plus(contact.shift)));
         }
     }
-    let volume = region.volume();
-    sum.map(|row| row.map(|x| x / volume))
+    sum
 }

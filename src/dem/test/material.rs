@@ -17,7 +17,7 @@
 //! Source: Su et al. 2021, doi:10.3390/ma14071627, sections 2.1 and 3.2, Tables 3 and 4.
 
 use crate::dem::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Group, Interaction, Linear};
-use crate::dem::{ParallelBond, ShearBreak, Stiffness};
+use crate::dem::{NormalForce, ParallelBond, ShearBreak, Stiffness};
 use serde::{Deserialize, Serialize};
 
 /// Contact group of mortar balls.
@@ -165,7 +165,7 @@ impl Material {
 
     fn linear(&self, modulus: f64, ratio: f64, friction: f64) -> Linear {
         let stiffness = Stiffness::Modulus { modulus, ratio, convention: self.bonding.convention };
-        Linear { stiffness, friction, dashpot: Dashpot::default() }
+        Linear { stiffness, normal_force: NormalForce::Absolute, friction, dashpot: Dashpot::default() }
     }
 
     fn bonded(&self, values: &Bonded) -> Interaction {
