@@ -43,7 +43,7 @@ fn other_targets_are_answered_from_the_surfaces_and_the_second_time_from_the_sto
     assert_eq!(found["solution"]["free"], 1.0);
     assert!(found["solution_set"].as_array().expect("rows").len() > 10);
     let text = space.stdout(&["calibrate", "w.toml", "--target", "y=18.5 MPa"]);
-    assert!(text.contains("the targets leave 1 directions free"), "{text}");
+    assert!(text.contains("the targets leave 1 direction free"), "{text}");
     let csv = space.stdout(&["calibrate", "w.toml", "--target", "y=18.5 MPa", "--csv"]);
     assert!(csv.starts_with("set,a,b,y [MPa],misfit,"), "{csv}");
     // The campaign's own calibration is as it was.
