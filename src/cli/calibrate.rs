@@ -69,7 +69,7 @@ impl Calibrate {
         let stop = Arc::new(AtomicBool::new(false));
         let report = asked.run(std::slice::from_ref(&asked.stage), 1, &Silent, &stop);
         let solution = asked.result(&report, &asked.stage)?;
-        if !self.json && !(self.csv && self.verify) {
+        if !(self.json || self.csv && self.verify) {
             let text = if self.csv { answer::csv(&solution, "solution") } else { answer::text(&asked, &solution) };
             super::output::write(&text);
         }

@@ -43,7 +43,7 @@ fn other_targets_are_answered_from_the_surfaces_and_the_second_time_from_the_sto
     assert_eq!(found["solution"]["free"], 1.0);
     assert!(found["solution_set"].as_array().expect("rows").len() > 10);
     let text = space.stdout(&["calibrate", "w.toml", "--target", "y=18.5 MPa"]);
-    assert!(text.contains("the targets leave 1 directions free"), "{text}");
+    assert!(text.contains("the targets leave 1 direction free"), "{text}");
     let csv = space.stdout(&["calibrate", "w.toml", "--target", "y=18.5 MPa", "--csv"]);
     assert!(csv.starts_with("set,a,b,y [MPa],misfit,"), "{csv}");
     // The campaign's own calibration is as it was.
@@ -121,4 +121,135 @@ fn every_fault_of_the_command_line_is_told() {
     assert!(told(&output).contains("name one with --stage: calibrate, other"), "{}", told(&output));
     let output = space.flow(&["calibrate", "w.toml", "--target", "y=16 MPa", "--stage", "calibrate", "--verify"]);
     assert!(told(&output).contains("no stage verifies `calibrate`"), "{}", told(&output));
+}
+
+#[test]
+fn calibrations_that_cannot_be_are_refused_with_the_place_and_a_remedy() {
+    let space = space(&["surfaces"]);
+    for (set, messages) in [
+        ("factors=[\"a\", \"c\"]", &["unknown factor `c`", "known are a, b", "--set:1:"][..]),
+        ("targets=[{ z = 3 }]", &["unknown response `z`", "known are y", "--set:1:"]),
+        ("ranges={ a = [3, 2] }", &["the range of `a` is empty: from 3 to 2", "--set:1:"]),
+        ("targets=[{ y = \"0 MPa\" }]", &["the target of `y` is 0", "use the denominator `largest`", "--set:1:"]),
+        (
+            "constraints=[{ terms = { a = 1 }, at_most = 1.2 }, { terms = { a = -1 }, at_most = -2 }]",
+            &["no point of the box meets `a ≤ 1.2`, `−a ≤ -2` together", "--set:1:"],
+        ),
+        ("weights={ y = -1 }", &["the weight of `y` is -1; weights must be positive", "--set:1:"]),
+        ("preference={ a = 7 }", &["`a` = 7 is not within 1 … 3", "--set:1:"]),
+    ] {
+        let output = space.flow(&["run", "w.toml", "calibrate", "--set", &format!("stage.calibrate.{set}")]);
+        assert_eq!(output.status.code(), Some(2), "{set}: {}", told(&output));
+        for message in messages {
+            assert!(told(&output).contains(message), "{set}: wanted `{message}` in {}", told(&output));
+        }
+    }
+    let output = space.flow(&["run", "w.toml", "calibrate", "--set", "stage.calibrate.ranges={ a = [0, 4] }"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    let message = "the range 0 … 4 of `a` leaves the domain 1 … 3 of the surface of `y` (narrow it";
+    assert!(told(&output).contains(message), "{}", told(&output));
+}
+
+const LABORATORY: &str = r#"
+[workflow]
+seed = 1
+[factor]
+a = { sets = "mortar.a", levels = [1, 3] }
+[response]
+y = { unit = "MPa" }
+[material.base]
+mortar = { a = 1 }
+[stage.lab]
+kind = "command"
+run = ["sh", "-c", "echo no peak >&2; exit 3"]
+material = "base"
+read.y = { file = "stdout", pattern = 'y = (\S+)', unit = "MPa" }
+on_failure = "record"
+[stage.calibrate]
+kind = "calibrate"
+simulator = "lab"
+factors = ["a"]
+targets = [{ y = "2 MPa" }]
+"#;
+
+#[test]
+fn a_calibration_whose_every_simulation_fails_ends_early_and_says_why() {
+    let space = Space::new();
+    space.write("w.toml", LABORATORY);
+    let output = space.flow(&["run", "w.toml"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    assert!(told(&output).contains("all 30 simulations failed; the first: "), "{}", told(&output));
+    assert!(told(&output).contains("exit status: 3 (look at the ranges of the factors"), "{}", told(&output));
+    let at_once = space.flow(&["calibrate", "w.toml", "--target", "y=2 MPa", "--stage", "calibrate"]);
+    assert_eq!(at_once.status.code(), Some(2));
+    assert!(told(&at_once).contains("`calibrate` calibrates by simulations"), "{}", told(&at_once));
+}
+
+const CURVE: &str = r#"
+[workflow]
+seed = 3
+[factor]
+Ec = { sets = "mortar.Ec", unit = "GPa", range = [10, 30] }
+sigma_c = { sets = "mortar.sigma_c", unit = "MPa", range = [10, 30] }
+[material.base]
+mortar = { Ec = "20 GPa", kn_ks = 2.5, sigma_c = "20 MPa", tau_c = "20 MPa", mu = 0.5 }
+aggregate = { Ec = "30 GPa", kn_ks = 2, mu = 0.5 }
+interface = { Ec = "10 GPa", kn_ks = 2.5, sigma_c = "15 MPa", tau_c = "15 MPa", mu = 0.5 }
+[stage.specimen]
+kind = "specimen"
+width = "20 mm"
+height = "40 mm"
+porosity = 0.16
+mean_radius = "1 mm"
+radius_ratio = 1.66
+density = "2000 kg/m^3"
+[stage.test]
+kind = "simulate"
+specimen = "specimen"
+material = "base"
+test = "uniaxial"
+platen_speed = "0.05 m/s"
+masses = "equal-step"
+[stage.calibrate]
+kind = "calibrate"
+simulator = "test"
+factors = ["Ec", "sigma_c"]
+curve = { strain = [0.0003, 0.0006, 0.0009], stress = ["6 MPa", "12 MPa", "18 MPa"] }
+constraints = [{ terms = { sigma_c = 1, Ec = -1 }, at_most = 5 }]
+evaluations = 12
+"#;
+
+/// A line of 20 GPa as the wanted curve, in every form of the misfit, with a constraint, on the engine itself.
+#[test]
+fn a_stress_strain_curve_is_followed_by_simulations() {
+    let space = Space::new();
+    space.write("w.toml", CURVE);
+    for settings in [
+        &["misfit=\"squares\"", "denominator=\"largest\""][..],
+        &["misfit=\"sum\""],
+        &["misfit=\"maximum\"", "denominator=\"computed\""],
+    ] {
+        let sets: Vec<String> = settings.iter().map(|set| format!("stage.calibrate.{set}")).collect();
+        let options: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
+        space.run(&options);
+        let show = ["show", "w.toml", "calibrate", "--json", "--table"];
+        let table = |name: &str| -> Value {
+            let text = space.stdout(&[&show[..], &[name], &options].concat());
+            serde_json::from_str(&text).expect("a JSON document")
+        };
+        let column = |table: &Value, name: &str| -> Vec<f64> {
+            let columns = table["columns"].as_array().expect("columns");
+            let found = columns.iter().find(|column| column["name"] == name).expect(name);
+            found["values"].as_array().expect("values").iter().filter_map(Value::as_f64).collect()
+        };
+        let expected = column(&table("prediction"), "expected");
+        for (expected, wanted) in expected.iter().zip([6.0, 12.0, 18.0]) {
+            assert!((expected / wanted - 1.0).abs() < 0.03, "{settings:?}: {expected} for {wanted}");
+        }
+        let history = table("history");
+        let points = column(&history, "sigma_c").into_iter().zip(column(&history, "Ec"));
+        assert!(
+            points.clone().count() == 12 && points.into_iter().all(|(sigma, modulus)| sigma - modulus <= 5.0 + 1e-6)
+        );
+    }
 }

@@ -1,7 +1,7 @@
 //! What a calibration found, for a reader and for programs.
 
 use super::Asked;
-use crate::artifact::{Artifact, Table, Values};
+use crate::artifact::{Artifact, Column, Table, Values};
 use crate::cli::show::{csv_text, rows_json, text as shown};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -12,13 +12,19 @@ pub(super) fn text(asked: &Asked, solution: &Artifact) -> String {
     let mut text = format!("{}\n\n", shown(&parameters(asked, solution)));
     if let Some(prediction) = solution.table("prediction") {
         let columns = ["response", "unit", "target", "expected", "low", "high", "deviation_percent"];
-        let columns = columns.iter().filter_map(|name| prediction.column(name).cloned()).collect();
+        let mut columns: Vec<Column> = columns.iter().filter_map(|name| prediction.column(name).cloned()).collect();
+        if let Some(Values::Reals(values)) = columns.last_mut().map(|column| &mut column.values) {
+            values.iter_mut().filter(|value| value.abs() < NOTHING).for_each(|value| *value = 0.0);
+        }
         let _ = writeln!(text, "{}\n", shown(&Table { about: String::new(), columns }));
         text.push_str(&warnings(prediction));
     }
     text.push_str(&remarks(asked, solution));
     text
 }
+
+/// A deviation below this, in percent, is rounding and shown as none.
+const NOTHING: f64 = 1e-6;
 
 /// One row per parameter: its value, and where it lies in the other solutions.
 fn parameters(asked: &Asked, solution: &Artifact) -> Table {
@@ -91,10 +97,11 @@ fn remarks(asked: &Asked, solution: &Artifact) -> String {
             settings["preference"].as_object().is_some_and(|own| !own.is_empty())
         });
         let near = if preferred { "the preferred point" } else { "the middle of the ranges" };
+        let directions = if free > 1.0 { "directions" } else { "direction" };
         let others = table(solution, "solution_set").rows();
         let _ = writeln!(
             text,
-            "not unique: the targets leave {free} directions free; this is the solution nearest {near}, \
+            "not unique: the targets leave {free} {directions} free; this is the solution nearest {near}, \
              and {others} others are in the table `solution_set` (--json)"
         );
     }

@@ -1,6 +1,7 @@
 //! The settings of a calibration, and what can be wrong with them before anything runs.
 
 use super::params::{FactorParam, ORDINATE, Params, TargetParam};
+use crate::optim::Error;
 use crate::optim::misfit::{Denominator, Form};
 use crate::optim::search::{Limits, Method};
 use crate::optim::{annealing, cma_es, differential, genetic, surrogate};
@@ -277,11 +278,34 @@ impl Calibrate {
         }
         if found.is_empty() {
             match self.params(context) {
-                Ok(params) => found.extend(params.faults().iter().map(|fault| Complaint::new("", fault.to_string()))),
+                Ok(params) => {
+                    let complaint = |fault: &Error| Complaint::new(self.key_of(fault), fault.to_string());
+                    found.extend(params.faults().iter().map(complaint));
+                }
                 Err(error) => found.push(Complaint { path: Vec::new(), message: error.message, hint: error.hint }),
             }
         }
         found
+    }
+
+    /// The key that a fault of the problem is about; empty where the workflow's factors decide.
+    fn key_of(&self, fault: &Error) -> &'static str {
+        match fault {
+            Error::Nothing { what: "factor" } | Error::Twice { .. } => "factors",
+            Error::EmptyRange { factor, .. } if self.ranges.contains_key(factor) => "ranges",
+            Error::Contradiction { .. } | Error::UnknownFactor { .. } => "constraints",
+            Error::ZeroTarget { .. } if self.curve.is_none() => "targets",
+            Error::Weight { response, .. } if self.weights.contains_key(response) => "weights",
+            Error::Outside { .. } => "preference",
+            Error::Nothing { .. }
+            | Error::EmptyRange { .. }
+            | Error::NotFinite { .. }
+            | Error::ZeroTarget { .. }
+            | Error::Weight { .. }
+            | Error::Setting { .. }
+            | Error::ForeignHistory { .. }
+            | Error::CurveTooShort { .. } => "",
+        }
     }
 
     /// Names that the workflow does not declare, or that are none of the calibrated factors.

@@ -78,8 +78,10 @@ fn places(model: &Model, response: &str, factors: &[FactorParam]) -> Result<Vec<
         let slack = ROUNDING * (axis.high - axis.low);
         if *low < axis.low - slack || *high > axis.high + slack {
             let (from, to) = (axis.low, axis.high);
+            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
             let message = format!(
-                "the range {low} … {high} {unit} of `{name}` leaves the domain {from} … {to} of the surface of `{response}`"
+                "the range {low} … {high}{unit} of `{name}` leaves the domain {from} … {to}{unit} of the surface of \
+                 `{response}`"
             );
             return Err(StageError::new(message).hint("narrow it: `ranges`, or run a wider design"));
         }
