@@ -110,10 +110,9 @@ fn vectors(text: &mut String, name: &str, values: &[[f64; 2]]) {
 }
 
 fn array(text: &mut String, kind: &str, name: &str, parts: usize, values: impl IntoIterator<Item = impl Display>) {
-    push(
-        text,
-        format_args!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{parts}\" format=\"ascii\">\n"),
-    );
+    // One component is VTK's default; told, some readers make a matrix of one column of it.
+    let parts_told = if parts > 1 { format!(" NumberOfComponents=\"{parts}\"") } else { String::new() };
+    push(text, format_args!("<DataArray type=\"{kind}\" Name=\"{name}\"{parts_told} format=\"ascii\">\n"));
     for (i, value) in values.into_iter().enumerate() {
         push(text, format_args!("{value}{}", if (i + 1) % (4 * parts) == 0 { '\n' } else { ' ' }));
     }
