@@ -83,7 +83,7 @@ impl Grid {
         text.push_str("</Points>\n<Cells>\n");
         array(&mut text, "Int64", "connectivity", 1, corners.iter().flatten());
         array(&mut text, "Int64", "offsets", 1, &ends);
-        array(&mut text, "UInt8", "types", 1, &vec![self.cells.kind(); count]);
+        array(&mut text, "UInt8", "types", 1, vec![self.cells.kind(); count]);
         text.push_str("</Cells>\n");
         for (what, fields) in [("PointData", &self.on_points), ("CellData", &self.on_cells)] {
             push(&mut text, format_args!("<{what}>\n"));
