@@ -83,7 +83,7 @@ impl Grid {
         text.push_str("</Points>\n<Cells>\n");
         array(&mut text, "Int64", "connectivity", 1, corners.iter().flatten());
         array(&mut text, "Int64", "offsets", 1, &ends);
-        array(&mut text, "UInt8", "types", 1, &vec![self.cells.kind(); count]);
+        array(&mut text, "UInt8", "types", 1, vec![self.cells.kind(); count]);
         text.push_str("</Cells>\n");
         for (what, fields) in [("PointData", &self.on_points), ("CellData", &self.on_cells)] {
             push(&mut text, format_args!("<{what}>\n"));
@@ -110,10 +110,9 @@ fn vectors(text: &mut String, name: &str, values: &[[f64; 2]]) {
 }
 
 fn array(text: &mut String, kind: &str, name: &str, parts: usize, values: impl IntoIterator<Item = impl Display>) {
-    push(
-        text,
-        format_args!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{parts}\" format=\"ascii\">\n"),
-    );
+    // One component is VTK's default; told, some readers make a matrix of one column of it.
+    let parts_told = if parts > 1 { format!(" NumberOfComponents=\"{parts}\"") } else { String::new() };
+    push(text, format_args!("<DataArray type=\"{kind}\" Name=\"{name}\"{parts_told} format=\"ascii\">\n"));
     for (i, value) in values.into_iter().enumerate() {
         push(text, format_args!("{value}{}", if (i + 1) % (4 * parts) == 0 { '\n' } else { ' ' }));
     }
