@@ -218,7 +218,7 @@ fn plain(value: &Value) -> String {
         Value::Number(number) => number
             .as_f64()
             .filter(|_| !number.is_i64() && !number.is_u64())
-            .map_or_else(|| number.to_string(), |value| super::table::nine(value)),
+            .map_or_else(|| number.to_string(), super::table::nine),
         Value::Bool(flag) => if *flag { "yes" } else { "no" }.to_owned(),
         Value::Null => "–".to_owned(),
         Value::Array(_) | Value::Object(_) => value.to_string(),

@@ -94,7 +94,7 @@ fn field(data: &Table, context: &Context) -> Option<Value> {
         return None;
     }
     let thin = |n: usize| {
-        let parts = (2..NODES).rev().find(|parts| (n - 1) % parts == 0).unwrap_or(n - 1);
+        let parts = (2..NODES).rev().find(|parts| (n - 1).is_multiple_of(*parts)).unwrap_or(n - 1);
         (0..=parts).map(|k| k * (n - 1) / parts).collect::<Vec<_>>()
     };
     let (columns, rows) = (thin(across), thin(up));

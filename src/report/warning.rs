@@ -12,6 +12,9 @@ const INFLATION: f64 = 10.0;
 /// Level of significance of the lack of fit.
 const LEVEL: f64 = 0.05;
 
+/// What a table says that a reader must not miss.
+type Rule = fn(&Table) -> Vec<String>;
+
 /// The warnings of a stage.
 pub(super) fn warnings(part: &Part) -> Vec<String> {
     let Some(artifact) = part.artifact() else { return Vec::new() };
@@ -21,7 +24,7 @@ pub(super) fn warnings(part: &Part) -> Vec<String> {
     {
         found.push(format!("the run failed: {why}"));
     }
-    let rules: [(&str, fn(&Table) -> Vec<String>); 6] = [
+    let rules: [(&str, Rule); 6] = [
         ("runs", failures),
         ("fit", fits),
         ("residuals", flags),

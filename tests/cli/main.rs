@@ -8,5 +8,6 @@ mod export;
 mod faults;
 mod kill;
 mod readme;
+mod report;
 mod reruns;
 mod space;
