@@ -66,11 +66,17 @@ impl Graph {
 
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
-        let store = self.campaign.open()?;
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
-        let report = run(&workflow, &store, &settings, &super::progress::Silent, &AtomicBool::new(false));
+        // Whoever only looks makes no store.
+        let reports = match self.campaign.store.exists() {
+            true => {
+                let store = self.campaign.open()?;
+                run(&workflow, &store, &settings, &super::progress::Silent, &AtomicBool::new(false)).stages
+            }
+            false => Vec::new(),
+        };
         let state = |stage: &StageNode| {
-            let found = report.stages.iter().find(|report| report.name == stage.name);
+            let found = reports.iter().find(|report| report.name == stage.name);
             found.map_or(State::ToRun, |report| match report.status {
                 StageStatus::Done(_) => State::Done,
                 StageStatus::Open => State::ToRun,

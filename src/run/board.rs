@@ -73,11 +73,16 @@ impl Add for TaskCount {
 }
 
 struct Node {
-    task: Arc<Task>,
+    /// Nothing for a run that is kept: it is done and nobody looks at it.
+    task: Option<Arc<Task>>,
     stage: usize,
+    /// Its design row.
+    row: Option<usize>,
     /// The node of each input that is a task, in the order of the task's inputs.
     inputs: Vec<Option<NodeId>>,
     dependents: Vec<NodeId>,
+    /// Inputs that are not done, each as often as it is named.
+    missing: usize,
     recipe: Key,
     /// Its key, once its inputs are known.
     key: Option<Key>,
@@ -111,13 +116,17 @@ impl Board {
                 Source::Task(task) => Some(self.put(task, stage, new)),
             })
             .collect();
+        let inputs = self.with_kept(task, stage, inputs);
         let recipe = self.recipe(task, &inputs);
         self.kept.push(Arc::clone(task));
         let node = match self.by_recipe.get(&recipe) {
             Some(&node) => node,
             None => {
-                let (task, dependents, key, state) = (Arc::clone(task), Vec::new(), None, TaskState::Open);
-                let node = self.add(Node { task, stage, inputs, dependents, recipe, key, state });
+                let missing = inputs.iter().flatten().filter(|&&input| !self.is_done(input)).count();
+                let (row, dependents, key, state) = (task.row, Vec::new(), None, TaskState::Open);
+                let task = Some(Arc::clone(task));
+                let node = self.add(Node { task, stage, row, inputs, dependents, missing, recipe, key, state });
+                self.by_recipe.insert(recipe, node);
                 new.push(node);
                 node
             }
@@ -126,18 +135,44 @@ impl Board {
         node
     }
 
+    /// The inputs of a task with a node for each one that is kept.
+    fn with_kept(&mut self, task: &Task, stage: usize, mut inputs: Vec<Option<NodeId>>) -> Vec<Option<NodeId>> {
+        for &(place, row, key, content) in task.kept.iter().flat_map(|kept| &kept.runs) {
+            inputs[place] = Some(self.add(Node {
+                task: None,
+                stage,
+                row: Some(row),
+                inputs: Vec::new(),
+                dependents: Vec::new(),
+                missing: 0,
+                recipe: Key(content.0),
+                key: Some(key),
+                state: TaskState::Done { content, cached: true },
+            }));
+            self.counts[stage].cached += 1;
+        }
+        inputs
+    }
+
     fn add(&mut self, node: Node) -> NodeId {
         let id = self.nodes.len();
-        for input in node.inputs.iter().flatten() {
-            self.nodes[*input].dependents.push(id);
+        for &input in node.inputs.iter().flatten() {
+            if !self.is_done(input) {
+                self.nodes[input].dependents.push(id);
+            }
         }
         if self.counts.len() <= node.stage {
             self.counts.resize(node.stage + 1, TaskCount::default());
             self.seconds.resize(node.stage + 1, 0.0);
         }
         self.counts[node.stage].total += 1;
-        self.by_recipe.insert(node.recipe, id);
+        let lost = |input: &NodeId| matches!(self.state(*input), TaskState::Failed(_) | TaskState::Skipped);
+        let lost = node.inputs.iter().flatten().any(lost);
         self.nodes.push(node);
+        if lost {
+            self.nodes[id].state = TaskState::Skipped;
+            self.count_mut(id).skipped += 1;
+        }
         id
     }
 
@@ -171,7 +206,11 @@ impl Board {
     /// Contents of a node's inputs, when all are known.
     pub(super) fn inputs(&self, node: NodeId) -> Option<Vec<ContentHash>> {
         let node = &self.nodes[node];
+        if node.missing > 0 {
+            return None;
+        }
         node.task
+            .as_ref()?
             .inputs
             .iter()
             .zip(&node.inputs)
@@ -191,7 +230,7 @@ impl Board {
         if self.nodes[node].state != TaskState::Open {
             return None;
         }
-        Some(task_text(&self.nodes[node].task, &self.inputs(node)?))
+        Some(task_text(self.task(node), &self.inputs(node)?))
     }
 
     /// The key of an open node whose inputs are known.
@@ -199,6 +238,11 @@ impl Board {
         let key = self.text(node).map(|text| Key::of(&text));
         self.nodes[node].key = key.or(self.nodes[node].key);
         key
+    }
+
+    /// The key of the task that is one of the inputs of a node.
+    pub(super) fn input_key(&self, node: NodeId, place: usize) -> Option<Key> {
+        self.key_of(self.nodes[node].inputs[place]?)
     }
 
     /// Number of nodes.
@@ -253,7 +297,7 @@ impl Board {
     pub(super) fn reports(&self) -> Vec<TaskReport> {
         let report = |node: NodeId| TaskReport {
             stage: self.nodes[node].stage,
-            row: self.nodes[node].task.row,
+            row: self.row(node),
             state: self.nodes[node].state.clone(),
             text: self.text(node),
             object: self.object(node),
@@ -272,7 +316,7 @@ impl Board {
         self.seconds[stage] += seconds;
     }
 
-    /// Notes a result; answers with the nodes that may be decided now.
+    /// Notes a result; answers with the nodes that can be decided now.
     pub(super) fn done(&mut self, node: NodeId, content: ContentHash, cached: bool) -> Vec<NodeId> {
         self.nodes[node].state = TaskState::Done { content, cached };
         let count = self.count_mut(node);
@@ -281,21 +325,19 @@ impl Board {
         } else {
             count.ran += 1
         }
-        self.nodes[node].dependents.clone()
+        let dependents = std::mem::take(&mut self.nodes[node].dependents);
+        let mut freed = Vec::new();
+        for dependent in dependents {
+            self.nodes[dependent].missing -= 1;
+            if self.nodes[dependent].missing == 0 {
+                freed.push(dependent);
+            }
+        }
+        freed
     }
 
-    /// A node whose result has this content.
-    pub(super) fn maker(&self, content: &ContentHash) -> Option<NodeId> {
-        let makes = |node: &Node| matches!(&node.state, TaskState::Done { content: c, .. } if c == content);
-        self.nodes.iter().position(makes)
-    }
-
-    /// A result that was lost is as if it had never been; `reader` waits for it.
-    pub(super) fn reopen(&mut self, node: NodeId, reader: NodeId) {
-        let count = self.count_mut(node);
-        count.cached = count.cached.saturating_sub(1);
-        self.nodes[node].state = TaskState::Open;
-        self.nodes[node].dependents.push(reader);
+    fn is_done(&self, node: NodeId) -> bool {
+        matches!(self.nodes[node].state, TaskState::Done { .. })
     }
 
     pub(super) fn started(&mut self, node: NodeId) {
@@ -333,8 +375,14 @@ impl Board {
         self.nodes[node].stage
     }
 
+    /// The design row of a node.
+    pub(super) fn row(&self, node: NodeId) -> Option<usize> {
+        self.nodes[node].row
+    }
+
+    /// The task of a node that is not a kept run.
     pub(super) fn task(&self, node: NodeId) -> &Arc<Task> {
-        &self.nodes[node].task
+        self.nodes[node].task.as_ref().unwrap_or_else(|| panic!("BUG: a kept run is not run"))
     }
 
     /// The first failure among a node and all that it needs.

@@ -1,9 +1,12 @@
 //! What stages may look up while a campaign runs.
 
 use super::board::{Board, TaskState};
+use super::ledger::{Files, Ledger};
+use super::task::Lost;
 use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
-use crate::stage::{FileInput, Library, Outcome, StageError, Task};
+use crate::stage::ledger::{Kept, RowName, row_name};
+use crate::stage::{FileInput, Library, Outcome, Point, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -13,8 +16,20 @@ pub(super) struct Shelf<'a> {
     pub(super) workflow: &'a Workflow,
     pub(super) store: &'a Store,
     pub(super) board: &'a Board,
+    /// What is remembered of the runs of the stage that asks.
+    pub(super) ledger: Option<&'a Ledger>,
+    pub(super) notes: RefCell<Notes>,
+}
+
+/// What a stage asked for.
+#[derive(Default)]
+pub(super) struct Notes {
     /// Files that were looked at, with their digests.
-    pub(super) files: RefCell<Vec<(String, String)>>,
+    pub(super) files: Files,
+    /// Names of the rows of a fan-out, in order.
+    pub(super) rows: Vec<RowName>,
+    /// A result that could not be read.
+    pub(super) lost: Option<Lost>,
 }
 
 /// Where a file named by the workflow lies.
@@ -24,7 +39,17 @@ pub(super) fn path_of(workflow: &Workflow, path: &str) -> PathBuf {
 
 impl Library for Shelf<'_> {
     fn load(&self, content: &ContentHash) -> Result<Arc<Artifact>, StageError> {
-        self.store.get(content).map_err(|e| StageError::new(e.to_string()).hint("run again: it will be recomputed"))
+        self.store.get(content).map_err(|error| {
+            let message = error.to_string();
+            self.notes.borrow_mut().lost.get_or_insert(Lost { content: *content, error });
+            StageError::new(message)
+        })
+    }
+
+    fn kept(&self, point: &Point, replicate: u64) -> Option<Kept<'_>> {
+        let name = row_name(point, replicate);
+        self.notes.borrow_mut().rows.push(name);
+        self.ledger?.kept(&name)
     }
 
     fn outcome(&self, task: &Task) -> Option<Outcome> {
@@ -44,7 +69,7 @@ impl Library for Shelf<'_> {
             StageError::new(format!("{}: {e}", full.display())).hint("paths are relative to the workflow file")
         })?;
         let digest = blake3::hash(&bytes);
-        self.files.borrow_mut().push((path.to_owned(), digest.to_hex().to_string()));
+        self.notes.borrow_mut().files.push((path.to_owned(), digest.to_hex().to_string()));
         Ok(FileInput { name: name.to_owned(), path: full, digest: *digest.as_bytes() })
     }
 }

@@ -7,9 +7,11 @@
 //! keys give the same answer, later.
 
 use super::board::{Board, NodeId, TaskCount};
+use super::ledger::Files;
 use super::library::path_of;
 use crate::artifact::{ContentHash, Key};
 use crate::plan::Workflow;
+use crate::stage::Context;
 use crate::store::{Memo, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -32,18 +34,38 @@ impl Known {
 struct Note {
     content: String,
     /// Files that the stage looked at, with their digests.
-    files: Vec<(String, String)>,
+    files: Files,
     /// Design row of each object; −1 for none.
     rows: Vec<i64>,
 }
 
-/// Hash of what all stages of a workflow share, and of the program: any rebuild voids all memos.
-pub(super) fn base(workflow: &Workflow) -> Key {
+/// Hashes of what all stages of a workflow share, and of the program: any rebuild voids all memos.
+#[derive(Clone, Copy)]
+pub(super) struct Base {
+    /// Of all that is shared.
+    pub(super) whole: Key,
+    /// Without the levels of factors: what a single run depends on.
+    pub(super) run: Key,
+}
+
+/// The hashes that the keys of all memos begin with.
+pub(super) fn base(workflow: &Workflow) -> Base {
     let program = std::env::current_exe().and_then(std::fs::metadata).ok().map(|meta| {
         let changed = meta.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
         (meta.len(), changed.map(|since| since.as_nanos()))
     });
-    Key::of(&format!("flow stages 1\nprogram {program:?}\ncontext {:?}\n", workflow.context))
+    let Context { seed, factors, responses, materials, outline } = &workflow.context;
+    let shared = format!("flow stages 2\nprogram {program:?}\nseed {seed}\n{responses:?}\n{materials:?}\n");
+    let bare = factors.iter().map(|(name, f)| (name, &f.sets, &f.unit, &f.symbol));
+    let run = Key::of(&format!("run\n{shared}{:?}\n", bare.collect::<Vec<_>>()));
+    let mut whole = format!("{shared}{outline:?}\n");
+    for factor in factors.values() {
+        // The shortest text of a number takes long to find for ten thousand levels; a String takes any text.
+        let bits = factor.levels.iter().chain(factor.range.iter().flatten()).map(|level| level.to_bits());
+        whole.extend(bits.map(|bits| format!("{bits:x} ")));
+        let _ = writeln!(whole, "{} {}", factor.levels.len(), factor.range.is_some());
+    }
+    Base { whole: Key::of(&format!("{whole}{run}")), run }
 }
 
 /// Key of a stage whose inputs are there: `inputs` holds their stage keys and contents.
@@ -57,18 +79,32 @@ pub(super) fn key(workflow: &Workflow, index: usize, base: &Key, inputs: &[(Key,
     Key::of(&text)
 }
 
+/// Key of what the runs of a stage share: as [`key`], without the design that they are the rows of.
+pub(super) fn run_key(workflow: &Workflow, index: usize, base: &Key, inputs: &[(Key, ContentHash)]) -> Key {
+    let node = &workflow.stages[index];
+    let mut text = format!("{base}\nkind {}\nsettings {}\n", node.kind, node.stage.settings());
+    for ((port, _), (stage, content)) in node.inputs.iter().zip(inputs).filter(|((port, _), _)| *port != "design") {
+        let _ = writeln!(text, "input {port} {stage} {content}");
+    }
+    Key::of(&text)
+}
+
 /// What the memo of a stage says, when all it rests on is still so.
 pub(super) fn recall(workflow: &Workflow, store: &Store, key: &Key) -> Option<Known> {
     let memo = store.memo(key).ok()??;
     let note: Note = serde_json::from_str(&memo.note).ok()?;
-    let unchanged = |(path, digest): &(String, String)| {
-        let bytes = std::fs::read(path_of(workflow, path)).ok();
-        bytes.is_some_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
-    };
-    if !note.files.iter().all(unchanged) || !store.has_all(&memo.objects).ok()? {
+    if !unchanged(workflow, &note.files) || !store.has_all(&memo.objects).ok()? {
         return None;
     }
     Some(Known { content: ContentHash::from_hex(&note.content)?, objects: memo.objects })
+}
+
+/// Whether all these files are as they were.
+pub(super) fn unchanged(workflow: &Workflow, files: &Files) -> bool {
+    files.iter().all(|(path, digest)| {
+        let bytes = std::fs::read(path_of(workflow, path)).ok();
+        bytes.is_some_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
+    })
 }
 
 /// The tasks that the memo of a stage rests on: design row and key of each. For the reasons of a rerun.
@@ -80,18 +116,11 @@ pub fn remembered(store: &Store, key: &Key) -> Option<Vec<(Option<usize>, Key)>>
 }
 
 /// Keeps what a stage came to: `nodes` are all the tasks it rests on.
-pub(super) fn keep(
-    store: &Store,
-    key: &Key,
-    content: ContentHash,
-    board: &Board,
-    nodes: &[NodeId],
-    files: Vec<(String, String)>,
-) {
+pub(super) fn keep(store: &Store, key: &Key, content: ContentHash, board: &Board, nodes: &[NodeId], files: Files) {
     let objects: Vec<ObjectId> = nodes.iter().filter_map(|&node| board.object(node)).collect();
-    let rows = nodes.iter().map(|&node| board.task(node).row.map_or(-1, |row| row as i64)).collect();
+    let rows = nodes.iter().map(|&node| board.row(node).map_or(-1, |row| row as i64)).collect();
     let note = Note { content: content.to_string(), files, rows };
     let note = serde_json::to_string(&note).unwrap_or_else(|e| panic!("BUG: the note of a memo: {e}"));
     // A memo that cannot be written costs time only; the store says what is wrong when it matters.
-    let _ = store.keep_memo(key, &Memo { note, objects });
+    let _ = store.keep_memo(key, &Memo { note, objects, ..Memo::default() });
 }

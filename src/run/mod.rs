@@ -11,6 +11,7 @@
 //! same loop that starts nothing, so it cannot disagree with `run`.
 
 mod board;
+mod ledger;
 mod library;
 mod memo;
 mod record;
@@ -22,13 +23,14 @@ pub use memo::remembered;
 pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
 
+use crate::artifact::{ContentHash, Key};
 use crate::exec::Threads;
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
 use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
 use stages::Stages;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -154,6 +156,9 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             running: 0,
             failed: false,
             fatal: None,
+            ended: HashMap::new(),
+            lost: HashSet::new(),
+            again: false,
         };
         run.go(&inbox)
     })
@@ -181,15 +186,25 @@ struct Loop<'env> {
     failed: bool,
     /// The store cannot be read: nothing more is started.
     fatal: Option<StoreError>,
+    /// Tasks that were run, and why those failed that did: what is decided anew knows them.
+    ended: HashMap<Key, Option<String>>,
+    /// Results that could not be read.
+    lost: HashSet<ContentHash>,
+    /// A result is gone, so all is decided anew as soon as nothing runs.
+    again: bool,
 }
 
 impl Loop<'_> {
     fn go(mut self, inbox: &Receiver<Answer>) -> Report {
         loop {
-            while self.advance() {}
+            while !self.again && self.advance() {}
             self.start();
             if self.running == 0 {
-                break;
+                if !self.again {
+                    break;
+                }
+                self.decide_anew();
+                continue;
             }
             match inbox.recv() {
                 Ok(answer) => self.take(answer),
@@ -211,13 +226,18 @@ impl Loop<'_> {
             if self.stages.recall(self.workflow, index, self.store) {
                 continue;
             }
-            let (new, stands) = self.stages.step(self.workflow, index, self.store, &mut self.board);
-            for node in new {
-                self.settle(node);
-            }
-            if let Some(note) = stands.filter(|_| !self.settings.dry) {
-                let (stage, count) = (&self.workflow.stages[index].name, self.board.count(index));
-                self.watch.event(Event::Asked { stage, count, note: &note });
+            match self.stages.step(self.workflow, index, self.store, &mut self.board) {
+                Ok((new, stands)) => {
+                    new.into_iter().for_each(|node| self.settle(node));
+                    if let Some(note) = stands.filter(|_| !self.settings.dry) {
+                        let (stage, count) = (&self.workflow.stages[index].name, self.board.count(index));
+                        self.watch.event(Event::Asked { stage, count, note: &note });
+                    }
+                }
+                Err(lost) => match self.recompute(*lost) {
+                    Ok(()) => return false,
+                    Err(error) => self.stages.fail(index, error),
+                },
             }
         }
         let keeps = (!self.settings.dry).then_some(self.store);
@@ -236,8 +256,13 @@ impl Loop<'_> {
         let mut open = vec![first];
         while let Some(node) = open.pop() {
             let Some(key) = self.board.key(node) else { continue };
+            let ended = self.ended.get(&key);
+            if let Some(Some(why)) = ended {
+                self.board.failed(node, why);
+                continue;
+            }
             match self.store.find(&key) {
-                Ok(Some(record)) => open.extend(self.board.done(node, record.content, true)),
+                Ok(Some(record)) => open.extend(self.board.done(node, record.content, ended.is_none())),
                 Ok(None) => {
                     self.ready.insert(node);
                 }
@@ -250,7 +275,7 @@ impl Loop<'_> {
 
     fn start(&mut self) {
         let ended = self.stop.load(Ordering::Relaxed) || self.fatal.is_some();
-        if self.settings.dry || ended || (self.failed && !self.settings.keep_going) {
+        if self.settings.dry || ended || self.again || (self.failed && !self.settings.keep_going) {
             return;
         }
         while self.running < self.pool.count() {
@@ -259,31 +284,38 @@ impl Loop<'_> {
             let threads = (idle / (self.ready.len() + 1)).max(1);
             match task::Order::new(&self.board, node, self.store, threads) {
                 Ok(order) => self.give(order),
-                Err(lost) => self.restore(node, &lost),
+                Err(lost) => match self.recompute(*lost) {
+                    Ok(()) => return,
+                    Err(error) => self.take(Answer { node, result: Err(error.into()) }),
+                },
             }
         }
     }
 
-    /// An input that was in the store cannot be read: its task runs again, and `node` after it.
-    fn restore(&mut self, node: NodeId, lost: &task::Lost) {
-        match self.board.maker(&lost.content).filter(|_| lost.again) {
-            Some(maker) => {
-                self.board.reopen(maker, node);
-                self.ready.insert(maker);
-            }
-            None => {
-                let hint = "run again: what is damaged was set aside and will be computed again";
-                let error = StageError::new(lost.error.to_string()).hint(hint);
-                self.take(Answer { node, result: Err(error.into()) });
-            }
+    /// A result that was in the store cannot be read: what is damaged was set aside, so its task counts as not done when
+    /// all is decided anew. Not when that was tried, or when the store itself cannot be read.
+    fn recompute(&mut self, lost: task::Lost) -> Result<(), StageError> {
+        if !lost.error.is_missing() || !self.lost.insert(lost.content) {
+            let hint = "`flow store verify` says what is damaged; see that the store can be read and written";
+            return Err(StageError::new(lost.error.to_string()).hint(hint));
         }
+        self.again = true;
+        Ok(())
+    }
+
+    /// Begins anew without memos, which may speak of what is gone. What was computed is in the store.
+    fn decide_anew(&mut self) {
+        self.again = false;
+        self.ready.clear();
+        self.board = Board::default();
+        self.stages = Stages::new(self.workflow, &self.settings.targets, false);
     }
 
     fn give(&mut self, order: task::Order) {
         let node = order.node;
         let (store, watch, stop, answers) = (self.store, self.watch, self.stop, self.answers.clone());
         let stage = self.workflow.stages[self.board.stage(node)].name.as_str();
-        let row = self.board.task(node).row;
+        let row = self.board.row(node);
         self.board.started(node);
         self.running += 1;
         self.pool.give(move || {
@@ -303,6 +335,9 @@ impl Loop<'_> {
         let failure = match answer.result {
             Ok(finished) => {
                 self.board.took(node, finished.seconds);
+                if let Some(key) = self.board.key_of(node).filter(|_| !finished.shared) {
+                    self.ended.insert(key, None);
+                }
                 for next in self.board.done(node, finished.content, finished.shared) {
                     self.settle(next);
                 }
@@ -315,6 +350,7 @@ impl Loop<'_> {
             Err(Failure::Failed(error)) => {
                 self.failed = true;
                 let text = stages::in_words(error);
+                self.ended.extend(self.board.key_of(node).map(|key| (key, Some(text.clone()))));
                 self.board.failed(node, &text);
                 Some(text)
             }
@@ -322,7 +358,7 @@ impl Loop<'_> {
         let stage = self.board.stage(node);
         self.watch.event(Event::Ended {
             stage: &self.workflow.stages[stage].name,
-            row: self.board.task(node).row,
+            row: self.board.row(node),
             count: self.board.count(stage),
             failure: failure.as_deref(),
         });

@@ -1,10 +1,13 @@
 //! Where each stage of the workflow stands.
 
 use super::board::{Board, NodeId, TaskCount, TaskState};
-use super::library::Shelf;
-use super::memo;
+use super::ledger::{Files, Ledger};
+use super::library::{Notes, Shelf};
+use super::memo::{self, Base};
+use super::task::Lost;
 use crate::artifact::{ContentHash, Key};
 use crate::plan::Workflow;
+use crate::stage::ledger::RowName;
 use crate::stage::{Input, Known, Library, StageError, Step};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
@@ -60,6 +63,8 @@ enum State {
     Asking(Vec<NodeId>),
     /// The node whose result is the stage's.
     Finishing(NodeId),
+    /// It cannot go on; why.
+    Broken(String),
     Ended(StageStatus),
 }
 
@@ -68,16 +73,22 @@ struct Place {
     wanted: bool,
     /// Key of its memo, from the moment its inputs are known.
     key: Option<Key>,
+    /// Key of the ledger of its runs, known as soon.
+    run: Option<Key>,
+    /// Names of the runs that it gathers, in order.
+    rows: Vec<RowName>,
     /// Every node it asked for, and the one it finishes with.
     asked: Vec<NodeId>,
-    files: Vec<(String, String)>,
+    files: Files,
     /// What its memo said, when that was enough.
     remembered: Option<memo::Known>,
 }
 
 pub(super) struct Stages {
     places: Vec<Place>,
-    base: Option<Key>,
+    base: Base,
+    /// Whether memos are believed.
+    memos: bool,
 }
 
 impl Stages {
@@ -94,11 +105,13 @@ impl Stages {
             state: State::Waiting,
             wanted,
             key: None,
+            run: None,
+            rows: Vec::new(),
             asked: Vec::new(),
             files: Vec::new(),
             remembered: None,
         };
-        Self { places: wanted.into_iter().map(place).collect(), base: memos.then(|| memo::base(workflow)) }
+        Self { places: wanted.into_iter().map(place).collect(), base: memo::base(workflow), memos }
     }
 
     /// Wanted stages that can be asked for their next step.
@@ -107,7 +120,7 @@ impl Stages {
         let due = |index: &usize| match &self.places[*index].state {
             State::Waiting => workflow.stages[*index].inputs.iter().all(|&(_, input)| self.content(input).is_some()),
             State::Asking(nodes) => nodes.iter().all(settled),
-            State::Finishing(_) | State::Ended(_) => false,
+            State::Finishing(_) | State::Broken(_) | State::Ended(_) => false,
         };
         (0..self.places.len()).filter(|&index| self.places[index].wanted).filter(due).collect()
     }
@@ -115,7 +128,7 @@ impl Stages {
     fn content(&self, index: usize) -> Option<ContentHash> {
         match self.places[index].state {
             State::Ended(StageStatus::Done(content)) => Some(content),
-            State::Waiting | State::Asking(_) | State::Finishing(_) | State::Ended(_) => None,
+            State::Waiting | State::Asking(_) | State::Finishing(_) | State::Broken(_) | State::Ended(_) => None,
         }
     }
 
@@ -124,15 +137,18 @@ impl Stages {
         if !matches!(self.places[index].state, State::Waiting) {
             return false;
         }
-        let Some(base) = self.base else { return false };
-        let inputs: Option<Vec<(Key, ContentHash)>> = workflow.stages[index]
-            .inputs
-            .iter()
-            .map(|&(_, input)| Some((self.places[input].key?, self.content(input)?)))
-            .collect();
-        let Some(inputs) = inputs else { return false };
-        let key = memo::key(workflow, index, &base, &inputs);
-        self.places[index].key = Some(key);
+        let inputs = |key: fn(&Place) -> Option<Key>| -> Option<Vec<(Key, ContentHash)>> {
+            let inputs = workflow.stages[index].inputs.iter();
+            inputs.map(|&(_, input)| Some((key(&self.places[input])?, self.content(input)?))).collect()
+        };
+        let (Some(whole), Some(run)) = (inputs(|place| place.key), inputs(|place| place.run)) else { return false };
+        let key = memo::key(workflow, index, &self.base.whole, &whole);
+        let place = &mut self.places[index];
+        place.key = Some(key);
+        place.run = Some(memo::run_key(workflow, index, &self.base.run, &run));
+        if !self.memos {
+            return false;
+        }
         let Some(known) = memo::recall(workflow, store, &key) else { return false };
         self.places[index].state = State::Ended(StageStatus::Done(known.content));
         self.places[index].remembered = Some(known);
@@ -140,17 +156,22 @@ impl Stages {
     }
 
     /// Asks a stage for its next step; answers with the nodes that are new on the board, and with where the stage stands
-    /// when it asked for outcomes.
+    /// when it asked for outcomes, or with a result that it needs and that cannot be read.
     pub(super) fn step(
         &mut self,
         workflow: &Workflow,
         index: usize,
         store: &Store,
         board: &mut Board,
-    ) -> (Vec<NodeId>, Option<String>) {
-        let shelf = Shelf { workflow, store, board, files: RefCell::default() };
+    ) -> Result<(Vec<NodeId>, Option<String>), Box<Lost>> {
+        let key = self.places[index].run.filter(|_| self.memos && matches!(self.places[index].state, State::Waiting));
+        let ledger = key.and_then(|key| Ledger::read(workflow, store, &key));
+        let shelf = Shelf { workflow, store, board, ledger: ledger.as_ref(), notes: RefCell::default() };
         let step = workflow.stages[index].stage.next(&self.known(workflow, index, &shelf));
-        let files = shelf.files.into_inner();
+        let Notes { files, rows, lost } = shelf.notes.into_inner();
+        if let Some(lost) = lost {
+            return Err(Box::new(lost));
+        }
         let (mut new, mut stands) = (Vec::new(), None);
         let mut put = |task| board.put(&Arc::new(task), index, &mut new);
         let state = match step {
@@ -159,17 +180,29 @@ impl Stages {
                 stands = Some(note);
                 State::Asking(tasks.into_iter().map(put).collect())
             }
-            Err(error) => State::Ended(StageStatus::Failed(in_words(error))),
+            Err(error) => State::Broken(in_words(error)),
         };
         let place = &mut self.places[index];
         match &state {
             State::Finishing(node) => place.asked.push(*node),
             State::Asking(nodes) => place.asked.extend(nodes),
-            State::Waiting | State::Ended(_) => {}
+            State::Waiting | State::Broken(_) | State::Ended(_) => {}
         }
         place.files.extend(files);
+        if !rows.is_empty() {
+            // A kept run does not look at its files, and yet rests on them.
+            place.files.extend(ledger.into_iter().flat_map(|ledger| ledger.files));
+            place.rows = rows;
+        }
+        place.files.sort();
+        place.files.dedup();
         place.state = state;
-        (new, stands)
+        Ok((new, stands))
+    }
+
+    /// Ends a stage that cannot go on.
+    pub(super) fn fail(&mut self, index: usize, error: StageError) {
+        self.places[index].state = State::Broken(in_words(error));
     }
 
     /// What a stage knows once its inputs are there.
@@ -208,6 +241,9 @@ impl Stages {
     fn keep(&mut self, index: usize, content: ContentHash, board: &Board, store: &Store) {
         let place = &mut self.places[index];
         if let Some(key) = &place.key {
+            if let (State::Finishing(node), Some(run), false) = (&place.state, &place.run, place.rows.is_empty()) {
+                Ledger::keep(store, run, board, *node, &place.rows, &place.files);
+            }
             let nodes = board.closure(&place.asked);
             memo::keep(store, key, content, board, &nodes, std::mem::take(&mut place.files));
         }
@@ -221,7 +257,9 @@ impl Stages {
                         Some(StageStatus::Skipped(workflow.stages[input].name.clone()))
                     }
                     State::Ended(StageStatus::Skipped(cause)) => Some(StageStatus::Skipped(cause.clone())),
-                    State::Waiting | State::Asking(_) | State::Finishing(_) | State::Ended(_) => None,
+                    State::Waiting | State::Asking(_) | State::Finishing(_) | State::Broken(_) | State::Ended(_) => {
+                        None
+                    }
                 })
             }
             State::Finishing(node) => match board.state(*node) {
@@ -229,6 +267,7 @@ impl Stages {
                 TaskState::Failed(_) | TaskState::Skipped => Some(StageStatus::Failed(cause(board, *node))),
                 TaskState::Open | TaskState::Running => None,
             },
+            State::Broken(why) => Some(StageStatus::Failed(why.clone())),
             State::Asking(_) | State::Ended(_) => None,
         }
     }
@@ -240,7 +279,7 @@ impl Stages {
             kind: workflow.stages[index].kind,
             status: match &place.state {
                 State::Ended(status) => status.clone(),
-                State::Waiting | State::Asking(_) | State::Finishing(_) => StageStatus::Open,
+                State::Waiting | State::Asking(_) | State::Finishing(_) | State::Broken(_) => StageStatus::Open,
             },
             tasks: place.remembered.as_ref().map_or_else(|| board.count(index), memo::Known::count),
             memo: place.key,
@@ -283,7 +322,7 @@ impl Stages {
 
 fn cause(board: &Board, node: NodeId) -> String {
     let Some((cause, why)) = board.cause(node) else { panic!("BUG: a failure without a cause") };
-    board.task(cause).row.map_or_else(|| why.to_owned(), |row| format!("row {}: {why}", row + 1))
+    board.row(cause).map_or_else(|| why.to_owned(), |row| format!("row {}: {why}", row + 1))
 }
 
 /// An error with its hint.

@@ -17,12 +17,10 @@ pub(super) struct Order {
     threads: usize,
 }
 
-/// An input that cannot be read.
+/// A result that cannot be read.
 pub(super) struct Lost {
     pub(super) content: ContentHash,
-    /// Whether computing it again will help.
-    pub(super) again: bool,
-    pub(super) error: Box<StoreError>,
+    pub(super) error: StoreError,
 }
 
 /// A stored result.
@@ -36,24 +34,20 @@ pub(super) struct Finished {
 
 impl Order {
     /// Loads the inputs of an open node, or says which of them is lost.
-    pub(super) fn new(board: &Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Lost> {
+    pub(super) fn new(board: &Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Box<Lost>> {
         let (Some(text), Some(contents)) = (board.text(node), board.inputs(node)) else {
             panic!("BUG: a task was started before its inputs were known");
         };
         let task = Arc::clone(board.task(node));
-        let load = |content: &ContentHash| {
-            store.get(content).map_err(|error| Lost {
-                content: *content,
-                again: error.is_missing(),
-                error: Box::new(error),
-            })
-        };
-        let inputs = task
-            .inputs
-            .iter()
-            .zip(&contents)
-            .map(|((name, _), content)| Ok((name.clone(), load(content)?)))
-            .collect::<Result<_, Lost>>()?;
+        let mut kept = task.kept.iter().flat_map(|kept| &kept.runs).map(|(place, ..)| *place).peekable();
+        let mut inputs = Vec::with_capacity(task.inputs.len());
+        for (place, ((name, _), content)) in task.inputs.iter().zip(&contents).enumerate() {
+            if kept.next_if_eq(&place).is_none() {
+                let lost = |error| Box::new(Lost { content: *content, error });
+                inputs.push((name.clone(), store.get(content).map_err(lost)?));
+            }
+        }
+        inputs.extend(task.kept.iter().map(|kept| ("kept".to_owned(), Arc::new(kept.artifact()))));
         Ok(Self { node, task, text, inputs, threads })
     }
 

@@ -42,6 +42,7 @@ pub mod design;
 pub mod figure;
 pub mod fitted;
 pub mod formula;
+pub mod ledger;
 mod published;
 pub mod range;
 pub mod regression;
@@ -90,7 +91,8 @@ pub trait Stage: Send + Sync {
 
     /// The task that tries one point of the factor space on replicate `number` of whatever it is tried on, for kinds
     /// that can stand as a simulator (`simulate`, `command`): calibration and verification ask for such tasks. Its
-    /// artifact is that of a single run.
+    /// artifact is that of a single run. What it looks at is its settings, its inputs, the seed, materials, responses, and
+    /// of factors their units and what they set, but not their levels: a run does not depend on the rest of a design.
     ///
     /// # Errors
     /// The kind is no simulator, or a factor of the point is not one that it can set.

@@ -3,6 +3,7 @@
 //! Rows are known by content. Equal rows of one design are replicates, numbered from 1 by occurrence, so adding rows
 //! changes nothing for the others, and the same row and replicate in two designs is one run.
 
+use super::ledger::{Briefs, KeptRuns};
 use super::{Complaint, Context, Failure, Input, Job, Known, Point, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Column, Group, Node, Table, Values};
 use crate::unit::Unit;
@@ -129,28 +130,32 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
     let Some(design) = known.port("design").next() else {
         return Ok(Step::Finish(simulator.sample(known, &Point::new(), 1)?));
     };
-    let runs = rows(&*known.load(design)?, known.context)?
-        .into_iter()
-        .map(|row| Ok(Arc::new(simulator.sample(known, &row.point, row.replicate)?.row(row.index))))
-        .collect::<Result<Vec<_>, StageError>>()?;
-    Ok(Step::Finish(gather(known, design, runs)?))
+    let artifact = known.load(design)?;
+    let mut task = gather(known, design, &artifact)?;
+    let mut kept_runs = KeptRuns::default();
+    for row in rows(&artifact, known.context)? {
+        task = match known.library.kept(&row.point, row.replicate) {
+            Some(kept) => {
+                kept_runs.push(task.inputs.len(), row.index, kept);
+                task.input(RUN, kept.content)
+            }
+            None => task.after(RUN, Arc::new(simulator.sample(known, &row.point, row.replicate)?.row(row.index))),
+        };
+    }
+    task.kept = (!kept_runs.runs.is_empty()).then(|| Arc::new(kept_runs));
+    Ok(Step::Finish(task))
 }
 
-/// The task that gathers `runs`, one per row of the design, into the table `runs` of a `results` artifact.
-///
-/// # Errors
-/// The design cannot be read.
-pub fn gather(known: &Known, design: &Input<'_>, runs: Vec<Arc<Task>>) -> Result<Task, StageError> {
-    let artifact = known.load(design)?;
-    let factors = factor_columns(&artifact, known.context)?.iter().map(|column| column.name.clone()).collect();
+/// The task that gathers runs, one per row of the design, into the table `runs` of a `results` artifact; without runs yet.
+fn gather(known: &Known, design: &Input<'_>, artifact: &Artifact) -> Result<Task, StageError> {
+    let factors = factor_columns(artifact, known.context)?.iter().map(|column| column.name.clone()).collect();
     let unit = |(name, response): (&String, &super::Response)| (name.clone(), response.unit.clone());
     let units = known.context.responses.iter().map(unit).collect();
-    let mut task = Task::new("gather", json!(GatherParams { factors, units })).input("design", design.content);
-    for run in runs {
-        task = task.after("run", run);
-    }
-    Ok(task)
+    Ok(Task::new("gather", json!(GatherParams { factors, units })).input("design", design.content))
 }
+
+/// Name of the inputs of a gathering task that are runs.
+pub const RUN: &str = "run";
 
 /// Work that every simulator kind lists.
 pub const GATHER: Work = Work { name: "gather", version: 1, run: gathered };
@@ -169,13 +174,13 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     let params: GatherParams = job.params()?;
     let design = job.input("design")?;
     let design = design.table("design").ok_or_else(|| StageError::new("the design holds no table `design`"))?;
-    let runs: Vec<&Artifact> = job.inputs.iter().filter(|(name, _)| name == "run").map(|(_, run)| &**run).collect();
+    let kept = job.inputs.iter().find(|(name, _)| name == "kept").map(|(_, kept)| kept_runs(kept)).transpose()?;
+    let results = all_responses(job, kept.as_ref())?;
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() };
     for name in &params.factors {
         let column = design.column(name).ok_or_else(|| StageError::new(format!("the design lost factor `{name}`")))?;
         table.columns.push(column.clone());
     }
-    let results = runs.iter().map(|run| responses(run)).collect::<Result<Vec<_>, _>>()?;
     let mut names: Vec<&str> = Vec::new();
     for (name, _, _) in results.iter().flat_map(|(_, found)| found) {
         if !names.contains(name) {
@@ -188,6 +193,40 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     let failures = results.iter().map(|(failure, _)| (*failure).to_owned()).collect();
     table = table.texts_column("failure", "why the run gave no result; empty when it did", failures);
     Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
+}
+
+/// Places among the inputs of the task, and briefs, of runs that were made before.
+fn kept_runs(kept: &Artifact) -> Result<(&[i64], Briefs), StageError> {
+    let places = kept.table("places").and_then(|table| table.column("place")).map(|column| &column.values);
+    match (places, kept.root.get("briefs")) {
+        (Some(Values::Ints(places)), Some(Node::Bytes(bytes))) => {
+            let briefs = Briefs::from_bytes(bytes).filter(|briefs| briefs.len() == places.len());
+            Ok((places, briefs.ok_or_else(|| StageError::new("the kept runs cannot be read"))?))
+        }
+        _ => Err(StageError::new("the kept runs hold no places or no briefs")),
+    }
+}
+
+/// What every run gave, in the order of the rows, whether it is at hand or kept.
+fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result<Vec<Responses<'a>>, StageError> {
+    let old = kept.into_iter().flat_map(|(places, briefs)| {
+        let brief = |run: usize| briefs.get(run).ok_or_else(|| StageError::new("a kept run has no brief"));
+        places.iter().enumerate().map(move |(run, place)| Ok((*place as usize, brief(run)?.responses())))
+    });
+    let mut old = old.collect::<Result<Vec<_>, StageError>>()?.into_iter().peekable();
+    let mut new = job.inputs.iter().filter(|(name, _)| name == RUN);
+    let mut all = Vec::new();
+    // The first input of a gathering task is the design.
+    for place in 1.. {
+        match old.next_if(|(kept, _)| *kept == place) {
+            Some((_, responses)) => all.push(responses),
+            None => match new.next() {
+                Some((_, run)) => all.push(responses(run)?),
+                None => break,
+            },
+        }
+    }
+    Ok(all)
 }
 
 pub(super) type Responses<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
@@ -217,6 +256,7 @@ fn response_column(
     results: &[Responses<'_>],
 ) -> Result<Table, StageError> {
     let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("response `{name}`: {e}")));
+    let mut last = None;
     let own = results.iter().flat_map(|(_, found)| found).find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
     let unit = shown.map_or(own, String::as_str);
     let target = parse(unit)?;
@@ -225,7 +265,11 @@ fn response_column(
         let value = found.iter().find(|(n, _, _)| *n == name);
         values.push(match value {
             Some((_, value, from)) if failure.is_empty() => {
-                let from = parse(from)?;
+                // Nearly always the unit of the row before.
+                let (_, from) = match &last {
+                    Some((text, unit)) if text == from => (*text, *unit),
+                    _ => *last.insert((*from, parse(from)?)),
+                };
                 if from.dimension != target.dimension {
                     let message = format!("response `{name}` comes in `{own}` and cannot be shown in `{unit}`");
                     return Err(StageError::new(message).hint("mend the unit of [response] in the workflow"));
@@ -248,70 +292,4 @@ pub fn response_table(responses: &[(&str, f64, &str)]) -> Table {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::stage::Factor;
-
-    fn context() -> Context {
-        let mut context = Context::default();
-        context
-            .factors
-            .insert("Ec".into(), Factor { sets: "mortar.Ec".into(), unit: "GPa".into(), ..Factor::default() });
-        context.factors.insert("null".into(), Factor::default());
-        context
-    }
-
-    fn design(moduli: &[f64]) -> Artifact {
-        let types = moduli.iter().map(|_| "cube".to_owned()).collect();
-        let table =
-            Table::default().texts_column("point_type", "", types).reals_column("Ec", "GPa", "", moduli.to_vec());
-        Artifact::new("design", 1, Group::new().with("design", Node::Table(table)))
-    }
-
-    #[test]
-    fn equal_rows_are_replicates_by_occurrence() {
-        let found = rows(&design(&[10.0, 20.0, 10.0]), &context()).unwrap();
-        let numbers: Vec<u64> = found.iter().map(|row| row.replicate).collect();
-        assert_eq!(numbers, [1, 1, 2]);
-    }
-
-    #[test]
-    fn a_point_sets_parameters_in_si_units() {
-        let base = BTreeMap::from([("mortar.Ec".to_owned(), 1.0), ("mortar.mu".to_owned(), 0.5)]);
-        let point = Point::from([("Ec".to_owned(), 16.0), ("null".to_owned(), 2.0)]);
-        let set = apply(&base, &point, &context()).unwrap();
-        assert_eq!(set.into_values().collect::<Vec<_>>(), [1.6e10, 0.5]);
-        let error = apply(&BTreeMap::new(), &point, &context()).unwrap_err();
-        assert!(error.message.contains("mortar.Ec"));
-    }
-
-    #[test]
-    fn gathering_converts_units_and_keeps_failures() {
-        let run = |ucs: f64, failure: &str| {
-            let group = Group::new()
-                .with("failure", Node::Text(failure.to_owned()))
-                .with("responses", Node::Table(response_table(&[("UCS", ucs, "Pa")])));
-            Arc::new(Artifact::new("run", 1, group))
-        };
-        let inputs = vec![
-            ("design".to_owned(), Arc::new(design(&[10.0, 20.0]))),
-            ("run".to_owned(), run(3e7, "")),
-            ("run".to_owned(), run(1e6, "no peak")),
-        ];
-        let params = json!({ "factors": ["Ec"], "units": { "UCS": "MPa" } });
-        let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: crate::stage::Progress| ());
-        let job = Job {
-            params: &params,
-            seed: None,
-            inputs: &inputs,
-            files: &[],
-            threads: 1,
-            time_limit: None,
-            say: &say,
-            stop: &stop,
-        };
-        let results = gathered(&job).unwrap();
-        let strengths = results.table("runs").unwrap().reals("UCS").unwrap();
-        assert!((strengths[0] - 30.0).abs() < 1e-12 && strengths[1].is_nan());
-    }
-}
+mod tests;

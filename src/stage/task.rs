@@ -1,6 +1,7 @@
 //! The unit of work, and what runs it.
 
 use super::StageError;
+use super::ledger::KeptRuns;
 use crate::artifact::{Artifact, ContentHash};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -25,12 +26,23 @@ pub struct Task {
     pub row: Option<usize>,
     /// Seconds after which an external program is ended; not part of its key.
     pub time_limit: Option<f64>,
+    /// Those of its inputs that an earlier campaign made and that need not be read; not part of its key.
+    pub kept: Option<Arc<KeptRuns>>,
 }
 
 impl Task {
     /// A task without inputs.
     pub fn new(work: &'static str, params: Value) -> Self {
-        Self { work, params, seed: None, inputs: Vec::new(), files: Vec::new(), row: None, time_limit: None }
+        Self {
+            work,
+            params,
+            seed: None,
+            inputs: Vec::new(),
+            files: Vec::new(),
+            row: None,
+            time_limit: None,
+            kept: None,
+        }
     }
 
     /// Gives it a seed.
@@ -108,7 +120,7 @@ pub struct Job<'a> {
     pub params: &'a Value,
     /// Its seed.
     pub seed: Option<u64>,
-    /// Its inputs by name, in order.
+    /// Its inputs by name, in order; kept ones are together in one input `kept` at the end.
     pub inputs: &'a [(String, Arc<Artifact>)],
     /// Files it reads.
     pub files: &'a [FileInput],

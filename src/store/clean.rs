@@ -4,7 +4,8 @@
 //! and gc wants it alone. Where the file system has no locks, objects younger than a day are kept.
 
 use super::disk::{Disk, TEMPORARY};
-use super::object::{self, short_of_name};
+use super::object;
+use super::presence::{self, short_of_name};
 use super::{Damage, Index, Record, Store, StoreError, Timing, hdf5, journal, lock, locked, memo};
 use crate::artifact::{Artifact, ContentHash, Key};
 use rayon::prelude::*;
@@ -126,7 +127,7 @@ impl Store {
         let mut swept = Swept::default();
         let mut doomed = Vec::new();
         // Names hold the first bytes of a key: an object goes only if no reachable key begins like that.
-        let starts: HashSet<u64> = reachable.iter().map(|key| object::first_word(&key.0)).collect();
+        let starts: HashSet<u64> = reachable.iter().map(|key| presence::first_word(&key.0)).collect();
         object::list(&self.disk, |folder, name| {
             let path = folder.join(name);
             let Ok(metadata) = fs::metadata(&path) else { return };
@@ -197,9 +198,9 @@ impl Store {
         let mut verdict = Verdict::default();
         let records = self.records()?;
         {
-            let index = locked(self.index()?);
-            verdict.lost_records = index.damaged;
-            verdict.contradictions = index.contradictions.clone();
+            let faults = locked(self.index()?).faults();
+            verdict.lost_records = faults.damaged;
+            verdict.contradictions = faults.contradictions;
         }
         let checked: Vec<_> = records.par_iter().map(|record| (record, self.verify_one(record))).collect();
         for (record, result) in checked {

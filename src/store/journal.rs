@@ -36,6 +36,11 @@ use std::time::{Duration, SystemTime};
 pub(super) const RECORD: usize = 128;
 /// Length of a segment's head, bytes.
 pub(super) const HEAD: usize = 512;
+/// So many objects with one content are tried.
+const MOST_ALIKE: usize = 8;
+/// Where the key and the content stand in a record.
+const KEY: usize = 0;
+const CONTENT: usize = 32;
 const MAGIC: &str = "flow journal 1 ";
 /// Longer than the step of any file system's times but the coarsest (FAT, 2 s).
 const TIME_STEP: Duration = Duration::from_millis(100);
@@ -45,22 +50,60 @@ pub(super) fn folder(disk: &Disk) -> PathBuf {
     disk.root.join("journal")
 }
 
-/// The journals as read so far.
+/// The journals as read so far. Records stay as the bytes they are; each is checked when it is asked for.
 #[derive(Default)]
 pub(super) struct Index {
-    tasks: HashMap<Key, Entry, BuildHasherDefault<FirstBytes>>,
-    contents: HashMap<ContentHash, Key, BuildHasherDefault<FirstBytes>>,
+    records: Vec<[u8; RECORD]>,
+    /// The records from this number on have this origin.
+    made: Vec<(usize, u32)>,
     origins: Vec<Arc<Origin>>,
+    by_key: Numbers,
+    by_content: Numbers,
     /// Segments read, so that none is read twice.
     seen: HashSet<OsString>,
     /// Segments whose writers were alive when they were first read: only these can grow.
     growing: Vec<Growing>,
     /// When the folder had last changed, as seen by the last look, and when that look was.
     looked: Option<(SystemTime, SystemTime)>,
-    /// Records that were skipped because their checksum is wrong.
+}
+
+/// What [`Index::faults`] finds in the journals.
+#[derive(Default)]
+pub(super) struct Faults {
+    /// Records that are skipped because their checksum is wrong.
     pub(super) damaged: usize,
     /// Tasks for which two records give different contents.
     pub(super) contradictions: Vec<(Key, ContentHash, ContentHash)>,
+}
+
+/// Numbers of records by the first bytes of a hash in them.
+#[derive(Default)]
+struct Numbers {
+    last: HashMap<u64, u32, BuildHasherDefault<FirstBytes>>,
+    /// The record before each one that begins alike; itself when there is none.
+    before: Vec<u32>,
+}
+
+impl Numbers {
+    /// Takes in the records that are new; their hashes begin at byte `place`.
+    fn update(&mut self, records: &[[u8; RECORD]], place: usize) {
+        self.last.reserve(records.len() - self.before.len());
+        for number in self.before.len()..records.len() {
+            let number = number as u32;
+            let before = self.last.insert(word(&records[number as usize], place), number);
+            self.before.push(before.unwrap_or(number));
+        }
+    }
+
+    /// Numbers of the records whose hash begins so, the last one first.
+    fn of(&self, hash: &[u8; 32]) -> impl Iterator<Item = usize> {
+        let mut next = self.last.get(&word(hash, 0)).copied();
+        std::iter::from_fn(move || {
+            let number = next?;
+            next = Some(self.before[number as usize]).filter(|&before| before != number);
+            Some(number as usize)
+        })
+    }
 }
 
 /// A segment of another live process; without locks on the file system, of any process.
@@ -68,15 +111,6 @@ struct Growing {
     file: File,
     /// How far it has been read.
     end: u64,
-    origin: u32,
-}
-
-#[derive(Clone, Copy)]
-struct Entry {
-    content: ContentHash,
-    seal: Seal,
-    started: i64,
-    seconds: f64,
     origin: u32,
 }
 
@@ -145,29 +179,15 @@ impl Index {
     /// Takes in the whole records at the start of `bytes`; returns their length.
     fn take(&mut self, bytes: &[u8], origin: u32) -> u64 {
         let records = bytes.as_chunks::<RECORD>().0;
-        self.tasks.reserve(records.len());
-        self.contents.reserve(records.len());
-        for record in records {
-            match unpack(record, origin) {
-                Some((key, entry)) => self.insert(key, entry),
-                None => self.damaged += 1,
-            }
-        }
+        self.push(records, origin);
         (records.len() * RECORD) as u64
     }
 
-    fn insert(&mut self, key: Key, entry: Entry) {
-        if let Some(old) = self.tasks.get(&key) {
-            if old.content != entry.content {
-                self.contradictions.push((key, old.content, entry.content));
-            }
-            // The later record counts; of two at the same moment the same one everywhere.
-            if (old.started, old.content) > (entry.started, entry.content) {
-                return;
-            }
+    fn push(&mut self, records: &[[u8; RECORD]], origin: u32) {
+        if self.made.last().is_none_or(|(_, last)| *last != origin) {
+            self.made.push((self.records.len(), origin));
         }
-        self.contents.insert(entry.content, key);
-        self.tasks.insert(key, entry);
+        self.records.extend_from_slice(records);
     }
 
     /// Adds a record that this process has appended.
@@ -177,29 +197,53 @@ impl Index {
             self.origins.push(record.origin.clone());
             self.origins.len() - 1
         }) as u32;
-        let (seal, started, seconds) = (record.seal, record.started, record.seconds);
-        self.insert(record.key, Entry { content: record.content, seal, started, seconds, origin });
+        self.push(&[pack(record)], origin);
     }
 
-    pub(super) fn find(&self, key: &Key) -> Option<Record> {
-        self.tasks.get(key).map(|entry| self.record(*key, entry))
+    /// The record of a task that counts.
+    pub(super) fn find(&mut self, key: &Key) -> Option<Record> {
+        self.by_key.update(&self.records, KEY);
+        self.found(key)
     }
 
-    /// The records whose result is `content`, the one a lookup finds at once first.
-    pub(super) fn with_content(&self, content: &ContentHash) -> Vec<Record> {
-        let Some(first) = self.contents.get(content) else { return Vec::new() };
-        let mut found: Vec<Record> = self.find(first).filter(|record| record.content == *content).into_iter().collect();
-        if found.is_empty() {
-            found = self.records().into_iter().filter(|record| record.content == *content).collect();
+    fn found(&self, key: &Key) -> Option<Record> {
+        let same = self.by_key.of(&key.0).filter_map(|number| self.record(number)).filter(|record| record.key == *key);
+        same.reduce(later)
+    }
+
+    /// Records that count and whose result is `content`: a few, when many tasks came to it.
+    pub(super) fn with_content(&mut self, content: &ContentHash) -> Vec<Record> {
+        self.by_key.update(&self.records, KEY);
+        self.by_content.update(&self.records, CONTENT);
+        let mut found: Vec<Record> = Vec::new();
+        for record in self.by_content.of(&content.0).filter_map(|number| self.record(number)) {
+            let counts = |record: &Record| self.found(&record.key).is_some_and(|counts| counts.content == *content);
+            if record.content == *content && !found.iter().any(|known| known.key == record.key) && counts(&record) {
+                found.extend(self.found(&record.key));
+            }
+            if found.len() == MOST_ALIKE {
+                break;
+            }
         }
         found
     }
 
-    /// All records, in the order of their keys.
+    /// All records that count, in the order of their keys.
     pub(super) fn records(&self) -> Vec<Record> {
-        let mut records: Vec<Record> = self.tasks.iter().map(|(key, entry)| self.record(*key, entry)).collect();
-        records.sort_by_key(|record| record.key);
+        let mut records: Vec<Record> = (0..self.records.len()).filter_map(|number| self.record(number)).collect();
+        records.sort_by(|a, b| a.key.cmp(&b.key).then_with(|| counting(b).cmp(&counting(a))));
+        records.dedup_by_key(|record| record.key);
         records
+    }
+
+    /// Damaged and contradicting records.
+    pub(super) fn faults(&self) -> Faults {
+        let mut records: Vec<Record> = (0..self.records.len()).filter_map(|number| self.record(number)).collect();
+        let damaged = self.records.len() - records.len();
+        records.sort_by_key(|record| record.key);
+        let differ = |pair: &&[Record]| pair[0].key == pair[1].key && pair[0].content != pair[1].content;
+        let tell = |pair: &[Record]| (pair[0].key, pair[0].content, pair[1].content);
+        Faults { damaged, contradictions: records.windows(2).filter(differ).map(tell).collect() }
     }
 
     /// Names of the segments read so far.
@@ -207,10 +251,20 @@ impl Index {
         self.seen.iter().cloned().collect()
     }
 
-    fn record(&self, key: Key, entry: &Entry) -> Record {
-        let Entry { content, seal, started, seconds, origin } = *entry;
-        Record { key, content, seal, started, seconds, origin: self.origins[origin as usize].clone() }
+    /// The record of this number, unless it is damaged.
+    fn record(&self, number: usize) -> Option<Record> {
+        let made = self.made.partition_point(|(from, _)| *from <= number) - 1;
+        unpack(&self.records[number], &self.origins[self.made[made].1 as usize])
     }
+}
+
+/// Of two records of one task the later one counts; of two at the same moment the same one everywhere.
+fn later(a: Record, b: Record) -> Record {
+    if counting(&b) > counting(&a) { b } else { a }
+}
+
+fn counting(record: &Record) -> (i64, ContentHash) {
+    (record.started, record.content)
 }
 
 /// The segment of this process; the file is made with the first record, and locked for as long as the process lives.
@@ -301,7 +355,8 @@ fn pack(record: &Record) -> [u8; RECORD] {
     bytes
 }
 
-fn unpack(bytes: &[u8; RECORD], origin: u32) -> Option<(Key, Entry)> {
+/// The record of these bytes, when its checksum is right.
+fn unpack(bytes: &[u8; RECORD], origin: &Arc<Origin>) -> Option<Record> {
     if blake3::hash(&bytes[..120]).as_bytes()[..8] != bytes[120..] {
         return None;
     }
@@ -310,14 +365,19 @@ fn unpack(bytes: &[u8; RECORD], origin: u32) -> Option<(Key, Entry)> {
         hash.copy_from_slice(&bytes[from..from + 32]);
         hash
     };
-    let word = |from: usize| {
-        let mut word = [0; 8];
-        word.copy_from_slice(&bytes[from..from + 8]);
-        word
-    };
-    let seal = Seal { digest: hash(64), size: u64::from_le_bytes(word(96)) };
-    let (started, seconds) = (i64::from_le_bytes(word(104)), f64::from_le_bytes(word(112)));
-    Some((Key(hash(0)), Entry { content: ContentHash(hash(32)), seal, started, seconds, origin }))
+    Some(Record {
+        key: Key(hash(KEY)),
+        content: ContentHash(hash(CONTENT)),
+        seal: Seal { digest: hash(64), size: word(bytes, 96) },
+        started: word(bytes, 104) as i64,
+        seconds: f64::from_bits(word(bytes, 112)),
+        origin: origin.clone(),
+    })
+}
+
+/// The eight bytes from `place` on, as a number.
+fn word(bytes: &[u8], place: usize) -> u64 {
+    bytes[place..].first_chunk().map_or(0, |word| u64::from_le_bytes(*word))
 }
 
 /// Hashes are evenly spread already: their first bytes serve as the hash of the map.

@@ -8,6 +8,7 @@
 //!   runs/N.json                 what a campaign did                                 campaign.rs
 //!   locks/*.lock                tasks being computed now                            lock.rs
 //!   aside/                      damaged files that were found and replaced
+//!   listing                     names of the objects, so that the folders need not be listed    presence.rs
 //! ```
 //!
 //! **What holds at any moment**, also after a process was killed: an object has its name only when it is complete; a
@@ -26,6 +27,7 @@ mod lock;
 mod memo;
 mod object;
 mod origin;
+mod presence;
 
 pub use campaign::{Campaign, StageRun};
 pub use clean::{Amount, Swept, Usage, Verdict};
@@ -40,7 +42,8 @@ use crate::artifact::{Artifact, ContentHash, Key};
 use cache::Cache;
 use disk::Disk;
 use journal::{Index, Segment};
-use object::{Presence, Seal};
+use object::Seal;
+use presence::Presence;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};

@@ -17,12 +17,9 @@
 //! half-written is noticed by its digest.
 
 use super::disk::Disk;
-use super::journal::FirstBytes;
 use super::{Damage, Guard, StoreError, hdf5};
 use crate::artifact::{ContentHash, Key};
-use std::collections::HashSet;
 use std::fs;
-use std::hash::BuildHasherDefault;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -155,88 +152,27 @@ pub(super) fn set_aside(disk: &Disk, path: &Path, why: &str) -> Result<Damage, S
 
 /// Calls `visit` with the folder and the name of every file among the objects, temporary ones included.
 pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Path, &str)) -> Result<(), StoreError> {
-    let objects = disk.root.join("objects");
-    let shards = match fs::read_dir(&objects) {
-        Ok(shards) => shards,
-        Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => return Ok(()),
-        Err(error) => return Err(disk.fail("list", &objects, error)),
-    };
-    for shard in shards.flatten() {
-        let folder = shard.path();
-        let Ok(files) = fs::read_dir(&folder) else { continue };
-        for file in files.flatten() {
-            if let Some(name) = file.file_name().to_str() {
-                visit(&folder, name);
-            }
-        }
+    for folder in shards(disk)? {
+        list_shard(&folder, |name| visit(&folder, name));
     }
     Ok(())
 }
 
-/// Which objects are on the disk: asked one by one at first, and by one listing of the folders when many are asked.
-#[derive(Default)]
-pub(super) struct Presence {
-    asked: usize,
-    listed: Option<HashSet<[u64; 2], BuildHasherDefault<FirstBytes>>>,
-}
-
-/// From this many questions on the folders are listed: 256 listings take about as long as 1,000 questions.
-const LIST_FROM: usize = 500;
-
-impl Presence {
-    /// Announces that `count` objects will be asked for.
-    pub(super) fn expect(&mut self, disk: &Disk, count: usize) -> Result<(), StoreError> {
-        self.asked += count;
-        if self.asked < LIST_FROM || self.listed.is_some() {
-            return Ok(());
-        }
-        let mut listed = HashSet::default();
-        list(disk, |_, name| listed.extend(short_of_name(name)))?;
-        self.listed = Some(listed);
-        Ok(())
-    }
-
-    /// Whether the object is there; call [`Presence::expect`] first. Objects of other processes that came after the
-    /// listing are found by asking for the very file.
-    pub(super) fn contains(&mut self, disk: &Disk, id: &ObjectId) -> bool {
-        if self.listed.as_ref().is_some_and(|listed| listed.contains(&short(id))) {
-            return true;
-        }
-        let found = fs::metadata(path(disk, id)).is_ok_and(|metadata| metadata.is_file());
-        if found {
-            self.add(id);
-        }
-        found
-    }
-
-    pub(super) fn add(&mut self, id: &ObjectId) {
-        if let Some(listed) = &mut self.listed {
-            listed.insert(short(id));
-        }
-    }
-
-    pub(super) fn remove(&mut self, id: &ObjectId) {
-        if let Some(listed) = &mut self.listed {
-            listed.remove(&short(id));
-        }
+/// The folders that objects lie in.
+pub(super) fn shards(disk: &Disk) -> Result<Vec<PathBuf>, StoreError> {
+    let objects = disk.root.join("objects");
+    match fs::read_dir(&objects) {
+        Ok(shards) => Ok(shards.flatten().map(|shard| shard.path()).collect()),
+        Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => Ok(Vec::new()),
+        Err(error) => Err(disk.fail("list", &objects, error)),
     }
 }
 
-/// The first bytes of content and key, which tell all objects apart.
-fn short(id: &ObjectId) -> [u64; 2] {
-    [first_word(&id.content.0), first_word(&id.key.0)]
-}
-
-/// The first bytes of a hash, as names show them.
-pub(super) fn first_word(hash: &[u8; 32]) -> u64 {
-    hash.iter().take(8).fold(0, |word, &byte| word << 8 | u64::from(byte))
-}
-
-/// As [`short`], from the name of a file.
-pub(super) fn short_of_name(name: &str) -> Option<[u64; 2]> {
-    let (content, key) = (name.get(..16)?, name.get(65..81)?);
-    if name.len() != 84 {
-        return None;
+/// Calls `visit` with the name of every file in one of these folders.
+pub(super) fn list_shard(folder: &Path, mut visit: impl FnMut(&str)) {
+    for file in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if let Some(name) = file.file_name().to_str() {
+            visit(name);
+        }
     }
-    Some([u64::from_str_radix(content, 16).ok()?, u64::from_str_radix(key, 16).ok()?])
 }

@@ -63,7 +63,8 @@ fn main() {
         Box::new(move || assert!(keys.iter().all(|key| store.find(key).expect("readable").is_some())))
     });
     let records = open().records().expect("readable");
-    let memo = Memo { note: String::new(), objects: records.iter().map(|record| record.object()).collect() };
+    let objects = records.iter().map(|record| record.object()).collect();
+    let memo = Memo { objects, ..Memo::default() };
     open().keep_memo(&keys[0], &memo).expect("kept");
     report("opened, memo read, all objects seen", 1, 7, || {
         let (root, key) = (root.clone(), keys[0]);

@@ -19,8 +19,8 @@ fn gc_removes_what_is_not_reachable_and_nothing_else() {
     let shard = open(folder.path()).path(&records[0].object()).parent().unwrap().to_owned();
     fs::write(shard.join(".writing-left"), b"half").unwrap();
     let store = open(folder.path());
-    store.keep_memo(&Key::of("old"), &Memo { note: String::new(), objects: vec![records[9].object()] }).unwrap();
-    let kept_memo = Memo { note: "all well".to_owned(), objects: vec![records[1].object()] };
+    store.keep_memo(&Key::of("old"), &Memo { objects: vec![records[9].object()], ..Memo::default() }).unwrap();
+    let kept_memo = Memo { note: "all well".to_owned(), data: vec![1, 2], objects: vec![records[1].object()] };
     store.keep_memo(&Key::of("new"), &kept_memo).unwrap();
     let before = objects(folder.path());
 
@@ -107,7 +107,7 @@ fn a_memo_comes_back_and_a_damaged_one_does_not() {
     let folder = tempfile::tempdir().unwrap();
     let store = open(folder.path());
     let objects: Vec<_> = (0..3).map(|number| put(&store, number).object()).collect();
-    let (key, memo) = (Key::of("stage"), Memo { note: "σ = 3".to_owned(), objects });
+    let (key, memo) = (Key::of("stage"), Memo { note: "σ = 3".to_owned(), data: Vec::new(), objects });
     assert_eq!(store.memo(&key).unwrap(), None);
     store.keep_memo(&key, &memo).unwrap();
     store.keep_memo(&key, &memo).unwrap();

@@ -1,0 +1,208 @@
+//! What is remembered of the runs of a fan-out, so that a design with one new row does not look at ten thousand old ones.
+//!
+//! A run is a function of its point, its replicate, and of what all rows share. While the shared part is as it was, the
+//! runner knows the key and the result of an old row without making its task, and a [`Brief`] of it: all that gathering
+//! takes from a run. Briefs only spare work: with them, without them or with some, the gathered table is the same.
+
+use super::Point;
+use super::rows::Responses;
+use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
+
+/// Names one row of any design: its point and replicate.
+pub type RowName = [u8; 16];
+
+/// The name of a row.
+pub fn row_name(point: &Point, replicate: u64) -> RowName {
+    let mut hasher = blake3::Hasher::new();
+    for (factor, value) in point {
+        hasher.update(&(factor.len() as u64).to_le_bytes());
+        hasher.update(factor.as_bytes());
+        hasher.update(&(value + 0.0).to_bits().to_le_bytes());
+    }
+    hasher.update(&replicate.to_le_bytes());
+    let mut name = RowName::default();
+    name.copy_from_slice(&hasher.finalize().as_bytes()[..16]);
+    name
+}
+
+/// A run that was made before and need not be looked at again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kept<'a> {
+    /// Key of its task.
+    pub key: Key,
+    /// Its result.
+    pub content: ContentHash,
+    /// What gathering takes from it.
+    pub brief: Brief<'a>,
+}
+
+/// The kept runs among the inputs of a gathering task.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeptRuns {
+    /// Of each: its place among the inputs, design row, key of its task, and result.
+    pub runs: Vec<(usize, usize, Key, ContentHash)>,
+    /// Their briefs, in the same order.
+    pub briefs: Briefs,
+}
+
+impl KeptRuns {
+    /// Adds the run at a place among the inputs.
+    pub fn push(&mut self, place: usize, row: usize, kept: Kept<'_>) {
+        self.runs.push((place, row, kept.key, kept.content));
+        self.briefs.push(kept.brief);
+    }
+
+    /// As the input `kept` of a job: places and briefs.
+    pub fn artifact(&self) -> Artifact {
+        let places = self.runs.iter().map(|(place, ..)| *place as i64).collect();
+        let places = Table::default().ints_column("place", "", places);
+        let briefs = Node::Bytes(self.briefs.to_bytes());
+        Artifact::new("kept", 1, Group::new().with("places", Node::Table(places)).with("briefs", briefs))
+    }
+}
+
+/// Failure of a run, empty when there is none, and name, unit and value of each response.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Brief<'a> {
+    failure: &'a str,
+    names: &'a [(String, String)],
+    values: &'a [f64],
+}
+
+impl<'a> Brief<'a> {
+    /// As gathering sees a run.
+    pub(super) fn responses(&self) -> Responses<'a> {
+        let found = self.names.iter().zip(self.values);
+        (self.failure, found.map(|((name, unit), value)| (name.as_str(), *value, unit.as_str())).collect())
+    }
+}
+
+/// Briefs of many runs. Runs of one simulator have the same few failures and names of responses, so these stand once.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Briefs {
+    failures: Vec<String>,
+    /// Names and units of the responses that some run has.
+    shapes: Vec<Vec<(String, String)>>,
+    /// Of each run: failure, shape, and where its values begin.
+    runs: Vec<[u32; 3]>,
+    values: Vec<f64>,
+}
+
+impl Briefs {
+    /// Number of runs.
+    pub fn len(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.runs.is_empty()
+    }
+
+    /// Adds a run.
+    pub fn push(&mut self, brief: Brief<'_>) {
+        let failure = place_of(&mut self.failures, |known| known == brief.failure, || brief.failure.to_owned());
+        let shape = place_of(&mut self.shapes, |known| known == brief.names, || brief.names.to_vec());
+        self.runs.push([failure, shape, self.values.len() as u32]);
+        self.values.extend_from_slice(brief.values);
+    }
+
+    /// Adds a run as its artifact holds it; false when it holds no responses.
+    pub fn push_run(&mut self, run: &Artifact) -> bool {
+        let Ok((failure, responses)) = super::rows::responses(run) else { return false };
+        let names: Vec<_> = responses.iter().map(|(name, _, unit)| ((*name).to_owned(), (*unit).to_owned())).collect();
+        let values: Vec<f64> = responses.iter().map(|(_, value, _)| *value).collect();
+        self.push(Brief { failure, names: &names, values: &values });
+        true
+    }
+
+    /// One run.
+    pub fn get(&self, run: usize) -> Option<Brief<'_>> {
+        let [failure, shape, first] = self.runs.get(run)?.map(|number| number as usize);
+        let (failure, names) = (self.failures.get(failure)?, self.shapes.get(shape)?);
+        Some(Brief { failure, names, values: self.values.get(first..first + names.len())? })
+    }
+
+    /// Length, texts as JSON, three numbers for each run, values; little-endian.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let texts = serde_json::to_vec(&(&self.failures, &self.shapes)).unwrap_or_else(|e| panic!("BUG: texts: {e}"));
+        let mut bytes = Vec::with_capacity(16 + texts.len() + 12 * self.runs.len() + 8 * self.values.len());
+        bytes.extend_from_slice(&(texts.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(&(self.runs.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(&texts);
+        self.runs.iter().flatten().for_each(|number| bytes.extend_from_slice(&number.to_le_bytes()));
+        self.values.iter().for_each(|value| bytes.extend_from_slice(&value.to_bits().to_le_bytes()));
+        bytes
+    }
+
+    /// Reads what [`Briefs::to_bytes`] wrote.
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let mut rest = bytes;
+        let mut take = |length: usize| {
+            let (taken, left) = rest.split_at_checked(length)?;
+            rest = left;
+            Some(taken)
+        };
+        let mut number = || take(8)?.first_chunk().map(|number| u64::from_le_bytes(*number) as usize);
+        let (texts, runs) = (number()?, number()?);
+        let (failures, shapes) = serde_json::from_slice(take(texts)?).ok()?;
+        let runs = take(runs.checked_mul(12)?)?.as_chunks::<4>().0.as_chunks::<3>().0;
+        let runs = runs.iter().map(|run| run.map(u32::from_le_bytes)).collect();
+        let (values, []) = rest.as_chunks::<8>() else { return None };
+        let values = values.iter().map(|value| f64::from_bits(u64::from_le_bytes(*value))).collect();
+        Some(Self { failures, shapes, runs, values })
+    }
+}
+
+/// Where the value stands in the list; it is added when it does not. The last one added is the likeliest.
+fn place_of<T>(list: &mut Vec<T>, is: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> u32 {
+    let found = list.iter().rposition(is).unwrap_or_else(|| {
+        list.push(make());
+        list.len() - 1
+    });
+    found as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::rows::response_table;
+
+    fn run(failure: &str, responses: &[(&str, f64, &str)]) -> Artifact {
+        let group = Group::new()
+            .with("failure", Node::Text(failure.to_owned()))
+            .with("responses", Node::Table(response_table(responses)));
+        Artifact::new("run", 1, group)
+    }
+
+    #[test]
+    fn briefs_hold_what_gathering_sees_and_survive_the_disk() {
+        let runs = [
+            run("", &[("UCS", 3e7, "Pa"), ("E", 2e10, "Pa")]),
+            run("no peak", &[]),
+            run("", &[("UCS", -0.0, "Pa"), ("E", f64::INFINITY, "Pa")]),
+            run("", &[("E", 1.5, "GPa")]),
+        ];
+        let mut briefs = Briefs::default();
+        assert!(runs.iter().all(|run| briefs.push_run(run)));
+        assert!(!briefs.push_run(&Artifact::new("run", 1, Group::new())));
+        let bytes = briefs.to_bytes();
+        let back = Briefs::from_bytes(&bytes).unwrap();
+        assert_eq!((back.len(), back.shapes.len(), back.failures.len()), (4, 3, 2));
+        for (number, run) in runs.iter().enumerate() {
+            assert_eq!(back.get(number).unwrap().responses(), crate::stage::rows::responses(run).unwrap());
+        }
+        assert_eq!(back.get(4), None);
+        assert!((0..bytes.len()).all(|end| Briefs::from_bytes(&bytes[..end]).is_none_or(|cut| cut != back)));
+    }
+
+    #[test]
+    fn rows_are_told_apart_by_point_and_replicate() {
+        let point = |name: &str, value: f64| Point::from([(name.to_owned(), value)]);
+        let base = row_name(&point("a", 1.0), 1);
+        assert_eq!(row_name(&point("z", -0.0), 1), row_name(&point("z", 0.0), 1));
+        for other in [row_name(&point("a", 2.0), 1), row_name(&point("a", 1.0), 2), row_name(&point("b", 1.0), 1)] {
+            assert_ne!(base, other);
+        }
+    }
+}
