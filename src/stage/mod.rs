@@ -42,6 +42,7 @@ pub mod design;
 pub mod figure;
 pub mod fitted;
 pub mod formula;
+mod notes;
 mod published;
 pub mod range;
 pub mod regression;
