@@ -254,7 +254,7 @@ mod tests {
         let faults = check(&factors);
         let text: Vec<String> = faults.iter().map(ToString::to_string).collect();
         assert_eq!(text.len(), 7, "{text:#?}");
-        assert!(text[0].starts_with("factor `a` has 1 level(s)"));
+        assert!(text[0].starts_with("factor `a` has one level"));
         assert!(text[1].contains("named twice, as factors 1 and 2"));
         assert!(text[2].contains("empty range, 2 to 2"));
         assert!(text[3].contains("`c`: level 2 is NaN"));

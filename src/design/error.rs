@@ -26,7 +26,8 @@ pub enum Fault {
     },
     /// A factor that cannot vary.
     #[error(
-        "factor `{factor}` has {found} level(s); a factor needs at least two, or else it is a constant of the model"
+        "factor `{factor}` has {}; a factor needs at least two, or else it is a constant of the model",
+        levels(found)
     )]
     TooFewLevels {
         /// The factor.
@@ -128,6 +129,14 @@ pub enum Fault {
         /// What was expected.
         wanted: String,
     },
+}
+
+fn levels(found: &usize) -> String {
+    match found {
+        0 => "no levels".to_owned(),
+        1 => "one level".to_owned(),
+        more => format!("{more} levels"),
+    }
 }
 
 /// Everything that is wrong with a request, one fault a line.

@@ -3,7 +3,8 @@
 //! The arrays come from finite fields, Hadamard matrices and difference schemes ([`construct`] lists constructions and
 //! sources; Hedayat, Sloane & Stufken 1999, *Orthogonal Arrays*, doi:10.1007/978-1-4612-1478-6, is the general
 //! reference). A column of s levels may be replaced by the columns of an array of s runs, so mixed tables such as
-//! L18(2^1 3^7), L32(2^1 4^9), L36(2^11 3^12) and L36(2^3 3^13) come out of the symmetrical ones.
+//! L18(2^1 3^7), L32(2^1 4^9), L36(2^11 3^12) and L36(2^3 3^13) come out of the symmetrical ones, and L24(2^16 3^1) out of
+//! L24(2^12 12^1) and L12(2^4 3^1).
 //!
 //! A factor with fewer levels than its column has the surplus levels merged into its own ones (Addelman 1962,
 //! *Technometrics* 4, 21, doi:10.1080/00401706.1962.10489985): in L64(4^21) with three-level factors one level stands

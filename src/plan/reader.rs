@@ -111,6 +111,16 @@ fn in_words(wanted: &str) -> String {
     words.to_owned()
 }
 
+/// A table with its keys, as long as a person can take them in.
+fn table_of(keys: &[&str]) -> String {
+    match keys {
+        [] => "a table".to_owned(),
+        keys if keys.len() > 6 => "a table".to_owned(),
+        [key] => format!("a table with the key `{key}`"),
+        keys => format!("a table with the keys `{}`", keys.join("`, `")),
+    }
+}
+
 /// Reads one node.
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a>(pub(super) &'a Node);
@@ -203,7 +213,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 Some(name) => Err(de::Error::unknown_field(name, fields)),
                 None => self.deserialize_any(visitor),
             },
-            _ => Err(Unread::new(Cause::Wanted("a table".to_owned()))),
+            _ => Err(Unread::new(Cause::Wanted(table_of(fields)))),
         }
     }
 

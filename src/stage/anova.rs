@@ -2,10 +2,11 @@
 //!
 //! The result has the tables `anova` (`response,source,df,ss,ms,f,p,significance,eta2,omega2`; sources are the factors,
 //! then interactions, `residual`, `total`), `fit`, and `residuals`, in which runs that the model cannot explain are
-//! flagged. With `published` the printed F values stand beside the computed ones.
+//! flagged; `notes` says what to look at. With `published` the printed F values stand beside the computed ones.
 
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
 use super::fitted::{fit_table, residual_table};
+use super::notes::{Notes, short};
 use super::published::{Computed, beside, prints};
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
@@ -169,6 +170,10 @@ impl Stage for Anova {
         if let Pairs::List(pairs) = &self.interactions {
             let names: Vec<String> = pairs.iter().flat_map(|(a, b)| [a.clone(), b.clone()]).collect();
             found.extend(check_names(context, &names, &[]).into_iter().map(retitled("interactions")));
+            for (a, _) in pairs.iter().filter(|(a, b)| a == b) {
+                let complaint = Complaint::new("interactions", format!("`{a}` is paired with itself"));
+                found.push(complaint.hint("name two factors, as in [[\"Ec\", \"mu\"]]"));
+            }
         }
         let levels = [("alpha", self.alpha), ("alpha_high", self.alpha_high), ("outlier_alpha", self.outlier_alpha)];
         let levels = levels.into_iter().chain(self.pool_above.map(|p| ("pool_above", p)));
@@ -203,7 +208,8 @@ impl Stage for Anova {
 impl Kind for Anova {
     const NAME: &'static str = "anova";
     const ABOUT: &'static str = "analysis of variance: sums of squares, F, p and contribution of every factor";
-    const WORKS: &'static [Work] = &[Work { name: "anova", version: 1, run: analyse }];
+    // 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "anova", version: 2, run: analyse }];
 }
 
 fn settings(params: &Params) -> Settings {
@@ -242,19 +248,22 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
             ""
         }
     };
-    let prints = prints(job, "source", "f")?;
-    if prints.is_some() || !params.empty.is_empty() {
-        let computed: Vec<Computed> = lines
-            .iter()
-            .map(|own| Computed {
-                response: &own.0.response,
-                line: &own.1.source,
-                value: own.1.f,
-                rounding: rounding(own).unwrap_or(0.0),
-                remark: remark(own.1),
-            })
-            .collect();
-        table = beside(table, &prints.unwrap_or_default(), &computed);
+    match prints(job, "source", "f")? {
+        Some(prints) => {
+            let computed: Vec<Computed> = lines
+                .iter()
+                .map(|own| Computed {
+                    response: &own.0.response,
+                    line: &own.1.source,
+                    value: own.1.f,
+                    rounding: rounding(own).unwrap_or(0.0),
+                    remark: remark(own.1),
+                })
+                .collect();
+            table = beside(table, &prints, &computed);
+        }
+        None if params.empty.is_empty() => {}
+        None => table = table.texts_column("remark", "", Rows(&lines).texts(|(_, line)| remark(line))),
     }
     let residuals = analyses.iter().map(|a| (a.response.as_str(), a.residuals.as_slice()));
     let fits: Vec<_> = analyses.iter().map(|a| &a.fit).collect();
@@ -269,8 +278,36 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let root = Group::new()
         .with("anova", Node::Table(table))
         .with("fit", Node::Table(fit))
+        .with("notes", Node::Table(notes(&analyses, &params).table()))
         .with("residuals", Node::Table(residual_table(residuals)));
     Ok(Artifact::new("anova", 1, root))
+}
+
+/// What a person should see at once.
+fn notes(analyses: &[Analysis], params: &Params) -> Notes {
+    let mut notes = Notes::default();
+    for analysis in analyses {
+        let response = analysis.response.as_str();
+        for line in analysis.lines.iter().filter(|line| params.empty.contains(&line.source)) {
+            if let (Some(f), Some(p)) = (line.f, line.p.filter(|p| *p <= params.alpha)) {
+                let found =
+                    format!("the empty column `{}` is significant (F = {}, p = {})", line.source, short(f), short(p));
+                notes.add(response, format!("{found}: the model lacks interactions or the table has an error"));
+            }
+        }
+        notes.fit(&analysis.fit);
+        notes.residuals(response, &analysis.residuals);
+        if !analysis.pooled.is_empty() {
+            notes.add(response, format!("pooled into the error: {}", analysis.pooled.join(", ")));
+        }
+        if !analysis.not_estimable.is_empty() {
+            notes.add(
+                response,
+                format!("not told apart by the runs, so left out: {}", analysis.not_estimable.join(", ")),
+            );
+        }
+    }
+    notes
 }
 
 fn variance_table(lines: &[(&Analysis, &Line)]) -> Table {

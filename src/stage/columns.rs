@@ -139,8 +139,10 @@ fn reals(table: &Table, name: &str, unit: Option<&str>) -> Result<Vec<f64>, Stag
     let mut values = match &column.values {
         Values::Reals(values) => values.clone(),
         Values::Ints(values) => values.iter().map(|&v| v as f64).collect(),
-        Values::Texts(_) => {
-            let message = format!("column `{name}` holds texts where numbers are wanted");
+        Values::Texts(texts) => {
+            let number = |text: &String| text.is_empty() || text.parse().is_ok_and(f64::is_finite);
+            let (row, text) = texts.iter().enumerate().find(|(_, text)| !number(text)).map_or((0, ""), |(i, t)| (i, t));
+            let message = format!("row {}: `{name}` is `{text}`, which is not a finite number", row + 1);
             return Err(StageError::new(message).hint("leave a cell empty where a run has no value"));
         }
     };

@@ -2,6 +2,7 @@
 //! and `rsm`, and read back by every stage that predicts.
 
 use super::columns::{Columns, Rows, refused, runs};
+use super::notes::Notes;
 use super::published::{Computed, beside, prints};
 use super::{Failure, Job, StageError};
 use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
@@ -95,11 +96,34 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         .with("path", Node::Table(predict::path_table(&found)))
         .with("domain", Node::Table(domain_table(&found)))
         .with("selection", Node::Table(selection_table(&found)))
+        .with("notes", Node::Table(notes(&found, params.predict.as_ref()).table()))
         .with("models", Node::Group(keep::kept(found.iter().map(|(f, r)| (f.response.as_str(), &r.model)))));
     if let Some(points) = &params.predict {
         root.put("predictions", Node::Table(predict::prediction_table(&found, points)));
     }
     Ok(Artifact::new("surfaces", 1, root))
+}
+
+/// What a person should see at once.
+fn notes(found: &[(&Fitting, Regression)], points: Option<&Predict>) -> Notes {
+    let mut notes = Notes::default();
+    for (fitting, regression) in found {
+        let response = fitting.response.as_str();
+        notes.fit(&regression.fit);
+        notes.residuals(response, &regression.residuals);
+        notes.inflation(response, if regression.coded.is_empty() { &regression.natural } else { &regression.coded });
+        if let Some(place) = canonical(&regression.model).filter(|place| !place.inside) {
+            let nature = place.nature.word();
+            notes.add(
+                response,
+                format!("the stationary point ({nature}) lies outside the domain, where nothing was run"),
+            );
+        }
+    }
+    if let Some(points) = points {
+        predict::extrapolations(found, points, &mut notes);
+    }
+    notes
 }
 
 fn named(about: &str) -> Table {

@@ -164,13 +164,31 @@ impl Stage for Formula {
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
         let values = rows::values(self.material.as_ref(), point, known.context)?;
-        let values = values.into_iter().map(|(path, value)| (path.replace('.', "_"), value)).collect();
+        let mut values: BTreeMap<String, f64> =
+            values.into_iter().map(|(path, value)| (path.replace('.', "_"), value)).collect();
+        for (response, name) in self.named() {
+            // a factor that sets nothing else still stands where a formula names it
+            match point.get(&name) {
+                Some(value) => drop(values.insert(name, *value)),
+                None if values.contains_key(&name) => {}
+                None => return Err(unset(&response, &name)),
+            }
+        }
         let params = Params { responses: self.responses.clone(), values, replicate: number };
         Ok(Task::new("formula", json!(params)).seed(known.context.seed))
     }
 }
 
 impl Formula {
+    /// Responses and the names that their formulas use.
+    fn named(&self) -> Vec<(String, String)> {
+        let of = |(name, response): (&String, &Response)| {
+            let vars = parse(&response.value).map(|formula| formula.var_names().to_vec()).unwrap_or_default();
+            vars.into_iter().map(|var| (name.clone(), var)).collect::<Vec<_>>()
+        };
+        self.responses.iter().flat_map(of).collect()
+    }
+
     /// Every name that a formula may use.
     fn known_names(&self, context: &Context) -> Vec<String> {
         let material = self.material.as_ref().and_then(|name| context.materials.get(name));
@@ -191,12 +209,8 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     let mut responses = Vec::new();
     for (name, response) in &params.responses {
         let formula = parse(&response.value).map_err(StageError::new)?;
-        let values = formula.var_names().iter().map(|var| {
-            params.values.get(var).copied().ok_or_else(|| {
-                StageError::new(format!("response `{name}` needs `{var}`, which this point does not set"))
-                    .hint("name it as a factor of the design, or give a material that holds it")
-            })
-        });
+        let values =
+            formula.var_names().iter().map(|var| params.values.get(var).copied().ok_or_else(|| unset(name, var)));
         let value =
             formula.eval(&values.collect::<Result<Vec<_>, _>>()?).map_err(|e| StageError::new(e.to_string()))?;
         responses.push((name.as_str(), value * (1.0 + response.scatter * stream.normal()), response.unit.as_str()));
@@ -207,6 +221,12 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
         .with("failure", Node::Text(failure))
         .with("responses", Node::Table(rows::response_table(&responses)));
     Ok(Artifact::new("run", 1, root))
+}
+
+/// The fault of a formula that names what a run does not have.
+fn unset(response: &str, name: &str) -> StageError {
+    StageError::new(format!("response `{response}` needs `{name}`, which neither the design nor the material sets"))
+        .hint("name it as a factor of the design, or give a material that holds it")
 }
 
 /// The point as text: what the scatter of a run depends on, besides seed and replicate.

@@ -43,6 +43,7 @@ pub mod figure;
 pub mod fitted;
 pub mod formula;
 pub mod ledger;
+mod notes;
 mod published;
 pub mod range;
 pub mod regression;

@@ -1,9 +1,10 @@
 //! `kind = "range"`: range analysis of an orthogonal table, per factor and response.
 //!
 //! The result has the table `range` (`response,factor,level_1,…,range,rank`: mean response at each level, in the unit of
-//! the response) and the table `levels` (the values that level 1, 2, … stand for).
+//! the response) and the table `levels` (the values that level 1, 2, … stand for), and `notes`.
 
 use super::columns::{Columns, Rows, Wanted, check_names, refused, runs};
+use super::notes::Notes;
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
 use crate::stats::range::{Range as Line, range_analysis};
@@ -61,7 +62,8 @@ impl Stage for Range {
 impl Kind for Range {
     const NAME: &'static str = "range";
     const ABOUT: &'static str = "range analysis: mean response per level, range and rank of every factor";
-    const WORKS: &'static [Work] = &[Work { name: "range", version: 1, run: analyse }];
+    // 2: notes
+    const WORKS: &'static [Work] = &[Work { name: "range", version: 2, run: analyse }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
@@ -86,9 +88,24 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         .reals_column("range", "", "greatest mean minus least", rows.reals(|l| Some(l.range)))
         .ints_column("rank", "1 has the largest range", rows.ints(|l| l.rank))
         .ints_column("missing", "runs without a value", rows.ints(|l| l.missing));
-    let root =
-        Group::new().with("range", Node::Table(range)).with("levels", Node::Table(levels(&columns, &lines, most)));
+    let root = Group::new()
+        .with("range", Node::Table(range))
+        .with("levels", Node::Table(levels(&columns, &lines, most)))
+        .with("notes", Node::Table(notes(&lines, sample.rows()).table()));
     Ok(Artifact::new("range", 1, root))
+}
+
+/// Responses whose missing runs spoil the balance of the table.
+fn notes(lines: &[Line], rows: usize) -> Notes {
+    let mut notes = Notes::default();
+    for lines in lines.chunk_by(|a, b| a.response == b.response) {
+        let (response, missing) = (lines[0].response.as_str(), lines[0].missing);
+        notes.missing(response, rows - missing, missing);
+        if missing > 0 {
+            notes.add(response, "levels are met unequally often for it, so that a range holds some of other factors");
+        }
+    }
+    notes
 }
 
 /// What level 1, 2, … of each factor stand for.

@@ -1,7 +1,8 @@
 //! `kind = "regression"`: linear models of one table, one per response.
 //!
 //! The result is an artifact `surfaces`: tables `coefficients` (natural units), `coded`, `fit`, `residuals`,
-//! `stationary`, `axes`, `domain`, `selection`, and the models that prediction needs.
+//! `stationary`, `axes`, `path`, `domain`, `selection`, `predictions` where they are asked for, `notes` (what to look
+//! at), and the models that prediction needs.
 
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
@@ -54,6 +55,16 @@ pub(super) fn check_levels(select: Option<Direction>, select_alpha: Option<f64>,
     idle.into_iter().chain(level).chain(check_probability("outlier_alpha", outlier)).collect()
 }
 
+/// Complaints about a term that a model lists twice, at `path`.
+pub(super) fn check_doubled(terms: &[Term], path: &[String]) -> Vec<Complaint> {
+    let doubled = (0..terms.len()).filter(|&i| terms[..i].iter().any(|other| other.same(&terms[i])));
+    let complaint = |i: usize| {
+        let message = format!("the model has `{}` twice", terms[i]);
+        Complaint { path: path.to_vec(), message, hint: Some("list each term once".to_owned()) }
+    };
+    doubled.map(complaint).collect()
+}
+
 /// The factors that a list of terms names, each once.
 pub(super) fn factors_of(terms: &[Term]) -> Vec<String> {
     let mut names: Vec<String> = terms.iter().flat_map(Term::factors).map(str::to_owned).collect();
@@ -81,7 +92,9 @@ impl Stage for Regression {
         let mut found = Vec::new();
         for (response, terms) in &self.terms {
             let own = check_names(context, &factors_of(terms), std::slice::from_ref(response));
-            found.extend(own.into_iter().map(|c| Complaint { path: vec!["terms".into(), response.clone()], ..c }));
+            let path = vec!["terms".to_owned(), response.clone()];
+            found.extend(check_doubled(terms, &path));
+            found.extend(own.into_iter().map(|c| Complaint { path: path.clone(), ..c }));
         }
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
@@ -130,5 +143,6 @@ impl Stage for Regression {
 impl Kind for Regression {
     const NAME: &'static str = "regression";
     const ABOUT: &'static str = "linear regression of responses on factors, from one table";
-    const WORKS: &'static [Work] = &[Work { name: "fit", version: 1, run: fit }];
+    // 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "fit", version: 2, run: fit }];
 }

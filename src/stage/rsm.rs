@@ -4,7 +4,7 @@
 
 use super::columns::{Columns, Wanted, check_names, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict};
-use super::regression::{check_levels, factors_of, outlier_alpha, with_constant};
+use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
 use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::stats::selection::Direction;
 use crate::stats::terms::Term;
@@ -56,7 +56,9 @@ impl Stage for Rsm {
             found.push(Complaint::new("responses", "no response is named").hint("responses = [\"UCS\"]"));
         }
         if self.tables.len() != 1 && self.tables.len() != self.responses.len() {
-            let message = format!("{} tables for {} responses", self.tables.len(), self.responses.len());
+            let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+            let (tables, responses) = (self.tables.len(), self.responses.len());
+            let message = format!("{} for {}", counted(tables, "table"), counted(responses, "response"));
             found.push(
                 Complaint::new("tables", message).hint("one table per response in the same order, or one for all"),
             );
@@ -70,6 +72,7 @@ impl Stage for Rsm {
             let path = vec!["terms".to_owned(), response.clone()];
             let own = check_names(context, &factors_of(terms), &[]);
             found.extend(own.into_iter().map(|c| Complaint { path: path.clone(), ..c }));
+            found.extend(check_doubled(terms, &path));
             if !self.responses.contains(response) {
                 let message = format!("`{response}` is none of the stage's responses, so its terms have no effect");
                 found.push(Complaint { path, message, hint: None });

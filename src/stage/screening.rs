@@ -1,11 +1,13 @@
 //! `kind = "screening"`: effects of a two-level design, judged by Lenth's limits where nothing else estimates the noise.
 //!
 //! The result has the tables `effects` (one row per response and term, with the coordinates of normal, half-normal and
-//! Pareto plots), `limits` (pseudo standard error and margins), `fit` and `residuals`.
+//! Pareto plots), `limits` (pseudo standard error and margins), `fit`, `residuals` and `notes` (what stands out, and
+//! what to look at).
 
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
 use super::fitted::{fit_table, residual_table};
-use super::regression::factors_of;
+use super::notes::Notes;
+use super::regression::{check_doubled, factors_of};
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
 use crate::stats::screening::{Effect, Screening as Found, screen};
@@ -30,6 +32,8 @@ pub struct Screening {
     /// Level of the margins of error.
     #[serde(default = "alpha")]
     pub alpha: f64,
+    /// Column with the number of replicates that each row is the mean of.
+    pub weights: Option<String>,
 }
 
 fn alpha() -> f64 {
@@ -55,20 +59,22 @@ impl Stage for Screening {
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = check_names(context, &[], &self.responses);
         let terms = check_names(context, &factors_of(&self.terms), &[]);
+        found.extend(check_doubled(&self.terms, &["terms".to_owned()]));
         found.extend(terms.into_iter().map(|c| Complaint { path: vec!["terms".to_owned()], ..c }));
         found.extend(check_probability("alpha", self.alpha));
         found
     }
 
     fn settings(&self) -> Value {
-        json!({ "responses": self.responses, "terms": self.terms, "alpha": self.alpha })
+        json!({ "responses": self.responses, "terms": self.terms, "alpha": self.alpha, "weights": self.weights })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let input = known.one("table")?;
         let artifact = known.load(input)?;
         let factors = factors_of(&self.terms);
-        let wanted = Wanted { factors: &factors, responses: &self.responses, weights: None, levels: false };
+        let wanted =
+            Wanted { factors: &factors, responses: &self.responses, weights: self.weights.as_deref(), levels: false };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
         let terms = if self.terms.is_empty() { Term::first_order(&columns.factor_names()) } else { self.terms.clone() };
         let params = Params { columns, terms, alpha: self.alpha };
@@ -79,7 +85,8 @@ impl Stage for Screening {
 impl Kind for Screening {
     const NAME: &'static str = "screening";
     const ABOUT: &'static str = "effects of a two-level design with Lenth's limits";
-    const WORKS: &'static [Work] = &[Work { name: "screening", version: 1, run: analyse }];
+    // 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "screening", version: 2, run: analyse }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
@@ -94,8 +101,42 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         .with("effects", Node::Table(effect_table(&found)))
         .with("limits", Node::Table(limit_table(&found)))
         .with("fit", Node::Table(fit_table(&fits)))
+        .with("notes", Node::Table(notes(&found).table()))
         .with("residuals", Node::Table(residual_table(residuals)));
     Ok(Artifact::new("screening", 1, root))
+}
+
+/// What stands out of the noise, and what to look at.
+fn notes(found: &[Found]) -> Notes {
+    let mut notes = Notes::default();
+    for screened in found {
+        let response = screened.response.as_str();
+        let named = |picked: &dyn Fn(&&Effect) -> bool| {
+            screened.effects.iter().filter(picked).map(|e| e.term.as_str()).collect::<Vec<_>>().join(", ")
+        };
+        let sure = named(&|e| e.beyond_simultaneous);
+        let likely = named(&|e| e.beyond_margin && !e.beyond_simultaneous);
+        for (terms, limit) in [(sure, "both margins: real"), (likely, "the margin of error only: perhaps real")] {
+            if !terms.is_empty() {
+                notes.add(response, format!("{terms}: beyond {limit}"));
+            }
+        }
+        match screened.pse {
+            None => notes.add(response, "Lenth's limits need three effects, most of them other than zero"),
+            Some(_) if screened.effects.iter().all(|e| !e.beyond_margin) => {
+                notes.add(response, "no effect is beyond Lenth's margin of error: few must matter for it to tell");
+            }
+            Some(_) => {}
+        }
+        let fit = &screened.regression.fit;
+        if fit.df_residual > 0 {
+            notes.fit(fit);
+        } else {
+            notes.missing(response, fit.n, fit.missing);
+        }
+        notes.residuals(response, &screened.regression.residuals);
+    }
+    notes
 }
 
 fn effect_table(found: &[Found]) -> Table {

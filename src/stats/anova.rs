@@ -111,7 +111,7 @@ pub struct Line {
     pub f: Option<f64>,
     /// Its tail probability.
     pub p: Option<f64>,
-    /// The word of the smallest level that `p` does not exceed, or `-`.
+    /// The word of the smallest level that `p` does not exceed, or `-`; empty without a test.
     pub significance: String,
     /// Share of the total sum of squares.
     pub eta2: Option<f64>,
@@ -244,6 +244,7 @@ impl Job<'_> {
         let mut lines: Vec<Line> = (0..layout.terms.len())
             .map(|term| {
                 let squares = term_squares(&solution, layout, term, self.settings.squares);
+                let squares = if solution.is_something(squares) { squares } else { T::zero() };
                 self.line(layout.label(term), squares, layout.df(term), (error, df_error), total)
             })
             .collect();
@@ -274,6 +275,9 @@ impl Job<'_> {
     }
 
     fn word(&self, p: Option<f64>) -> String {
+        if p.is_none() {
+            return String::new();
+        }
         let reached = self.settings.significance.iter().filter(|(level, _)| p.is_some_and(|p| p <= *level));
         let strictest = reached.reduce(|a, b| if b.0 < a.0 { b } else { a });
         strictest.map_or_else(|| "-".into(), |(_, word)| word.clone())

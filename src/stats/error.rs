@@ -56,7 +56,8 @@ pub enum Fault {
     },
     /// A declared level does not occur.
     #[error(
-        "factor `{factor}` never takes its level {level} in a usable row of `{response}`; run that level or drop it"
+        "factor `{factor}` never takes its level {level} in a usable row of `{response}` ({missing} missing); \
+         run that level or drop it"
     )]
     EmptyLevel {
         /// The factor.
@@ -65,6 +66,8 @@ pub enum Fault {
         level: f64,
         /// The response looked at.
         response: String,
+        /// Rows without a value of it.
+        missing: usize,
     },
     /// A response never changes.
     #[error("response `{response}` is {value} in all {rows} usable rows; there is nothing to explain")]

@@ -75,10 +75,17 @@ impl<T: Real> Solution<T> {
         self.rows - self.terms()
     }
 
-    /// Residual sum of squares.
+    /// Residual sum of squares; zero when it is but the rounding of the responses.
     pub(crate) fn residual_squares(&self) -> T {
         let last = self.triangle.at(self.terms(), self.terms());
-        last * last
+        let left = last * last;
+        if self.is_something(left) { left } else { T::zero() }
+    }
+
+    /// Whether a sum of squares is more than the rounding of the responses.
+    pub(crate) fn is_something(&self, squares: T) -> bool {
+        let last = self.triangle.at(self.terms(), self.terms());
+        squares > T::from(T::EXACT * T::EXACT) * (self.squares(0, self.terms()) + last * last)
     }
 
     /// Sum of squares that the columns `from..to` add to those before them.
@@ -111,6 +118,15 @@ impl<T: Real> Solution<T> {
     pub(crate) fn coefficient(&self, i: usize) -> Estimate {
         let error = self.deviation().map(|s| s * self.relative_error(i));
         Estimate::new(self.coefficients[i], error, self.df_residual())
+    }
+
+    /// `p` of a coefficient for choosing terms: in an exact fit 0 for what the fit needs and 1 for what it does not.
+    pub(crate) fn p_for_choice(&self, i: usize) -> Option<f64> {
+        let exact = || {
+            let part = self.coefficients[i] / self.relative_error(i);
+            (self.df_residual() > 0).then(|| if self.is_something(part * part) { 0.0 } else { 1.0 })
+        };
+        self.coefficient(i).p.or_else(exact)
     }
 }
 
@@ -263,6 +279,9 @@ pub(crate) fn aliases<T: Real>(
         let term = label(column);
         let mut others: Vec<String> = partners.into_iter().map(&label).filter(|other| *other != term).collect();
         others.dedup();
+        if others.len() > 1 {
+            others.retain(|other| other != "const");
+        }
         let known = faults.iter().any(|f| matches!(f, Fault::Aliased { term: t, .. } if *t == term));
         if !known {
             faults.push(Fault::Aliased { response: response.into(), term, others });

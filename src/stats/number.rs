@@ -26,6 +26,10 @@ pub(crate) trait Real:
     /// A column whose part outside the earlier ones is smaller than this share of it counts as dependent on them.
     const DEPENDENT: f64;
 
+    /// A residual smaller than this share of the response is what rounding leaves of an exact fit: responses are
+    /// doubles, known to 10⁻¹⁶.
+    const EXACT: f64;
+
     /// Rounded to a double.
     fn value(self) -> f64;
 
@@ -67,6 +71,7 @@ const LANES: usize = 16;
 
 impl Real for f64 {
     const DEPENDENT: f64 = 1e-11;
+    const EXACT: f64 = 1e-14;
 
     fn value(self) -> f64 {
         self
@@ -191,6 +196,7 @@ impl Div for Twofold {
 
 impl Real for Twofold {
     const DEPENDENT: f64 = 1e-13;
+    const EXACT: f64 = 1e-15;
 
     fn value(self) -> f64 {
         self.high + self.low

@@ -67,7 +67,9 @@ pub(crate) fn level_faults(sample: &Sample, usable: &Usable, response: &str) -> 
             return vec![Fault::OneLevel { factor: factor.name.clone(), value }];
         }
         let lost = factor.all_levels().into_iter().filter(|level| !found.contains(level));
-        let fault = |level| Fault::EmptyLevel { factor: factor.name.clone(), level, response: response.into() };
+        let missing = usable.missing;
+        let fault =
+            |level| Fault::EmptyLevel { factor: factor.name.clone(), level, response: response.into(), missing };
         lost.map(fault).collect()
     };
     sample.factors.iter().flat_map(of_factor).collect()
@@ -136,7 +138,7 @@ mod tests {
         assert_eq!(
             faults,
             [
-                Fault::EmptyLevel { factor: "a".into(), level: 3.0, response: "y".into() },
+                Fault::EmptyLevel { factor: "a".into(), level: 3.0, response: "y".into(), missing: 1 },
                 Fault::OneLevel { factor: "b".into(), value: 4.0 },
             ]
         );

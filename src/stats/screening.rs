@@ -56,7 +56,7 @@ pub struct Screening {
     pub response: String,
     /// Effects in the order of the terms.
     pub effects: Vec<Effect>,
-    /// Lenth's pseudo standard error; `None` with fewer than three effects or when most effects are exactly zero.
+    /// Lenth's pseudo standard error; `None` with fewer than three effects or when most effects are zero.
     pub pse: Option<f64>,
     /// Margin of error.
     pub margin: Option<f64>,
@@ -79,7 +79,8 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
     model.extend(terms.iter().filter(|t| t.degree() > 0).cloned());
     let fitted = regress(&in_signs(sample), response, &model, &regression::Settings::default())?;
     let size: Vec<f64> = fitted.natural[1..].iter().map(|c| 2.0 * c.estimate.abs()).collect();
-    let pse = pseudo_error(&size);
+    let largest = fitted.residuals.iter().fold(0.0, |most: f64, r| most.max(r.observed.abs()));
+    let pse = pseudo_error(&size, ROUNDING * largest);
     let m = size.len() as f64;
     let freedom = m / 3.0;
     let margin = pse.map(|pse| pse * t_for_coverage(1.0 - alpha, freedom));
@@ -142,14 +143,17 @@ fn in_signs(sample: &Sample) -> Sample {
     signs
 }
 
-/// Lenth's pseudo standard error of absolute effects.
-fn pseudo_error(sizes: &[f64]) -> Option<f64> {
+/// Effects smaller than this share of the largest response are what rounding leaves of nothing.
+const ROUNDING: f64 = 1e-15;
+
+/// Lenth's pseudo standard error of absolute effects, those up to `nothing` taken as zero.
+fn pseudo_error(sizes: &[f64], nothing: f64) -> Option<f64> {
     if sizes.len() < 3 {
         return None;
     }
     let first = 1.5 * median(sizes.to_vec());
     let rest: Vec<f64> = sizes.iter().copied().filter(|s| *s < 2.5 * first).collect();
-    (first > 0.0).then(|| 1.5 * median(rest))
+    (first > nothing).then(|| 1.5 * median(rest))
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -69,7 +69,7 @@ fn backward<T: Real>(full: &Solution<T>, terms: &[Term], alpha: f64) -> (Vec<usi
         let now = full.with_terms(&kept);
         let needed = |i: usize| kept.iter().any(|&k| k != i && terms[k].contains(&terms[i]));
         let removable = kept.iter().enumerate().filter(|&(_, &i)| terms[i].degree() > 0 && !needed(i));
-        let weak = removable.filter_map(|(at, _)| Some((at, now.coefficient(at).p?))).filter(|&(_, p)| p > alpha);
+        let weak = removable.filter_map(|(at, _)| Some((at, now.p_for_choice(at)?))).filter(|&(_, p)| p > alpha);
         let Some((at, p)) = weak.reduce(|a, b| if b.1 > a.1 { b } else { a }) else { return (kept, steps) };
         if kept.len() == 1 {
             return (kept, steps);
@@ -91,7 +91,7 @@ fn forward<T: Real>(full: &Solution<T>, terms: &[Term], alpha: f64) -> (Vec<usiz
         let strong = candidates.filter_map(|i| {
             let mut trial = kept.clone();
             trial.push(i);
-            Some((i, full.with_terms(&trial).coefficient(kept.len()).p?))
+            Some((i, full.with_terms(&trial).p_for_choice(kept.len())?))
         });
         let best = strong.filter(|&(_, p)| p <= alpha).reduce(|a, b| if b.1 < a.1 { b } else { a });
         let Some((i, p)) = best else { break };

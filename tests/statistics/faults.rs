@@ -102,7 +102,10 @@ fn too_few_rows_and_no_error_left() {
     assert_eq!(found, [Fault::TooFewRows { response: "y".into(), rows: 3, missing: 3, terms: 4 }]);
     table.responses[0].values[4] = None;
     let found = anova_faults(&table, &anova::Settings::default());
-    assert!(found.contains(&Fault::EmptyLevel { factor: "a".into(), level: 3.0, response: "y".into() }), "{found:?}");
+    assert!(
+        found.contains(&Fault::EmptyLevel { factor: "a".into(), level: 3.0, response: "y".into(), missing: 4 }),
+        "{found:?}"
+    );
     let terms = ["const", "a", "a^2", "b"];
     let found = regression_faults(&table, &terms);
     assert!(found.contains(&Fault::TooFewRows { response: "y".into(), rows: 2, missing: 4, terms: 4 }), "{found:?}");

@@ -11,7 +11,7 @@ use flow::stats::terms::Term;
 use toml::Table;
 
 /// Relative to the larger of the wanted value and `scale`.
-fn close(found: f64, wanted: f64, tolerance: f64, what: &str) {
+pub(super) fn close(found: f64, wanted: f64, tolerance: f64, what: &str) {
     assert!((found - wanted).abs() <= tolerance * wanted.abs(), "{what}: {found:e} for {wanted:e}");
 }
 

@@ -1,7 +1,9 @@
 //! The arrays that are known here, and how a table of wanted columns is cut out of one.
 
 use super::array::Array;
-use super::construct::Recipe::{self, Bush, Developed, Fold, Hadamard, Product, RaoHamming};
+use super::construct::Recipe::{
+    self, Bush, Contrasts, Developed, Fold, Hadamard, Halves, Product, Quadruple, RaoHamming,
+};
 use super::construct::Scheme::{Double, Eighteen, Products, Signs, Twelve};
 use super::shape::{Counts, count};
 use std::collections::BTreeSet;
@@ -13,12 +15,17 @@ pub(super) const STRENGTH_TWO: &[Recipe] = &[
     Developed(Products { order: 4, q: 2 }),
     RaoHamming { q: 3, n: 2 },
     Hadamard(12),
+    Contrasts(3),
+    Halves(6),
     RaoHamming { q: 2, n: 4 },
     RaoHamming { q: 4, n: 2 },
     Developed(Products { order: 8, q: 2 }),
     Developed(Double(3)),
     Hadamard(20),
+    Contrasts(5),
+    Halves(10),
     Hadamard(24),
+    Quadruple(12),
     Developed(Signs(12)),
     RaoHamming { q: 5, n: 2 },
     RaoHamming { q: 3, n: 3 },
@@ -30,9 +37,11 @@ pub(super) const STRENGTH_TWO: &[Recipe] = &[
     Hadamard(36),
     Developed(Twelve),
     Hadamard(40),
+    Quadruple(20),
     Developed(Signs(20)),
     Hadamard(44),
     Hadamard(48),
+    Quadruple(24),
     Developed(Signs(24)),
     RaoHamming { q: 7, n: 2 },
     Developed(Double(5)),

@@ -22,6 +22,15 @@ pub(super) enum Recipe {
     Developed(Scheme),
     /// All combinations of two factors.
     Product(usize, usize),
+    /// OA(4s, s¹ 2²⁽ˢ⁻¹⁾, 2) for s = 3 and 5 (Wang & Wu 1991): every level of the first column has four runs, and in
+    /// them every other column is one of the three contrasts of L4, with a sign, as [`contrasts`] lists them.
+    Contrasts(usize),
+    /// OA(2m, m¹ 2², 2) for even m: every level has one run of either sign, in the last column turned about in half of
+    /// them.
+    Halves(usize),
+    /// OA(2N, 4¹ 2²ᴺ⁻⁴, 2): a Hadamard matrix of order N twice, the second time with a new sign. A column, the sign and
+    /// their product make the one of four levels (Addelman 1962).
+    Quadruple(usize),
 }
 
 /// A difference scheme D(r, r, q): the differences of any two columns take every element equally often.
@@ -52,6 +61,9 @@ impl Recipe {
                 [vec![r], vec![q; r]].concat()
             }
             Self::Product(a, b) => vec![a, b],
+            Self::Contrasts(s) => [vec![s], vec![2; 2 * (s - 1)]].concat(),
+            Self::Halves(m) => vec![m, 2, 2],
+            Self::Quadruple(n) => [vec![4], vec![2; 2 * n - 4]].concat(),
         }
     }
 
@@ -60,7 +72,8 @@ impl Recipe {
         match self {
             Self::RaoHamming { q, n: power } | Self::Bush { q, t: power } => q.pow(power),
             Self::Hadamard(n) => n,
-            Self::Fold(n) => 2 * n,
+            Self::Fold(n) | Self::Halves(n) | Self::Quadruple(n) => 2 * n,
+            Self::Contrasts(s) => 4 * s,
             Self::Developed(scheme) => scheme.size().0 * scheme.size().1,
             Self::Product(a, b) => a * b,
         }
@@ -99,6 +112,23 @@ impl Recipe {
                 )
             }
             Self::Product(_, b) => Array::from_fn(runs, &shape, |r, c| if c == 0 { r / b } else { r % b }),
+            Self::Contrasts(s) => {
+                let words = contrasts(s);
+                Array::from_fn(runs, &shape, |r, c| if c == 0 { r / 4 } else { contrast(words[c - 1][r / 4], r % 4) })
+            }
+            Self::Halves(m) => Array::from_fn(runs, &shape, |r, c| match c {
+                0 => r / 2,
+                1 => r % 2,
+                _ => (r % 2) ^ usize::from(r >= m),
+            }),
+            Self::Quadruple(n) => {
+                let rows = hadamard(n);
+                Array::from_fn(runs, &shape, |r, c| match c {
+                    0 => 2 * rows[r % n][1] + r / n,
+                    c if c < n - 1 => rows[r % n][c + 1],
+                    c => rows[r % n][c + 3 - n] ^ (r / n),
+                })
+            }
         }
     }
 
@@ -114,6 +144,9 @@ impl Recipe {
                 format!("difference scheme D({r}, {r}, {q})")
             }
             Self::Product(..) => "all combinations".into(),
+            Self::Contrasts(_) => "signed contrasts of L4 in blocks of four runs".into(),
+            Self::Halves(_) => "pairs of opposite runs".into(),
+            Self::Quadruple(n) => format!("Hadamard matrix of order {n} doubled"),
         }
     }
 
@@ -130,7 +163,11 @@ impl Recipe {
             Self::Developed(_) | Self::Fold(_) => {
                 "Bose & Bush 1952, Ann. Math. Stat. 23, 508, doi:10.1214/aoms/1177729331"
             }
-            Self::Product(..) => "Fisher 1935, The Design of Experiments",
+            Self::Product(..) | Self::Halves(_) => "Fisher 1935, The Design of Experiments",
+            Self::Contrasts(_) => {
+                "Wang & Wu 1991, J. Am. Stat. Assoc. 86, 450; listed by Xu 2002, Technometrics 44, 356"
+            }
+            Self::Quadruple(_) => "Addelman 1962, Technometrics 4, 21, doi:10.1080/00401706.1962.10489985",
         }
     }
 }
@@ -252,3 +289,34 @@ const TWELVE: [&str; 12] = [
     "022212110100",
     "020121201120",
 ];
+
+/// For every two-level column, the contrast of L4 (1 to 3, negative when turned about) in each block of four runs.
+///
+/// Two columns are orthogonal when their contrasts, wherever they are the same, agree in sign as often as not. The words
+/// were found by searching a set in which all pairs are; the tests count them.
+fn contrasts(s: usize) -> &'static [&'static [i8]] {
+    match s {
+        3 => &[&[1, 1, 1], &[1, 2, -1], &[2, 3, 2], &[2, -3, 3]],
+        5 => &[
+            &[1, 1, 1, 1, 1],
+            &[1, 2, -1, -3, 2],
+            &[3, -2, 2, 2, 2],
+            &[3, -3, -3, -2, -3],
+            &[1, -1, -3, 3, 3],
+            &[3, 3, -1, 1, -2],
+            &[1, -2, 3, -2, -1],
+            &[3, 1, -2, -1, 3],
+        ],
+        _ => panic!("BUG: no contrasts for {s} blocks"),
+    }
+}
+
+/// Level of a contrast of L4 in its run.
+fn contrast(which: i8, run: usize) -> usize {
+    let level = match which.unsigned_abs() {
+        1 => run / 2,
+        2 => run % 2,
+        _ => (run / 2) ^ (run % 2),
+    };
+    level ^ usize::from(which < 0)
+}

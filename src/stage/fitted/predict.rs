@@ -1,6 +1,7 @@
 //! What fitted models say of chosen points, and the way up and down from the centre of each surface.
 
 use super::super::columns::Rows;
+use super::super::notes::Notes;
 use super::super::{Complaint, Context};
 use super::{Fitting, named};
 use crate::artifact::Table;
@@ -38,21 +39,36 @@ pub(in super::super) fn check_predict(predict: Option<&Predict>, context: &Conte
     found
 }
 
-/// One row per response and point.
-pub(super) fn prediction_table(found: &[(&Fitting, Regression)], predict: &Predict) -> Table {
+/// Every response at every point that gives all its factors.
+fn asked(found: &[(&Fitting, Regression)], predict: &Predict) -> Vec<(String, usize, Prediction)> {
     let ask = |(fitting, regression): &'_ (&Fitting, Regression), number: usize| {
         let point: Option<Vec<f64>> =
             regression.model.axes.iter().map(|axis| predict.at[number].get(&axis.name).copied()).collect();
         Some((fitting.response.clone(), number, regression.model.predict(&point?, predict.confidence)))
     };
-    let all: Vec<(String, usize, Prediction)> =
-        found.iter().flat_map(|own| (0..predict.at.len()).filter_map(move |number| ask(own, number))).collect();
-    let rows = Rows(&all);
-    let beyond = |(_, _, p): &(String, usize, Prediction)| match (p.outside.is_empty(), p.far) {
+    found.iter().flat_map(|own| (0..predict.at.len()).filter_map(move |number| ask(own, number))).collect()
+}
+
+/// How a prediction extrapolates; empty when it does not.
+fn beyond((_, _, p): &(String, usize, Prediction)) -> String {
+    match (p.outside.is_empty(), p.far) {
         (false, _) => format!("{} outside the domain", p.outside.join(", ")),
         (true, true) => "farther out than any run".to_owned(),
         (true, false) => String::new(),
-    };
+    }
+}
+
+/// Remarks on predictions that extrapolate.
+pub(super) fn extrapolations(found: &[(&Fitting, Regression)], predict: &Predict, notes: &mut Notes) {
+    for own in asked(found, predict).iter().filter(|own| !beyond(own).is_empty()) {
+        notes.add(&own.0, format!("prediction {} extrapolates: {}", own.1 + 1, beyond(own)));
+    }
+}
+
+/// One row per response and point.
+pub(super) fn prediction_table(found: &[(&Fitting, Regression)], predict: &Predict) -> Table {
+    let all = asked(found, predict);
+    let rows = Rows(&all);
     named("predictions with intervals; extrapolation is flagged")
         .texts_column("response", "", rows.texts(|(response, ..)| response.as_str()))
         .ints_column("point", "counted from 1", rows.ints(|(_, number, _)| number + 1))

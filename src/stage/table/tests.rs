@@ -57,7 +57,8 @@ fn published_values_stand_beside_ours_with_the_deviation() {
     assert_eq!(table.reals("F published").unwrap()[..1], [100.0]);
     let deviation = table.reals("F deviation").unwrap();
     assert!((deviation[0] - 10.0).abs() < 1e-9 && deviation[1].is_nan() && deviation[2] == 0.0);
-    assert!(text(&made, "markdown").contains("| UCS | Ec | 2 | 110 | 100 | 10.0 |"));
+    let markdown = text(&made, "markdown");
+    assert!(markdown.contains("| UCS | Ec | 2 | 110 | 100 | 10.0 |"), "{markdown}");
 }
 
 #[test]

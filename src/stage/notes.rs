@@ -1,0 +1,130 @@
+//! What a person should look at before trusting an analysis: the table `notes` of every stage of statistics.
+//!
+//! A note repeats in words what stands in the other tables; nothing is left out of an analysis because of one.
+
+use super::columns::Rows;
+use crate::artifact::Table;
+use crate::stats::diagnostics::Residual;
+use crate::stats::fit::Fit;
+use crate::stats::regression::Coefficient;
+
+/// Remarks with the responses they are about, in order.
+#[derive(Default)]
+pub(super) struct Notes(Vec<(String, String)>);
+
+/// Lack of fit up to this p is remarked upon.
+const LACK_OF_FIT: f64 = 0.05;
+/// How far predicted R² may lie below adjusted R².
+const R2_GAP: f64 = 0.2;
+/// Variance inflation above this makes a coefficient hard to tell from the others (Marquardt 1970,
+/// doi:10.1080/00401706.1970.10488699).
+const INFLATION: f64 = 10.0;
+/// Rows named one by one.
+const ROWS: usize = 8;
+
+impl Notes {
+    /// Adds a remark.
+    pub(super) fn add(&mut self, response: &str, note: impl Into<String>) {
+        self.0.push((response.to_owned(), note.into()));
+    }
+
+    /// Runs without a value.
+    pub(super) fn missing(&mut self, response: &str, used: usize, missing: usize) {
+        if missing > 0 {
+            let all = used + missing;
+            self.add(response, format!("{missing} of {all} runs have no value; the analysis is of the other {used}"));
+        }
+    }
+
+    /// What the quality of a fit says.
+    pub(super) fn fit(&mut self, fit: &Fit) {
+        let response = fit.response.as_str();
+        self.missing(response, fit.n, fit.missing);
+        if fit.df_residual == 0 {
+            self.add(response, "as many coefficients as runs: no standard errors, tests or intervals");
+            return;
+        }
+        if fit.s == Some(0.0) {
+            self.add(response, "the model meets every run to the last digit: there is no error to test against");
+            return;
+        }
+        if fit.df_pure_error > 0 && fit.ss_pure_error == 0.0 {
+            self.add(response, "replicates agree to the last digit: no pure error to hold the lack of fit against");
+        }
+        if let (Some(f), Some(p)) = (fit.lack_of_fit_f, fit.lack_of_fit_p.filter(|p| *p <= LACK_OF_FIT)) {
+            let numbers = format!("F = {}, p = {}", short(f), short(p));
+            self.add(
+                response,
+                format!("lack of fit ({numbers}): runs lie farther from the model than replicates scatter"),
+            );
+        }
+        match (fit.r2_adjusted, fit.r2_predicted) {
+            (Some(adjusted), Some(predicted)) if adjusted - predicted > R2_GAP => {
+                let (predicted, adjusted) = (short(predicted), short(adjusted));
+                self.add(
+                    response,
+                    format!("predicted R2 ({predicted}) is far below adjusted R2 ({adjusted}): too many terms for these runs"),
+                );
+            }
+            (_, None) => self.add(response, "a run with leverage 1 is met whatever it says, so R2 cannot be predicted"),
+            _ => {}
+        }
+    }
+
+    /// Rows that a model does not explain, or that make it what it is.
+    pub(super) fn residuals(&mut self, response: &str, rows: &[Residual]) {
+        let flagged: Vec<&Residual> = rows.iter().filter(|r| r.outlier || r.influential).collect();
+        for r in flagged.iter().take(ROWS) {
+            let what = match (r.outlier, r.influential) {
+                (true, true) => "an outlier that bends the model",
+                (true, false) => "an outlier",
+                (false, _) => "it alone bends the model",
+            };
+            let studentized = r.studentized.map_or(String::new(), |t| format!(", studentized residual {}", short(t)));
+            let (observed, fitted) = (short(r.observed), short(r.fitted));
+            self.add(response, format!("row {}: {observed} where the model says {fitted}{studentized}: {what}", r.row));
+        }
+        if flagged.len() > ROWS {
+            self.add(response, format!("and {} more rows that `residuals` flags", flagged.len() - ROWS));
+        }
+    }
+
+    /// Coefficients that the runs hardly tell from others.
+    pub(super) fn inflation(&mut self, response: &str, coefficients: &[Coefficient]) {
+        let inflated = |c: &&Coefficient| c.vif.is_some_and(|vif| vif > INFLATION);
+        for c in coefficients.iter().filter(inflated) {
+            let vif = short(c.vif.unwrap_or(f64::NAN));
+            self.add(response, format!("`{}` is hard to tell from other terms: variance inflation {vif}", c.term));
+        }
+    }
+
+    /// The table.
+    pub(super) fn table(self) -> Table {
+        let rows = Rows(&self.0);
+        Table { about: "what to look at before trusting the numbers".to_owned(), columns: Vec::new() }
+            .texts_column("response", "", rows.texts(|(response, _)| response.as_str()))
+            .texts_column("note", "", rows.texts(|(_, note)| note.as_str()))
+    }
+}
+
+/// A number with four significant digits.
+pub(super) fn short(value: f64) -> String {
+    let scientific = format!("{value:.3e}");
+    let rounded: f64 = scientific.parse().unwrap_or(value);
+    match rounded.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-4..1e7).contains(&size) || !size.is_finite() => rounded.to_string(),
+        _ => format!("{rounded:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let all = [0.0, 31.32574, -9.318911, 7.04352e-40, 123456.0, 0.012, 2.5e9, f64::INFINITY];
+        assert_eq!(all.map(short), ["0", "31.33", "-9.319", "7.044e-40", "123500", "0.012", "2.5e9", "inf"]);
+    }
+}
