@@ -58,7 +58,7 @@ fn published_values_stand_beside_ours_with_the_deviation() {
     let deviation = table.reals("F deviation").unwrap();
     assert!((deviation[0] - 10.0).abs() < 1e-9 && deviation[1].is_nan() && deviation[2] == 0.0);
     let markdown = text(&made, "markdown");
-    assert!(markdown.contains("| UCS | Ec | 2 | 110 | 100 | 10.0 |"), "{markdown}");
+    assert!(markdown.contains("| UCS | Ec | 2 | 2 | 0.0 | 110 | 100 | 10.0 |"), "{markdown}");
 }
 
 #[test]
