@@ -8,7 +8,7 @@ use crate::figure::axis::significant;
 use crate::figure::bars::{Bar, RankedBars};
 use crate::figure::effects::{FactorMeans, MainEffects};
 use crate::figure::points::DesignPoints;
-use crate::stats::agreement::pair_rows;
+use crate::stats::agreement::{agreement as agreement_of, pair_rows};
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {
     params.responses.first().ok_or_else(|| StageError::new("no response is named"))
@@ -154,17 +154,11 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
 
 /// "n = 150, mean +1.2 %, s = 4.0 %" of the relative deviations.
 fn note_of(clouds: &[Cloud]) -> String {
-    let deviations: Vec<f64> = clouds
-        .iter()
-        .flat_map(|c| c.x.iter().zip(&c.y))
-        .filter(|(x, _)| **x != 0.0)
-        .map(|(x, y)| y / x - 1.0)
-        .collect();
-    let n = deviations.len() as f64;
-    let mean = deviations.iter().sum::<f64>() / n;
-    let variance = deviations.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (n - 1.0).max(1.0);
+    let all = |pick: fn(&Cloud) -> &Vec<f64>| clouds.iter().flat_map(pick).copied().collect::<Vec<_>>();
+    let Some(found) = agreement_of(&all(|c| &c.x), &all(|c| &c.y)) else { return String::new() };
+    let (mean, spread) = (found.mean - 1.0, found.deviation.unwrap_or(0.0));
     let sign = if mean > 0.0 { "+" } else { "" };
-    format!("mean {sign}{} %, $s$ = {} %", significant(100.0 * mean, 2), significant(100.0 * variance.sqrt(), 2))
+    format!("mean {sign}{} %, $s$ = {} %", significant(100.0 * mean, 2), significant(100.0 * spread, 2))
 }
 
 type Matched = (Vec<f64>, Vec<f64>, Vec<String>);
