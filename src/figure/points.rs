@@ -27,10 +27,12 @@ pub struct DesignPoints {
     pub kinds: Vec<String>,
 }
 
-/// A place that was tried: where, its kind, how often.
+/// A place that was tried: where, its kind, how many kinds came before it there (in a projection several may meet), and
+/// how often all of them, told by the first.
 struct Spot {
     at: [f64; 3],
     kind: usize,
+    rank: usize,
     count: usize,
 }
 
@@ -39,8 +41,12 @@ impl Figure for DesignPoints {
         let mut scene = Scene::new(style.width, 0.86 * style.width);
         scene.title = format!("Points of the {}", self.title);
         let spots = self.spots();
-        scene.description =
-            format!("{} runs at {} places in {} factors.", self.points.len(), spots.len(), self.factors.len());
+        scene.description = format!(
+            "{} runs at {} places in {} factors.",
+            self.points.len(),
+            spots.iter().filter(|s| s.rank == 0).count(),
+            self.factors.len()
+        );
         let entries = self.entries();
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
         let top = legend::height(&entries, page.width() - 8.0, style);
@@ -96,10 +102,14 @@ impl DesignPoints {
                 *a = (2.0 * v - low - high) / (high - low);
             }
             let kind = names.iter().position(|n| n == kind).unwrap_or(0);
-            let near = |s: &&mut Spot| s.at.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-9) && s.kind == kind;
-            match spots.iter_mut().find(near) {
-                Some(spot) => spot.count += 1,
-                None => spots.push(Spot { at, kind, count: 1 }),
+            let near = |s: &&mut Spot| s.at.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-9);
+            let mut here: Vec<&mut Spot> = spots.iter_mut().filter(near).collect();
+            if let Some(first) = here.first_mut() {
+                first.count += 1;
+            }
+            let (rank, known) = (here.len(), here.iter().any(|s| s.kind == kind));
+            if !known {
+                spots.push(Spot { at, kind, rank, count: usize::from(rank == 0) });
             }
         }
         spots
@@ -234,7 +244,8 @@ fn draw_edges(scene: &mut Scene, place: &dyn Fn([f64; 3]) -> Point, back: [f64; 
 /// `away` is 0 at the eye and 1 at the far corner: distant points are smaller and paler.
 fn draw_spot(scene: &mut Scene, spot: &Spot, at: Point, away: f64, style: &Style) {
     let color = palette::category(spot.kind).mix(PAPER, 0.45 * away);
-    draw_marker(scene, palette::marker(spot.kind), at, 2.9 - 0.8 * away, color);
+    let size = (2.9 - 0.8 * away) * [1.0, 0.55, 0.35][spot.rank.min(2)];
+    draw_marker(scene, palette::marker(spot.kind), at, size, color);
     if spot.count > 1 {
         let line = Line::new(&format!("×{}", spot.count), 0.9 * style.size());
         // A ground of paper keeps the number clear of the edges behind it.

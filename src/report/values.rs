@@ -31,7 +31,7 @@ pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
         "main-effects" => effects(data, context),
         "residuals" => residuals(data),
         "convergence" => convergence(data),
-        "half-normal" => half_normal(data),
+        "half-normal" | "normal" => effect_plot(data),
         _ => None,
     }
 }
@@ -193,9 +193,9 @@ fn convergence(data: &Table) -> Option<Value> {
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }
 
-fn half_normal(data: &Table) -> Option<Value> {
+fn effect_plot(data: &Table) -> Option<Value> {
     let [_, sizes, ..] = data.columns.as_slice() else { return None };
-    let (names, xs, ys) = (texts(data, "effect")?, data.reals(&sizes.name)?, data.reals("half_normal_quantile")?);
+    let (names, xs, ys) = (texts(data, "effect")?, data.reals(&sizes.name)?, data.reals("quantile")?);
     let words = |i: usize| format!("{}: {}", Line::new(&names[i], 1.0).plain, told(xs[i], &sizes.unit));
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }

@@ -133,6 +133,8 @@ pub enum Show {
     Pareto,
     /// Half-normal plot of effects.
     HalfNormal,
+    /// Normal plot of effects, with their signs.
+    Normal,
     /// Misfit against effort of a calibration.
     Convergence,
     /// Parameter sets over parallel axes.
@@ -173,6 +175,7 @@ impl Show {
             Show::ObservedPredicted => needs(MODELS, &[], [0, MANY], [0, 0]),
             Show::Pareto => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
             Show::HalfNormal => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
+            Show::Normal => needs(&["screening"], &[], [1, 1], [0, MANY]),
             Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),
             Show::Solutions => needs(&["solution"], &[], [0, 0], [0, MANY]),
             Show::Verification => needs(&["verification"], &[], [0, MANY], [0, 0]),

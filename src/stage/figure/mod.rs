@@ -262,8 +262,8 @@ impl Kind for Figure {
     const NAME: &'static str = "figure";
     const ABOUT: &'static str = "a picture of the results of other stages";
     /// 2: numbers at points of designs stand on a ground of paper; "1 crack"; force chains are those above the mean.
-    /// 3: surfaces say where their axes lie.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 3, run: draw }];
+    /// 3: surfaces say where their axes lie. 4: empty columns in the legend of contributions; normal plots.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 4, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -285,6 +285,7 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::ObservedPredicted => Box::new(model::observed(&params, &sources)?),
         Show::Pareto => Box::new(model::pareto(&params, &sources)?),
         Show::HalfNormal => Box::new(model::half_normal(&params, &sources)?),
+        Show::Normal => Box::new(model::normal(&params, &sources)?),
         Show::Convergence => Box::new(solution::convergence(&params, &sources)?),
         Show::Solutions => Box::new(solution::solutions(&params, &sources)?),
         Show::Verification => Box::new(solution::verification(&params, &sources)?),

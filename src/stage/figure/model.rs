@@ -8,7 +8,7 @@ use crate::figure::agreement::{Agreement, Cloud, Pair};
 use crate::figure::axis::{fixed, significant};
 use crate::figure::bars::{Bar, RankedBars};
 use crate::figure::contour::Contour;
-use crate::figure::half_normal::{Effect, HalfNormal};
+use crate::figure::effect_plot::{Coordinates, Effect, EffectPlot};
 use crate::figure::residuals::Residuals;
 use crate::figure::surface::Surface;
 use crate::math::distribution::normal_quantile;
@@ -215,12 +215,12 @@ pub(super) fn observed(params: &Params, sources: &Sources) -> Result<Agreement, 
     Ok(Agreement { x_word: "Observed".into(), y_word: "Predicted".into(), pairs, band: params.band })
 }
 
-/// Absolute effects of one response with what marks the active ones.
+/// Effects on one response, their places in the plots, and what marks the active ones.
 struct Effects {
     names: Vec<String>,
-    sizes: Vec<f64>,
-    quantiles: Vec<f64>,
-    active: Vec<bool>,
+    values: Vec<f64>,
+    normal: Vec<f64>,
+    half_normal: Vec<f64>,
     error: f64,
     margin: Option<f64>,
     simultaneous: Option<f64>,
@@ -231,27 +231,25 @@ fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
     let source = sources.first()?;
     let rows = source.rows(&["effects"])?;
     let which = rows.where_is("response", &response.key)?;
-    let sizes: Vec<f64> = pick(&rows.reals("effect")?, &which).iter().map(|e| e.abs()).collect();
     let limits = source.rows(&["limits", "fit"])?;
     let mine = limits.where_is("response", &response.key)?;
     let limit = |name: &str| -> Option<f64> {
         limits.reals(name).ok().and_then(|v| pick(&v, &mine).first().copied()).filter(|v| v.is_finite())
     };
-    let margin = limit("margin");
     Ok(Effects {
         names: pick(&rows.texts("term")?, &which).iter().map(|t| term_label(t, params)).collect(),
-        quantiles: pick(&rows.reals("half_normal")?, &which),
-        active: sizes.iter().map(|s| margin.is_some_and(|m| *s > m)).collect(),
-        sizes,
+        values: pick(&rows.reals("effect")?, &which),
+        normal: pick(&rows.reals("normal")?, &which),
+        half_normal: pick(&rows.reals("half_normal")?, &which),
         error: limit("pse").unwrap_or(f64::NAN),
-        margin,
+        margin: limit("margin"),
         simultaneous: limit("simultaneous"),
     })
 }
 
 /// The sources of an analysis of variance by the roots of their sums of squares: χ quantiles of the plot positions
 /// (i − ½)/m, which for two degrees of freedom are √(−2 ln(1 − p)).
-fn chi_plot(params: &Params, source: Source) -> Result<HalfNormal, StageError> {
+fn chi_plot(params: &Params, source: Source) -> Result<EffectPlot, StageError> {
     let response = one_response(params)?;
     let rows = source.rows(&["anova"])?;
     let which = rows.where_is("response", &response.key)?;
@@ -277,32 +275,46 @@ fn chi_plot(params: &Params, source: Source) -> Result<HalfNormal, StageError> {
         quantile: quantile(position(i)),
         active: !words[i].is_empty() && words[i] != "-",
     };
-    Ok(HalfNormal {
+    Ok(EffectPlot {
         response: response.quantity(),
+        coordinates: if degrees == 1.0 { Coordinates::HalfNormal } else { Coordinates::Chi(degrees as usize) },
         effects: effects.iter().map(effect).collect(),
         error: residual.map_or(f64::NAN, |i| (squares[i] / df[i]).sqrt()),
         margin: None,
-        degrees: degrees as usize,
     })
 }
 
-pub(super) fn half_normal(params: &Params, sources: &Sources) -> Result<HalfNormal, StageError> {
+pub(super) fn half_normal(params: &Params, sources: &Sources) -> Result<EffectPlot, StageError> {
     if sources.first()?.rows(&["anova"]).is_ok() {
         return chi_plot(params, sources.first()?);
     }
     let found = effects(params, sources)?;
-    let list = (0..found.sizes.len()).map(|i| Effect {
-        name: found.names[i].clone(),
-        size: found.sizes[i],
-        quantile: found.quantiles[i],
-        active: found.active[i],
-    });
-    Ok(HalfNormal {
+    let places = found.values.iter().map(|e| e.abs()).zip(found.half_normal.iter().copied()).collect();
+    effect_plot(params, found, Coordinates::HalfNormal, places)
+}
+
+pub(super) fn normal(params: &Params, sources: &Sources) -> Result<EffectPlot, StageError> {
+    let found = effects(params, sources)?;
+    let places = found.values.iter().copied().zip(found.normal.iter().copied()).collect();
+    effect_plot(params, found, Coordinates::Normal, places)
+}
+
+/// `places`: effect and quantile of each.
+fn effect_plot(
+    params: &Params,
+    found: Effects,
+    coordinates: Coordinates,
+    places: Vec<(f64, f64)>,
+) -> Result<EffectPlot, StageError> {
+    let active = found.values.iter().map(|e| found.margin.is_some_and(|m| e.abs() > m));
+    let effects = places.into_iter().zip(found.names).zip(active);
+    let effect = |(((size, quantile), name), active)| Effect { name, size, quantile, active };
+    Ok(EffectPlot {
         response: one_response(params)?.quantity(),
-        effects: list.collect(),
+        coordinates,
+        effects: effects.map(effect).collect(),
         error: found.error,
         margin: found.margin.map(|m| ("margin of error".to_owned(), m)),
-        degrees: 1,
     })
 }
 
@@ -323,15 +335,21 @@ fn shares(params: &Params, source: Source) -> Result<RankedBars, StageError> {
     let rows = source.rows(&["anova"])?;
     let which = rows.where_is("response", &response.key)?;
     let (names, squares) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("eta2")?, &which));
+    // Where factors set properties of groups, one that sets nothing is an empty column.
+    let grouped = params.factors.iter().any(|l| !l.group.is_empty());
     let mut bars = Vec::new();
     for (name, share) in names.iter().zip(squares).filter(|(name, share)| *name != "total" && share.is_finite()) {
         let label = params.factors.iter().find(|l| l.key == *name);
-        let group = if name == "residual" { "residual" } else { label.map_or("", |l| l.group.as_str()) };
+        let group = match label.map_or("", |l| l.group.as_str()) {
+            _ if name == "residual" => "residual",
+            "" if grouped => "empty column",
+            group => group,
+        };
         let factor = Quantity::new(&term_label(name, params), "", "");
         bars.push(Bar { factor, group: group.to_owned(), value: 100.0 * share, published: None });
     }
     let sign = response.quantity().sign();
-    let name = format!("Share of the sum of squares of {sign}");
+    let name = format!("Share of the sum of squares of {sign},");
     let title = format!("Contributions to {}", response.key);
     Ok(RankedBars { title, quantity: Quantity::new(&name, r"\eta^2", "%"), bars, references: Vec::new() })
 }
@@ -346,14 +364,14 @@ pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, S
     let bar = |i: usize| Bar {
         factor: Quantity::new(&found.names[i], "", ""),
         group: String::new(),
-        value: found.sizes[i],
+        value: found.values[i].abs(),
         published: None,
     };
     let limits = [("margin of error", found.margin), ("simultaneous margin", found.simultaneous)];
     Ok(RankedBars {
         title: format!("Effects on {}", response.key),
         quantity: response.quantity().worded("Absolute effect on"),
-        bars: (0..found.sizes.len()).map(bar).collect(),
+        bars: (0..found.values.len()).map(bar).collect(),
         references: limits.into_iter().filter_map(|(name, v)| v.map(|v| (name.to_owned(), v))).collect(),
     })
 }

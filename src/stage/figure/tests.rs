@@ -144,6 +144,7 @@ fn screening() -> Artifact {
         .texts_column("response", "", vec!["UCS".into(); 3])
         .texts_column("term", "", words(["Ec", "mu", "Ec*mu"]))
         .reals_column("effect", "", "", vec![9.0, -3.0, 0.4])
+        .reals_column("normal", "", "", vec![0.97, -0.97, 0.0])
         .reals_column("half_normal", "", "", vec![1.38, 0.67, 0.21]);
     let limits = table()
         .texts_column("response", "", words(["UCS"]))
@@ -293,6 +294,7 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
         ("pareto", "response = 'UCS'", vec![screening()], vec![]),
         ("pareto", "response = 'UCS'", vec![anova()], vec![]),
         ("half-normal", "response = 'UCS'", vec![screening()], vec![]),
+        ("normal", "response = 'UCS'", vec![screening()], vec![]),
         ("convergence", "", vec![solution()], vec![]),
         ("solutions", "", vec![solution()], vec![]),
         ("verification", "", vec![verification()], vec![]),
@@ -319,6 +321,19 @@ fn the_numbers_are_those_of_the_inputs() {
 
     let means = made("show = 'main-effects'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
     assert_eq!(means.table("data").unwrap().reals("mean").unwrap(), [30.0, 40.0, 34.0, 35.0, 36.0, 34.5, 35.0, 34.6]);
+
+    for (show, sizes, quantiles) in
+        [("normal", [9.0, -3.0, 0.4], [0.97, -0.97, 0.0]), ("half-normal", [9.0, 3.0, 0.4], [1.38, 0.67, 0.21])]
+    {
+        let plot = made(&format!("show = '{show}'\nof = 'a'\nresponse = 'UCS'"), &[screening()], &[]).unwrap();
+        let data = plot.table("data").unwrap();
+        let name = data.columns[1].name.clone();
+        assert_eq!(
+            (data.reals(&name).unwrap(), data.reals("quantile").unwrap()),
+            (sizes.to_vec(), quantiles.to_vec()),
+            "{show}"
+        );
+    }
 
     let pairs = "show = 'agreement'\nof = 'a'\nresponse = 'UCS'\ncompare = 'b'";
     let agreement = made(pairs, &[results(1.0)], &[results(0.0)]).unwrap();

@@ -4,30 +4,36 @@ use super::factors;
 use flow::figure::Quantity;
 use flow::figure::agreement::{Agreement, Cloud, Pair};
 use flow::figure::convergence::{Convergence, Descent};
-use flow::figure::half_normal::{Effect, HalfNormal};
+use flow::figure::effect_plot::{Coordinates, Effect, EffectPlot};
 use flow::figure::residuals::Residuals;
 use flow::figure::solutions::{SolutionSet, Solutions};
 use flow::figure::verification::{Check, Verification};
 use flow::math::random::Stream;
 
-pub(super) fn half_normal() -> HalfNormal {
+/// The filtration rate example of the textbooks: 15 effects of a 2⁴ design.
+pub(super) fn effect_plot(coordinates: Coordinates) -> EffectPlot {
     let names = ["A", "B", "C", "D", "E", "AB", "AC", "AD", "AE", "BC", "BD", "BE", "CD", "CE", "DE"];
-    let sizes = [21.6, 3.1, 9.9, 14.6, 0.4, 1.2, 18.1, 16.6, 0.4, 2.4, 0.4, 1.1, 1.9, 4.1, 2.6];
+    let mut effects = [21.6, 3.1, 9.9, 14.6, 0.4, 1.2, -18.1, 16.6, -0.4, 2.4, -0.4, -1.1, -1.9, 4.1, -2.6];
+    let half = [0.04, 0.13, 0.21, 0.3, 0.38, 0.48, 0.57, 0.67, 0.78, 0.9, 1.02, 1.17, 1.35, 1.6, 2.13];
+    let full = [-1.83, -1.28, -0.97, -0.73, -0.52, -0.34, -0.17, 0.0, 0.17, 0.34, 0.52, 0.73, 0.97, 1.28, 1.83];
+    let signed = coordinates == Coordinates::Normal;
+    if !signed {
+        effects = effects.map(f64::abs);
+    }
     let mut order: Vec<usize> = (0..15).collect();
-    order.sort_by(|&a, &b| f64::total_cmp(&sizes[a], &sizes[b]));
-    let quantiles = [0.04, 0.13, 0.21, 0.3, 0.38, 0.48, 0.57, 0.67, 0.78, 0.9, 1.02, 1.17, 1.35, 1.6, 2.13];
+    order.sort_by(|&a, &b| f64::total_cmp(&effects[a], &effects[b]));
     let effect = |(rank, &i): (usize, &usize)| Effect {
         name: format!("${}$", names[i]),
-        size: sizes[i],
-        quantile: quantiles[rank],
-        active: sizes[i] > 6.7,
+        size: effects[i],
+        quantile: if signed { full[rank] } else { half[rank] },
+        active: effects[i].abs() > 6.7,
     };
-    HalfNormal {
+    EffectPlot {
         response: Quantity::new("Filtration rate", "", "gal/h"),
+        coordinates,
         effects: order.iter().enumerate().map(effect).collect(),
         error: 2.62,
         margin: Some(("margin of error".into(), 6.7)),
-        degrees: 1,
     }
 }
 

@@ -3,11 +3,12 @@
 mod fits;
 mod spatial;
 
-use fits::{convergence, half_normal, observed, published, residuals, solutions, verification};
+use fits::{convergence, effect_plot, observed, published, residuals, solutions, verification};
 use flow::figure::bars::{Bar, RankedBars};
 use flow::figure::contour::Contour;
 use flow::figure::curve::{Curve, StressStrain};
 use flow::figure::dag::{Dag, Stage};
+use flow::figure::effect_plot::Coordinates;
 use flow::figure::effects::{FactorMeans, MainEffects};
 use flow::figure::points::DesignPoints;
 use flow::figure::surface::Surface;
@@ -37,7 +38,8 @@ pub(crate) fn all() -> Vec<(&'static str, Style, Box<dyn Figure>)> {
         ("cracks-2", one.clone(), Box::new(cracks())),
         ("rose", one.clone(), Box::new(rose())),
         ("chains", one.clone(), Box::new(chains())),
-        ("half-normal", one.clone(), Box::new(half_normal())),
+        ("half-normal", one.clone(), Box::new(effect_plot(Coordinates::HalfNormal))),
+        ("normal", one.clone(), Box::new(effect_plot(Coordinates::Normal))),
         ("residuals", two.clone(), Box::new(residuals())),
         ("residuals-1", one.clone(), Box::new(residuals())),
         ("published", two.clone(), Box::new(published())),

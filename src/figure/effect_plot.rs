@@ -1,8 +1,9 @@
-//! Half-normal plot of effects (Daniel 1959, doi:10.1080/00401706.1959.10489866): noise lies on a line through the
-//! origin, active effects stand off to the right and are named. Effects of several degrees of freedom each take the
-//! quantiles of the χ distribution (Wilk & Gnanadesikan 1968, doi:10.1093/biomet/55.1.1).
+//! Probability plots of effects (Daniel 1959, doi:10.1080/00401706.1959.10489866): noise lies on a line through the
+//! origin, active effects stand off to the side and are named. The half-normal plot has absolute effects, the normal
+//! plot keeps their signs; effects of several degrees of freedom each take the quantiles of the χ distribution (Wilk &
+//! Gnanadesikan 1968, doi:10.1093/biomet/55.1.1).
 
-use super::axis::Axis;
+use super::axis::{Axis, Scale};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::palette::{BLUE, INK, Marker, SOFT, VERMILION};
@@ -10,14 +11,26 @@ use super::panel::{Panel, draw_marker};
 use super::scene::{Path, Rect, Scene, Stroke};
 use super::{Figure, Quantity, Style, scatter};
 
+/// What the effects are plotted against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Absolute effects over half-normal quantiles.
+    #[default]
+    HalfNormal,
+    /// Effects with their signs over normal quantiles.
+    Normal,
+    /// Roots of the sums of squares of effects with that many degrees of freedom, over quantiles of χ.
+    Chi(usize),
+}
+
 /// One effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effect {
     /// Name in label markup.
     pub name: String,
-    /// Absolute size.
+    /// Effect, absolute except in the normal plot.
     pub size: f64,
-    /// Half-normal quantile of its rank.
+    /// Quantile of its rank.
     pub quantile: f64,
     /// Whether it counts as active.
     pub active: bool,
@@ -25,43 +38,36 @@ pub struct Effect {
 
 /// Effects on one response.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct HalfNormal {
+pub struct EffectPlot {
     /// The response.
     pub response: Quantity,
+    /// What the effects are plotted against.
+    pub coordinates: Coordinates,
     /// Effects in any order.
     pub effects: Vec<Effect>,
     /// Standard error that the line shows: Lenth's pseudo standard error, or that of the model.
     pub error: f64,
     /// Margin of error to mark, and its name; `None` to leave out.
     pub margin: Option<(String, f64)>,
-    /// Degrees of freedom of each effect, 1 or more: with more, sizes are roots of sums of squares, and quantiles are those
-    /// of the χ distribution, which for one degree of freedom is the half-normal one.
-    pub degrees: usize,
 }
 
-impl Figure for HalfNormal {
+impl Figure for EffectPlot {
     fn scene(&self, style: &Style) -> Scene {
         let mut scene = Scene::new(style.width, 0.8 * style.width);
-        scene.title = format!("Half-normal plot of the effects on {}", self.response.words());
+        scene.title = format!("{} plot of the effects on {}", self.word(), self.response.words());
         let active: Vec<&str> = self.effects.iter().filter(|e| e.active).map(|e| e.name.as_str()).collect();
         scene.description = format!("{} effects; active: {}.", self.effects.len(), active.join(", "));
         let entries = self.entries();
-        let several = self.degrees > 1;
-        let title = self.response.worded(if several { "Root sum of squares of" } else { "Absolute effect on" }).title();
-        let margin = self.margin.iter().map(|m| m.1);
-        let x = Axis::from_zero(title, self.effects.iter().map(|e| 1.04 * e.size).chain(margin), 5);
-        let quantile = format!("Quantile of $\\chi_{{{}}}$ / –", self.degrees);
-        let quantile = if several { quantile } else { "Half-normal quantile $z$ / –".to_owned() };
-        let y = Axis::from_zero(quantile, self.effects.iter().map(|e| e.quantile), 5);
+        let [x, y] = self.axes();
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
         let top = legend::height(&entries, page.width() - 10.0, style);
         let panel = Panel::fit(Rect { top: page.top + top, ..page }, x, y, style);
         legend::draw(&mut scene, &entries, Rect { left: panel.area.left, ..page }, style);
         panel.draw_grid(&mut scene);
         let first = scene.items.len();
-        let end = panel.y.high;
-        scene.stroke(Path::polyline(&[panel.place(0.0, 0.0), panel.place(self.error * end, end)]), line_style());
-        if let Some((_, at)) = self.margin {
+        let ends = [panel.y.low, panel.y.high].map(|end| panel.place(self.error * end, end));
+        scene.stroke(Path::polyline(&ends), line_style());
+        for at in self.margins() {
             let x = panel.place_x(at);
             scene.stroke(Path::polyline(&[[x, panel.area.top], [x, panel.area.bottom]]), margin_style());
         }
@@ -82,13 +88,47 @@ impl Figure for HalfNormal {
         vec![
             Column::words("effect", self.effects.iter().map(|e| e.name.clone()).collect()),
             self.response.column("size", self.effects.iter().map(|e| e.size).collect()),
-            Column::reals("half_normal_quantile", self.effects.iter().map(|e| e.quantile).collect()),
+            Column::reals("quantile", self.effects.iter().map(|e| e.quantile).collect()),
             Column::whole("active", self.effects.iter().map(|e| i64::from(e.active)).collect()),
         ]
     }
 }
 
-impl HalfNormal {
+impl EffectPlot {
+    fn word(&self) -> &'static str {
+        match self.coordinates {
+            Coordinates::Normal => "Normal",
+            Coordinates::HalfNormal => "Half-normal",
+            Coordinates::Chi(_) => "χ",
+        }
+    }
+
+    /// Places of the margin's lines.
+    fn margins(&self) -> Vec<f64> {
+        match (&self.margin, self.coordinates) {
+            (None, _) => Vec::new(),
+            (Some((_, at)), Coordinates::Normal) => vec![-at, *at],
+            (Some((_, at)), _) => vec![*at],
+        }
+    }
+
+    /// Effects along, quantiles up; the signed plot reaches as far to both sides of zero upwards.
+    fn axes(&self) -> [Axis; 2] {
+        let (word, quantile) = match self.coordinates {
+            Coordinates::Normal => ("Effect on", "Normal quantile $z$ / –".to_owned()),
+            Coordinates::HalfNormal => ("Absolute effect on", "Half-normal quantile $z$ / –".to_owned()),
+            Coordinates::Chi(degrees) => ("Root sum of squares of", format!("Quantile of $\\chi_{{{degrees}}}$ / –")),
+        };
+        let title = self.response.worded(word).title();
+        let sizes = self.effects.iter().map(|e| 1.04 * e.size).chain(self.margins());
+        let quantiles = self.effects.iter().map(|e| e.quantile);
+        if self.coordinates == Coordinates::Normal {
+            let both = quantiles.flat_map(|q| [-q, q]);
+            return [Axis::around(title, Scale::Linear, sizes, 5), Axis::around(quantile, Scale::Linear, both, 5)];
+        }
+        [Axis::from_zero(title, sizes, 5), Axis::from_zero(quantile, quantiles, 5)]
+    }
+
     fn entries(&self) -> Vec<Entry> {
         let mut entries = vec![
             Entry::new("active", Swatch::Point(Marker::Square, VERMILION)),
