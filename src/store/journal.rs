@@ -22,11 +22,11 @@ use super::disk::{Disk, TEMPORARY};
 use super::lock::Held;
 use super::object::Seal;
 use super::{Origin, Record, StoreError};
-use crate::artifact::{ContentHash, Key};
+use crate::artifact::{ContentHash, FirstBytes, Key};
 use std::collections::{HashMap, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
-use std::hash::{BuildHasherDefault, Hasher};
+use std::hash::BuildHasherDefault;
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -378,23 +378,4 @@ fn unpack(bytes: &[u8; RECORD], origin: &Arc<Origin>) -> Option<Record> {
 /// The eight bytes from `place` on, as a number.
 fn word(bytes: &[u8], place: usize) -> u64 {
     bytes[place..].first_chunk().map_or(0, |word| u64::from_le_bytes(*word))
-}
-
-/// Hashes are evenly spread already: their first bytes serve as the hash of the map.
-#[derive(Default)]
-pub(super) struct FirstBytes(u64);
-
-impl Hasher for FirstBytes {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        if let Some(first) = bytes.first_chunk::<8>() {
-            self.0 = u64::from_le_bytes(*first);
-        }
-    }
-    fn write_usize(&mut self, _: usize) {}
-    fn write_u64(&mut self, word: u64) {
-        self.0 ^= word;
-    }
 }
