@@ -127,7 +127,8 @@ fn summary(report: &Report, seconds: f64, number: Option<u64>) -> String {
         parts.push("interrupted: a second run goes on".to_owned());
     }
     let recorded = number.map_or_else(String::new, |number| format!("; run #{number}"));
-    format!("{} tasks: {} in {}{recorded}", count.total, parts.join(", "), duration(seconds))
+    let tasks = if count.total == 1 { "task" } else { "tasks" };
+    format!("{} {tasks}: {} in {}{recorded}", count.total, parts.join(", "), duration(seconds))
 }
 
 fn exit(report: &Report) -> Exit {
