@@ -12,7 +12,7 @@ mod node;
 pub mod specimen;
 
 pub use field::{Field, Wanted, expect_kind, take};
-pub use key::Key;
+pub use key::{FirstBytes, Key};
 pub use node::{Array, Column, Group, Node, Table, Values};
 
 use std::fmt;

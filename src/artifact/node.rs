@@ -214,23 +214,24 @@ impl Values {
         match self {
             Self::Reals(values) => {
                 hash.update(b"r");
-                for chunk in values.chunks(512) {
-                    let mut bytes = [0; 4096];
-                    for (place, value) in bytes.chunks_exact_mut(8).zip(chunk) {
-                        place.copy_from_slice(&canonical(*value).to_le_bytes());
-                    }
-                    hash.update(&bytes[..8 * chunk.len()]);
-                }
+                feed_words(hash, values.iter().map(|value| canonical(*value)));
             }
             Self::Ints(values) => {
                 hash.update(b"i");
-                values.iter().for_each(|value| {
-                    hash.update(&value.to_le_bytes());
-                });
+                feed_words(hash, values.iter().map(|value| *value as u64));
             }
             Self::Texts(values) => {
                 hash.update(b"t");
-                values.iter().for_each(|value| feed_text(hash, value));
+                let mut bytes = Vec::with_capacity(BLOCK.min(self.bytes()));
+                for value in values {
+                    bytes.extend_from_slice(&(value.len() as u64).to_le_bytes());
+                    bytes.extend_from_slice(value.as_bytes());
+                    if bytes.len() >= BLOCK {
+                        hash.update(&bytes);
+                        bytes.clear();
+                    }
+                }
+                hash.update(&bytes);
             }
         }
     }
@@ -349,6 +350,21 @@ fn canonical(value: f64) -> u64 {
 pub(super) fn feed_text(hash: &mut blake3::Hasher, text: &str) {
     feed_length(hash, text.len());
     hash.update(text.as_bytes());
+}
+
+/// Bytes that are hashed at once: enough for all the lanes of the widest vectors.
+const BLOCK: usize = 1 << 16;
+
+fn feed_words(hash: &mut blake3::Hasher, words: impl ExactSizeIterator<Item = u64>) {
+    let mut bytes = Vec::with_capacity(BLOCK.min(8 * words.len()));
+    for word in words {
+        bytes.extend_from_slice(&word.to_le_bytes());
+        if bytes.len() == BLOCK {
+            hash.update(&bytes);
+            bytes.clear();
+        }
+    }
+    hash.update(&bytes);
 }
 
 fn feed_length(hash: &mut blake3::Hasher, n: usize) {

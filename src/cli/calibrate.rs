@@ -44,9 +44,6 @@ pub(super) struct Calibrate {
     /// The solution as CSV; with --verify the summary of the verification.
     #[arg(long)]
     csv: bool,
-    /// Print nothing but the answer and errors.
-    #[arg(long)]
-    quiet: bool,
 }
 
 /// The campaign with the new targets laid over it.
@@ -126,7 +123,7 @@ impl Calibrate {
                 Some(index) if workflow.stages[index].kind == "calibrate" => Err(format!(
                     "`{name}` calibrates by simulations, and an answer at once needs surfaces alone\n  \
                      name one with `surfaces` and without `simulator`, or run it: {}",
-                    self.campaign.again(&[name])
+                    self.campaign.command("run", &[name])
                 )),
                 Some(index) => Err(format!("`{name}` is of kind {}, not calibrate", workflow.stages[index].kind)),
                 None => panic!("BUG: a stage that was loaded is in the workflow"),
@@ -178,7 +175,7 @@ impl Calibrate {
             missing.join(", "),
             asked.stage,
             if missing.len() == 1 { "is" } else { "are" },
-            self.campaign.again(&first)
+            self.campaign.command("run", &first)
         );
         Err(Exit::BadInput)
     }
@@ -186,7 +183,7 @@ impl Calibrate {
     /// The results of the verifications, and how their runs ended.
     fn verified(&self, asked: &Asked) -> (Vec<Arc<Artifact>>, Exit) {
         let jobs = self.jobs.map_or_else(cores, std::num::NonZero::get);
-        let watch: Box<dyn Watch> = match self.quiet {
+        let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&asked.workflow, &asked.store), jobs)),
         };

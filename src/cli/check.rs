@@ -23,9 +23,11 @@ impl Check {
         if self.json {
             out!("{}", document(&self.campaign.workflow.display().to_string(), &faults));
         } else if let (Some(workflow), []) = (&workflow, &faults[..]) {
-            out!("{}", summary(workflow));
+            if !self.campaign.common.quiet {
+                out!("{}", summary(workflow));
+            }
         } else {
-            message::print(&faults, self.campaign.color);
+            message::print(&faults, self.campaign.common.color);
         }
         if faults.is_empty() { Exit::Done } else { Exit::BadInput }
     }

@@ -2,7 +2,9 @@
 
 use super::{Exit, message};
 use crate::plan::{self, Overrides, Workflow};
-use crate::store::Store;
+use crate::report::{duration, moment, quoted};
+use crate::run::commit;
+use crate::store::{Origin, Store};
 use clap::{Args, ValueEnum};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -18,12 +20,22 @@ pub(super) struct Campaign {
     /// Override one value: `stage.anova.alpha=0.01`. May be given more than once.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(super) sets: Vec<String>,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
+
+/// What every command is told that opens a store.
+#[derive(Args, Clone, Debug)]
+pub(super) struct Common {
     /// The folder that keeps results.
-    #[arg(long, value_name = "FOLDER", default_value = "store")]
+    #[arg(long, value_name = "FOLDER", default_value = "store", global = true)]
     pub(super) store: PathBuf,
     /// Colours of messages; by default on a terminal, unless NO_COLOR is set.
-    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Color::Auto)]
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Color::Auto, global = true)]
     pub(super) color: Color,
+    /// Print results and errors only: no progress, no summary, no remarks.
+    #[arg(long, global = true)]
+    pub(super) quiet: bool,
 }
 
 /// When to use colours.
@@ -54,7 +66,7 @@ impl Campaign {
     pub(super) fn load(&self, stages: &[String]) -> Result<Workflow, Exit> {
         let overrides = Overrides { profile: self.profile.clone(), sets: self.sets.clone() };
         let workflow = plan::load(&self.workflow, &overrides).map_err(|faults| {
-            message::print(&faults, self.color);
+            message::print(&faults, self.common.color);
             Exit::BadInput
         })?;
         let known: Vec<&str> = workflow.stages.iter().map(|stage| stage.name.as_str()).collect();
@@ -67,22 +79,50 @@ impl Campaign {
         if unknown.is_empty() { Ok(workflow) } else { Err(Exit::BadInput) }
     }
 
-    /// The command that runs `stages` of this very campaign.
-    pub(super) fn again(&self, stages: &[&str]) -> String {
-        let mut parts = vec!["flow run".to_owned(), self.workflow.display().to_string()];
-        parts.extend(stages.iter().map(|&stage| stage.to_owned()));
-        parts.extend(self.profile.iter().map(|profile| format!("--profile {profile}")));
-        parts.extend(self.sets.iter().map(|set| format!("--set '{set}'")));
-        if self.store != Path::new("store") {
-            parts.push(format!("--store {}", self.store.display()));
-        }
-        parts.join(" ")
+    /// The campaign of a workflow file, without overrides of single values.
+    pub(super) fn of(workflow: PathBuf, profile: Option<String>, common: &Common) -> Self {
+        Self { workflow, profile, sets: Vec::new(), common: common.clone() }
     }
 
+    /// A command on this very campaign as it is typed into a shell: `flow WORD FILE … --profile …`.
+    pub(super) fn command(&self, word: &str, rest: &[&str]) -> String {
+        let (file, store) = (self.workflow.display().to_string(), self.common.store.display().to_string());
+        let mut parts = vec!["flow", word, &file];
+        parts.extend(rest);
+        parts.extend(self.profile.iter().flat_map(|profile| ["--profile", profile]));
+        parts.extend(self.sets.iter().flat_map(|set| ["--set", set]));
+        if self.common.store != Path::new("store") {
+            parts.extend(["--store", &store]);
+        }
+        parts.into_iter().map(quoted).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The store; what is computed into it is said to come from the commit of the workflow's folder.
+    pub(super) fn open(&self) -> Result<Store, Exit> {
+        let folder = self.workflow.parent().unwrap_or(Path::new("")).to_owned();
+        Ok(self.common.open()?.with_origin(move || Origin { commit: commit(&folder), ..Origin::here() }))
+    }
+}
+
+impl Common {
     /// The store.
     pub(super) fn open(&self) -> Result<Store, Exit> {
         Store::open(&self.store).map_err(|e| system(&e))
     }
+
+    /// Prints a remark, which is no result.
+    pub(super) fn remark(&self, text: &str) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+}
+
+/// When, by what version, where and of which commit something was computed.
+pub(super) fn provenance(started: i64, seconds: f64, origin: &Origin) -> String {
+    let Origin { machine, version, commit } = origin;
+    let commit = if commit.is_empty() { String::new() } else { format!(", git commit {commit}") };
+    format!("{} UTC, took {}, by flow {version} on {machine}{commit}", moment(started), duration(seconds))
 }
 
 /// Prints what is wrong with the store or the system.

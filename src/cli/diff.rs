@@ -3,11 +3,12 @@
 //! Each side is a workflow file (`c30.toml`), a profile of one (`c30.toml@quick`), or a recorded run (`run 3` is `#3`).
 
 use super::Exit;
-use super::common::{Campaign, Color, system};
+use super::common::{Campaign, Common, provenance, system};
 use super::progress::Silent;
 use crate::artifact::{Artifact, ContentHash, Table, Values};
+use crate::report::quoted;
 use crate::run::{Settings, StageStatus, run};
-use crate::store::Store;
+use crate::store::{self, Store};
 use clap::Args;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -21,9 +22,8 @@ pub(super) struct Diff {
     a: String,
     /// The same for the other side.
     b: String,
-    /// The folder that keeps results.
-    #[arg(long, value_name = "FOLDER", default_value = "store")]
-    store: PathBuf,
+    #[command(flatten)]
+    common: Common,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
@@ -43,7 +43,7 @@ impl Diff {
     }
 
     fn print(&self) -> Result<Exit, Exit> {
-        let store = Store::open(&self.store).map_err(|e| system(&e))?;
+        let store = self.common.open()?;
         let (a, b) = (self.side(&self.a, &store)?, self.side(&self.b, &store)?);
         let mut names: Vec<&String> = a.keys().chain(b.keys()).collect();
         names.sort_unstable();
@@ -74,7 +74,7 @@ impl Diff {
 
     fn side(&self, text: &str, store: &Store) -> Result<Sides, Exit> {
         match text.strip_prefix('#') {
-            Some(number) => recorded(number, store),
+            Some(number) => self.recorded(number, store),
             None => self.planned(text, store),
         }
     }
@@ -84,13 +84,7 @@ impl Diff {
             Some((file, profile)) => (file, Some(profile.to_owned())),
             None => (text, None),
         };
-        let campaign = Campaign {
-            workflow: PathBuf::from(file),
-            profile,
-            sets: Vec::new(),
-            store: self.store.clone(),
-            color: Color::Auto,
-        };
+        let campaign = Campaign::of(PathBuf::from(file), profile, &self.common);
         let workflow = campaign.load(&[])?;
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
         let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));
@@ -105,24 +99,29 @@ impl Diff {
         }
         Ok(sides)
     }
-}
 
-fn recorded(number: &str, store: &Store) -> Result<Sides, Exit> {
-    let known = store.campaigns().map_err(|e| system(&e))?;
-    let found = match number.parse() {
-        Ok(number) => store.campaign(number).map_err(|e| system(&e))?,
-        Err(_) => None,
-    };
-    let Some(campaign) = found else {
-        let known: Vec<String> = known.iter().map(|n| format!("#{n}")).collect();
-        eprintln!("error: there is no recorded run #{number}; the store has {}", known.join(", "));
-        return Err(Exit::BadInput);
-    };
-    let side = |stage: crate::store::StageRun| {
-        let object = stage.object.as_deref().and_then(ContentHash::from_hex);
-        (stage.name, Side { settings: flat(&stage.kind, &stage.settings), object })
-    };
-    Ok(campaign.stages.into_iter().map(side).collect())
+    fn recorded(&self, number: &str, store: &Store) -> Result<Sides, Exit> {
+        let known = store.campaigns().map_err(|e| system(&e))?;
+        let found = match number.parse() {
+            Ok(number) => store.campaign(number).map_err(|e| system(&e))?,
+            Err(_) => None,
+        };
+        let Some(campaign) = found else {
+            let known: Vec<String> = known.iter().map(|n| format!("#{n}")).collect();
+            eprintln!("error: there is no recorded run #{number}; the store has {}", known.join(", "));
+            return Err(Exit::BadInput);
+        };
+        let store::Campaign { workflow, profile, set, started, seconds, origin, .. } = &campaign;
+        let profile = if profile.is_empty() { String::new() } else { format!("@{profile}") };
+        let sets: String = set.iter().map(|set| format!(" --set {}", quoted(set))).collect();
+        self.common
+            .remark(&format!("#{number}: {workflow}{profile}{sets}, {}", provenance(*started, *seconds, origin)));
+        let side = |stage: crate::store::StageRun| {
+            let object = stage.object.as_deref().and_then(ContentHash::from_hex);
+            (stage.name, Side { settings: flat(&stage.kind, &stage.settings), object })
+        };
+        Ok(campaign.stages.into_iter().map(side).collect())
+    }
 }
 
 /// Settings by path.

@@ -83,7 +83,9 @@ impl Export {
             })?;
             for (name, bytes) in files {
                 replace(&self.folder.join(&name), &bytes).map_err(|e| system(&e))?;
-                out!("{}", self.folder.join(name).display());
+                if !self.campaign.common.quiet {
+                    out!("{}", self.folder.join(name).display());
+                }
                 written += 1;
             }
         }

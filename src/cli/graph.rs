@@ -68,7 +68,7 @@ impl Graph {
         let workflow = self.campaign.load(&[])?;
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
         // Whoever only looks makes no store.
-        let reports = match self.campaign.store.exists() {
+        let reports = match self.campaign.common.store.exists() {
             true => {
                 let store = self.campaign.open()?;
                 run(&workflow, &store, &settings, &super::progress::Silent, &AtomicBool::new(false)).stages

@@ -16,6 +16,7 @@ mod message;
 mod new;
 mod plan;
 mod progress;
+mod remarks;
 mod report;
 mod run;
 mod schema;

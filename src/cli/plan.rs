@@ -43,8 +43,12 @@ impl Plan {
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: self.stages.clone(), memos: true };
         let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
         let past = Past::of(&workflow, &store).map_err(|e| super::common::system(&e))?;
-        let lines: Vec<Line> =
-            report.stages.iter().map(|stage| line(stage, open_tasks(&workflow, stage, &report), &past)).collect();
+        let open: Vec<TaskReport> = report.tasks().filter(|task| task.state == TaskState::Open).collect();
+        let of = |stage: &StageReport| -> Vec<&TaskReport> {
+            let place = workflow.position(&stage.name);
+            open.iter().filter(|task| Some(task.stage) == place).collect()
+        };
+        let lines: Vec<Line> = report.stages.iter().map(|stage| line(stage, of(stage), &past)).collect();
         if self.json {
             out!("{}", document(&workflow.name, &report, &lines));
         } else {
@@ -54,12 +58,7 @@ impl Plan {
     }
 }
 
-/// The tasks of a stage that would be run.
-fn open_tasks<'r>(workflow: &crate::plan::Workflow, stage: &StageReport, report: &'r Report) -> Vec<&'r TaskReport> {
-    let place = workflow.position(&stage.name);
-    report.tasks.iter().filter(|task| Some(task.stage) == place && task.state == TaskState::Open).collect()
-}
-
+/// `open` are the tasks of the stage that would be run.
 fn line(stage: &StageReport, open: Vec<&TaskReport>, past: &Past<'_>) -> Line {
     let state = match &stage.status {
         StageStatus::Done(_) => format!("done, {} cached", stage.tasks.cached),

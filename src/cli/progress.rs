@@ -34,6 +34,8 @@ struct Live {
     told: Instant,
     /// Tasks that ended since, other than from the store.
     ended: usize,
+    /// Tasks that failed; why was told of each.
+    failed: usize,
     /// Where the stage itself says it stands; empty for stages that do not decide by outcomes.
     note: String,
     bar: Option<ProgressBar>,
@@ -72,8 +74,8 @@ impl<'a> Progress<'a> {
         let mut stages = self.stages();
         if !stages.contains_key(stage) {
             let now = Instant::now();
-            let (ended, note, bar) = (0, String::new(), self.bar(stage));
-            stages.insert(stage.to_owned(), Live { started: now, told: now, ended, note, bar });
+            let (ended, failed, note, bar) = (0, 0, String::new(), self.bar(stage));
+            stages.insert(stage.to_owned(), Live { started: now, told: now, ended, failed, note, bar });
         }
     }
 
@@ -93,6 +95,7 @@ impl<'a> Progress<'a> {
         let mut stages = self.stages();
         let Some(live) = stages.get_mut(stage) else { return };
         live.ended += 1;
+        live.failed = count.failed;
         let elapsed = live.started.elapsed().as_secs_f64();
         let left = count.total - count.ended();
         let expected = self.expected.get_or_init(&self.look_up).get(stage).map(|s| s / self.workers as f64);
@@ -118,7 +121,10 @@ impl<'a> Progress<'a> {
         }
         let name = &report.name;
         match &report.status {
-            StageStatus::Failed(why) => self.say(&format!("error: stage `{name}` failed: {why}")),
+            StageStatus::Failed(why) => match live.map_or(0, |live| live.failed) {
+                0 => self.say(&format!("error: stage `{name}`: {why}")),
+                failed => self.say(&format!("{name:16} failed: {failed} of {} tasks", report.tasks.total)),
+            },
             StageStatus::Skipped(cause) => self.say(&format!("{name:16} skipped, because `{cause}` failed")),
             StageStatus::Done(_) => {
                 let time =

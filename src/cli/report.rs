@@ -28,7 +28,7 @@ impl Report {
         let workflow = self.campaign.load(&[])?;
         let text = std::fs::read_to_string(&self.campaign.workflow).map_err(|e| system(&e))?;
         let store = self.campaign.open()?;
-        let named = self.campaign.store.display().to_string();
+        let named = self.campaign.common.store.display().to_string();
         let asked = Asked {
             text,
             sets: self.campaign.sets.clone(),
@@ -46,7 +46,9 @@ impl Report {
                 eprintln!("error: {}: {e}", self.output.display());
                 Exit::System
             })?;
-            out!("{}  {}", self.output.display(), bytes(html.len() as u64));
+            if !self.campaign.common.quiet {
+                out!("{}  {}", self.output.display(), bytes(html.len() as u64));
+            }
         }
         Ok(told(&paper))
     }

@@ -3,6 +3,7 @@
 use super::Exit;
 use super::common::{Campaign, system};
 use super::progress::{Progress, Silent};
+use super::remarks::remarks;
 use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
@@ -31,9 +32,6 @@ pub(super) struct Run {
     /// Print one JSON document at the end.
     #[arg(long)]
     json: bool,
-    /// Print nothing but errors.
-    #[arg(long)]
-    quiet: bool,
 }
 
 impl Run {
@@ -49,7 +47,7 @@ impl Run {
         let jobs = self.jobs.map_or_else(cores, std::num::NonZero::get);
         let settings =
             Settings { jobs, keep_going: self.keep_going, dry: false, targets: self.stages.clone(), memos: true };
-        let watch: Box<dyn Watch> = match self.quiet {
+        let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
         };
@@ -57,35 +55,39 @@ impl Run {
         for damage in store.take_damages() {
             eprintln!("warning: {damage}");
         }
-        if report.count().ran + report.count().failed > 0 {
-            record(&workflow, &self.campaign.sets, &report, started, &store).map_err(|e| system(&e))?;
-        }
+        let did = report.count().ran + report.count().failed > 0;
+        let recorded = did.then(|| record(&workflow, &self.campaign.sets, &report, started, &store));
+        let number = recorded.transpose().map_err(|e| system(&e))?;
         let seconds = started.elapsed().unwrap_or_default().as_secs_f64();
         if self.json {
             out!("{}", document(&workflow.name, &report, seconds));
-        } else if !self.quiet {
-            out!("{}", summary(&report, seconds));
+        } else if !self.campaign.common.quiet {
+            out!("{}", summary(&report, seconds, number));
         }
         self.failures(&workflow, &report);
+        if !self.campaign.common.quiet {
+            remarks(&self.campaign, &report, &store).iter().for_each(|line| eprintln!("{line}"));
+        }
         Ok(exit(&report))
     }
 
-    /// Every failed stage and task, with the command that runs the task again.
+    /// Every task that failed, and every stage that did so by itself, with the command that runs it again.
     fn failures(&self, workflow: &Workflow, report: &Report) {
-        if self.quiet {
-            for stage in &report.stages {
-                if let StageStatus::Failed(why) = &stage.status {
-                    eprintln!("error: stage `{}` failed: {why}", stage.name);
-                }
+        let tell = |what: &str, name: &str, why: &str| {
+            eprintln!("failed: {what}: {why}\n  again: {}", self.campaign.command("run", &[name]));
+        };
+        let mut by_task = vec![false; workflow.stages.len()];
+        for task in report.tasks() {
+            if let TaskState::Failed(why) = &task.state {
+                let name = workflow.stages[task.stage].name.as_str();
+                by_task[task.stage] = true;
+                tell(&task.row.map_or_else(|| name.to_owned(), |row| format!("{name}[{}]", row + 1)), name, why);
             }
         }
-        for task in &report.tasks {
-            if let TaskState::Failed(why) = &task.state {
-                let name = &workflow.stages[task.stage].name;
-                let row = task.row.map_or_else(String::new, |row| format!("[{}]", row + 1));
-                let path = self.campaign.workflow.display();
-                let profile = self.campaign.profile.as_ref().map_or_else(String::new, |p| format!(" --profile {p}"));
-                eprintln!("failed: {name}{row}: {why}\n  again: flow run {path} {name}{profile}");
+        for stage in &report.stages {
+            let told = workflow.position(&stage.name).is_some_and(|place| by_task[place]);
+            if let (StageStatus::Failed(why), false) = (&stage.status, told) {
+                tell(&stage.name, &stage.name, why);
             }
         }
     }
@@ -113,7 +115,7 @@ pub(super) fn expected(workflow: &Workflow, store: &Store) -> HashMap<String, f6
     workflow.stages.iter().filter_map(|stage| seconds(&stage.name)).collect()
 }
 
-fn summary(report: &Report, seconds: f64) -> String {
+fn summary(report: &Report, seconds: f64, number: Option<u64>) -> String {
     let count = report.count();
     let mut parts = vec![format!("{} ran", count.ran), format!("{} cached", count.cached)];
     for (n, word) in [(count.failed, "failed"), (count.skipped, "skipped")] {
@@ -124,7 +126,9 @@ fn summary(report: &Report, seconds: f64) -> String {
     if report.interrupted {
         parts.push("interrupted: a second run goes on".to_owned());
     }
-    format!("{} tasks: {} in {}", count.total, parts.join(", "), duration(seconds))
+    let recorded = number.map_or_else(String::new, |number| format!("; run #{number}"));
+    let tasks = if count.total == 1 { "task" } else { "tasks" };
+    format!("{} {tasks}: {} in {}{recorded}", count.total, parts.join(", "), duration(seconds))
 }
 
 fn exit(report: &Report) -> Exit {

@@ -1,7 +1,7 @@
 //! `flow show`: a result, or one row's run, as a readable table.
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, provenance, system};
 use super::progress::Silent;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::plan::Workflow;
@@ -47,7 +47,14 @@ impl Show {
         let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
         let object = object(&workflow, &report, &stage, row);
         let Some(object) = object else {
-            eprintln!("error: `{}` has no result yet{}", self.what, remedy(&self.campaign, &stage));
+            let place = workflow.position(&stage);
+            let rows = report.tasks().filter(|task| Some(task.stage) == place).filter_map(|task| task.row).max();
+            if let (Some(row), Some(last)) = (row, rows.filter(|last| row.is_some_and(|row| row > *last))) {
+                eprintln!("error: `{stage}` has {} rows, no row {}", last + 1, row + 1);
+                return Err(Exit::BadInput);
+            }
+            let first = self.campaign.command("run", &[&stage]);
+            eprintln!("error: `{}` has no result yet; run it first: {first}", self.what);
             return Err(Exit::BadInput);
         };
         if self.path {
@@ -73,6 +80,10 @@ impl Show {
                 out!("{name}\n{}\n", text(table));
             }
             print_others(&artifact, self.table.is_some());
+            if let Some(record) = store.find(&object.key).map_err(|e| system(&e))? {
+                let made = provenance(record.started, record.seconds, &record.origin);
+                self.campaign.common.remark(&format!("computed {made}"));
+            }
         }
         Ok(Exit::Done)
     }
@@ -114,16 +125,11 @@ pub(super) fn parts(what: &str) -> Result<(String, Option<usize>), Exit> {
 pub(super) fn object(workflow: &Workflow, report: &Report, stage: &str, row: Option<usize>) -> Option<ObjectId> {
     if row.is_some() {
         let place = workflow.position(stage);
-        return report.tasks.iter().find(|task| Some(task.stage) == place && task.row == row)?.object;
+        return report.tasks().find(|task| Some(task.stage) == place && task.row == row)?.object;
     }
     let status = report.stages.iter().find(|s| s.name == stage).map(|s| &s.status)?;
     let StageStatus::Done(content) = status else { return None };
-    report.objects.iter().rev().find(|object| object.content == *content).copied()
-}
-
-fn remedy(campaign: &Campaign, stage: &str) -> String {
-    let profile = campaign.profile.as_ref().map_or_else(String::new, |p| format!(" --profile {p}"));
-    format!("; run it first: flow run {} {stage}{profile}", campaign.workflow.display())
+    report.objects().rev().find(|object| object.content == *content)
 }
 
 /// What is no table: single values, and the shapes of arrays.

@@ -1,7 +1,7 @@
 //! `flow store`: what the store holds, whether it is sound, what it takes, and what may go.
 
 use super::Exit;
-use super::common::{Campaign, Color, system};
+use super::common::{Campaign, Common, system};
 use super::progress::Silent;
 use crate::artifact::Key;
 use crate::report::duration;
@@ -15,9 +15,8 @@ use std::sync::atomic::AtomicBool;
 /// Look after the store.
 #[derive(Args)]
 pub(super) struct StoreCommand {
-    /// The folder that keeps results.
-    #[arg(long, value_name = "FOLDER", default_value = "store", global = true)]
-    store: PathBuf,
+    #[command(flatten)]
+    common: Common,
     #[command(subcommand)]
     command: What,
 }
@@ -56,7 +55,7 @@ impl StoreCommand {
     }
 
     fn open(&self) -> Result<Store, Exit> {
-        Store::open(&self.store).map_err(|e| system(&e))
+        self.common.open()
     }
 
     fn list(&self) -> Result<Exit, Exit> {
@@ -118,7 +117,7 @@ impl StoreCommand {
         let store = self.open()?;
         let mut reachable = HashSet::new();
         for path in &gc.workflows {
-            reach(path, &self.store, &store, &mut reachable)?;
+            reach(path, &self.common, &store, &mut reachable)?;
         }
         let swept = store.sweep(&reachable, gc.yes).map_err(|e| system(&e))?;
         let verb = if gc.yes { "removed" } else { "would remove" };
@@ -134,26 +133,19 @@ impl StoreCommand {
 }
 
 /// Adds all that a workflow can reach, as it stands and with each of its profiles.
-fn reach(path: &std::path::Path, folder: &std::path::Path, store: &Store, keys: &mut HashSet<Key>) -> Result<(), Exit> {
-    let campaign = |profile| Campaign {
-        workflow: path.to_owned(),
-        profile,
-        sets: Vec::new(),
-        store: folder.to_owned(),
-        color: Color::Auto,
-    };
+fn reach(path: &std::path::Path, common: &Common, store: &Store, keys: &mut HashSet<Key>) -> Result<(), Exit> {
+    let campaign = |profile| Campaign::of(path.to_owned(), profile, common);
     let plain = campaign(None).load(&[])?;
     let profiles = plain.profiles.iter().cloned().map(Some);
     let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: false };
     for profile in std::iter::once(None).chain(profiles) {
         let workflow = campaign(profile).load(&[])?;
         let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));
-        keys.extend(report.objects.iter().map(|object| object.key));
+        keys.extend(report.objects().map(|object| object.key));
     }
     Ok(())
 }
 
-/// A size in words.
 /// A size in bytes, in words.
 pub(super) fn bytes(n: u64) -> String {
     let units = ["B", "kB", "MB", "GB", "TB"];

@@ -6,8 +6,8 @@
 //! that level's very bits, so that a row of one design equals the same row of another.
 
 use super::error::Fault;
+use crate::math::occurrence::occurrences;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 
 /// Relative distance below which a computed value is taken for a declared level or a whole coded number.
 const SNAP: f64 = 1e-12;
@@ -117,33 +117,32 @@ impl Factor {
     fn faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         let factor = || self.name.clone();
-        let mut finite = |what: String, value: f64| {
+        let mut finite = |what: &dyn Fn() -> String, value: f64| {
             if !value.is_finite() {
-                faults.push(Fault::NotFinite { factor: factor(), what, value });
+                faults.push(Fault::NotFinite { factor: factor(), what: what(), value });
             }
         };
         match &self.domain {
             Domain::Levels(levels) => {
                 for (i, &value) in levels.iter().enumerate() {
-                    finite(format!("level {}", i + 1), value);
+                    finite(&|| format!("level {}", i + 1), value);
                 }
                 if levels.len() < 2 {
                     faults.push(Fault::TooFewLevels { factor: factor(), found: levels.len() });
                 }
-                let mut places: HashMap<u64, usize> = HashMap::with_capacity(levels.len());
-                for (place, &value) in levels.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
-                    // −0 is 0.
-                    if let Some(first) = places.get(&(value + 0.0).to_bits()) {
-                        let (first, second) = (first + 1, place + 1);
-                        faults.push(Fault::DuplicateLevel { factor: factor(), value, first, second });
-                    } else {
-                        places.insert((value + 0.0).to_bits(), place);
-                    }
+                // −0 is 0.
+                let words: Vec<u64> = levels.iter().map(|value| (value + 0.0).to_bits()).collect();
+                let again =
+                    occurrences(&words, 1, words.len()).into_iter().enumerate().filter(|(_, number)| *number > 1);
+                for (place, _) in again.filter(|(place, _)| !levels[*place].is_nan()) {
+                    let first = words.iter().position(|word| *word == words[place]).unwrap_or(place);
+                    let (value, first, second) = (levels[place], first + 1, place + 1);
+                    faults.push(Fault::DuplicateLevel { factor: factor(), value, first, second });
                 }
             }
             Domain::Range { low, high } => {
-                finite("the lower limit".into(), *low);
-                finite("the upper limit".into(), *high);
+                finite(&|| "the lower limit".into(), *low);
+                finite(&|| "the upper limit".into(), *high);
                 if low >= high {
                     faults.push(Fault::EmptyRange { factor: factor(), low: *low, high: *high });
                 }

@@ -23,20 +23,12 @@ impl Design for FullFactorial {
     const NAME: &'static str = "full-factorial";
 
     fn points(&self, factors: &[Factor], _: &mut Stream) -> Result<Points, Vec<Fault>> {
-        let counts: Vec<usize> = factors.iter().map(Factor::level_count).collect();
-        let mut faults = if self.centre_points > 0 { check_surface(factors, "a centre point") } else { vec![] };
-        let runs = counts.iter().try_fold(1_usize, |runs, &n| runs.checked_mul(n).filter(|&r| r <= MOST_RUNS));
-        let Some(runs) = runs else {
-            faults.push(Fault::NoConstruction {
-                design: "full factorial".into(),
-                found: format!("the combinations of {} factors are more than {MOST_RUNS}", factors.len()),
-                remedy: "use fewer factors or levels, or an orthogonal, fractional or sampled design".into(),
-            });
-            return Err(faults);
-        };
+        let faults = self.faults(factors);
         if !faults.is_empty() {
             return Err(faults);
         }
+        let counts: Vec<usize> = factors.iter().map(Factor::level_count).collect();
+        let runs: usize = counts.iter().product();
         let kind = if counts.iter().all(|&n| n == 2) { PointType::Cube } else { PointType::Grid };
         let row = |run: usize| {
             let mut rest = run;
@@ -55,6 +47,19 @@ impl Design for FullFactorial {
             construction: format!("full factorial, {} = {runs} combinations", shape.join(" × ")),
             source: "Fisher 1935, The Design of Experiments".into(),
         })
+    }
+
+    fn faults(&self, factors: &[Factor]) -> Vec<Fault> {
+        let mut faults = if self.centre_points > 0 { check_surface(factors, "a centre point") } else { vec![] };
+        let mut counts = factors.iter().map(Factor::level_count);
+        if counts.try_fold(1_usize, |runs, n| runs.checked_mul(n).filter(|&r| r <= MOST_RUNS)).is_none() {
+            faults.push(Fault::NoConstruction {
+                design: "full factorial".into(),
+                found: format!("the combinations of {} factors are more than {MOST_RUNS}", factors.len()),
+                remedy: "use fewer factors or levels, or an orthogonal, fractional or sampled design".into(),
+            });
+        }
+        faults
     }
 }
 

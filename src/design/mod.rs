@@ -125,9 +125,13 @@ pub fn build(method: &Method, factors: &[Factor], layout: Layout, seed: u64) -> 
 }
 
 /// Everything that [`build`] would find wrong, without building what takes long.
-pub fn check(method: &Method, factors: &[Factor]) -> Vec<Fault> {
-    let faults = coding::check(factors);
-    if faults.is_empty() { method.faults(factors) } else { faults }
+pub fn check(method: &Method, factors: &[Factor], layout: Layout) -> Vec<Fault> {
+    let mut faults = coding::check(factors);
+    if faults.is_empty() {
+        faults = method.faults(factors);
+    }
+    faults.extend(layout.fault(1));
+    faults
 }
 
 #[cfg(test)]

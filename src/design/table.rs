@@ -2,6 +2,7 @@
 
 use super::coding::{Coding, Factor};
 use super::error::Fault;
+use crate::math::occurrence::occurrences;
 use crate::math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -111,15 +112,9 @@ impl DesignTable {
     }
 
     /// Which occurrence of its row each run is, from 1: equal rows are replicates.
-    pub fn replicate(&self) -> Vec<usize> {
-        let mut seen = std::collections::BTreeMap::new();
-        let number = |row: &Vec<f64>| {
-            let bits: Vec<u64> = row.iter().map(|x| x.to_bits()).collect();
-            let count = seen.entry(bits).or_insert(0);
-            *count += 1;
-            *count
-        };
-        self.natural.iter().map(number).collect()
+    pub fn replicate(&self) -> Vec<u64> {
+        let words: Vec<u64> = self.natural.iter().flatten().map(|x| x.to_bits()).collect();
+        occurrences(&words, self.factors.len(), self.runs())
     }
 
     /// Gives the points their values, repeats them and puts them in order.
@@ -130,23 +125,25 @@ impl DesignTable {
         stream: &mut Stream,
     ) -> Result<Self, Vec<Fault>> {
         let once = points.rows.len();
-        if layout.replicates == 0 || layout.replicates.saturating_mul(once) > MOST_RUNS {
-            return Err(vec![Fault::BadOption {
-                option: "replicates".into(),
-                found: layout.replicates.to_string(),
-                wanted: format!("it must be at least 1, and the table of {once} runs may have at most {MOST_RUNS}"),
-            }]);
+        if let Some(fault) = layout.fault(once) {
+            return Err(vec![fault]);
         }
         let mut order: Vec<usize> = (0..once * layout.replicates).collect();
         if layout.order == Order::Random {
             stream.shuffle(&mut order);
         }
         let codings: Vec<(&Factor, Coding)> = factors.iter().map(|factor| (factor, factor.coding())).collect();
-        let values = |i: &usize| -> (Vec<f64>, Vec<f64>) {
-            let row = &points.rows[i % once].0;
-            row.iter().zip(&codings).map(|(place, (factor, coding))| place.values(factor, coding)).unzip()
-        };
-        let (coded, natural) = order.iter().map(values).unzip();
+        let (mut coded, mut natural) = (Vec::with_capacity(order.len()), Vec::with_capacity(order.len()));
+        for i in &order {
+            let row = points.rows[i % once].0.iter().zip(&codings);
+            let (mut codes, mut values) = (Vec::with_capacity(codings.len()), Vec::with_capacity(codings.len()));
+            for (code, value) in row.map(|(place, (factor, coding))| place.values(factor, coding)) {
+                codes.push(code);
+                values.push(value);
+            }
+            coded.push(codes);
+            natural.push(values);
+        }
         Ok(Self {
             factors: factors.to_vec(),
             coded,
@@ -180,6 +177,24 @@ pub struct Layout {
     pub replicates: usize,
     /// Order of the runs.
     pub order: Order,
+}
+
+impl Layout {
+    /// What is wrong with a design of `once` runs laid out so.
+    pub(super) fn fault(self, once: usize) -> Option<Fault> {
+        let bad = |option: &str, found: usize, wanted: &str| Fault::BadOption {
+            option: option.into(),
+            found: found.to_string(),
+            wanted: wanted.into(),
+        };
+        let most = || format!("a table has at most {MOST_RUNS} runs");
+        match self.replicates {
+            0 => Some(bad("replicates", 0, "it must be at least 1")),
+            _ if once > MOST_RUNS => Some(bad("rows", once, &most())),
+            n if n.saturating_mul(once) > MOST_RUNS => Some(bad("replicates", n, &most())),
+            _ => None,
+        }
+    }
 }
 
 impl Default for Layout {

@@ -3,7 +3,9 @@
 //! * [`random`]: seeded streams whose values never change between versions, hosts or thread counts
 //! * [`elementary`]: `exp`, `sin`, `pow` … with one implementation everywhere, so that results keep their bits
 //! * [`distribution`]: tails and quantiles of F, t and the normal distribution
+//! * [`occurrence`]: which of equal rows each row is
 
 pub mod distribution;
 pub mod elementary;
+pub mod occurrence;
 pub mod random;

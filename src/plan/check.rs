@@ -32,7 +32,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
     let profiles = overlay::names(&root);
     overlay::profile(&mut root, overrides.profile.as_deref(), &mut sources, &mut faults);
     overlay::sets(&mut root, &overrides.sets, &mut sources, &mut faults);
-    let mut check = Check { sources: &sources, faults };
+    let mut check = Check { sources: &sources, faults, lost: Vec::new() };
     check.root_keys(&root);
     let head = check.head(&mut root);
     let mut context = Context {
@@ -42,6 +42,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         materials: check.named(&mut root, "material", Check::material),
         outline: Vec::new(),
     };
+    check.settings(&root, &context);
     let stages = stages::read_all(&mut check, &mut root, &context);
     let mut faults = check.faults;
     let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
@@ -80,6 +81,8 @@ pub(super) struct Check<'a> {
     pub(super) sources: &'a Sources,
     /// The faults so far.
     pub(super) faults: Vec<Fault>,
+    /// Names of factors, responses and materials that could not be read.
+    pub(super) lost: Vec<String>,
 }
 
 impl Check<'_> {
@@ -99,8 +102,9 @@ impl Check<'_> {
             }
             None => {
                 let empty = if root.0.is_empty() { "the file is empty: " } else { "" };
+                let file = &self.sources.0[0].name;
                 let hint = "begin with\n[workflow]\ntitle = \"what it is\"\nseed = 1";
-                self.faults.push(Fault::new(format!("{empty}the table [workflow] is missing")).hint(hint));
+                self.faults.push(Fault::new(format!("{file}: {empty}the table [workflow] is missing")).hint(hint));
                 None
             }
         }
@@ -120,8 +124,9 @@ impl Check<'_> {
                 break;
             }
             self.name(name, entry);
-            if let Some(value) = one(self, name, &mut entry.node) {
-                found.insert(name.clone(), value);
+            match one(self, name, &mut entry.node) {
+                Some(value) => drop(found.insert(name.clone(), value)),
+                None => self.lost.push(name.clone()),
             }
         }
         found
@@ -184,6 +189,34 @@ impl Check<'_> {
     fn material(&mut self, _: &str, node: &mut Node) -> Option<BTreeMap<String, crate::stage::Parameter>> {
         let read_table = |reader: super::reader::Reader<'_>| MaterialTable::deserialize(reader);
         read(node, self.sources, &mut self.faults, Vec::new, read_table).map(MaterialTable::material)
+    }
+
+    /// What factors set must be there, and of the kind that their units say.
+    fn settings(&mut self, root: &Table, context: &Context) {
+        let Some(factors) = root.0.get("factor").map(|entry| &entry.node) else { return };
+        if context.materials.is_empty() || !self.lost.is_empty() {
+            return;
+        }
+        for (name, factor) in context.factors.iter().filter(|(_, factor)| !factor.sets.is_empty()) {
+            let all = context.materials.iter();
+            let mut set = all.filter_map(|(material, values)| Some((material, values.get(&factor.sets)?))).peekable();
+            if set.peek().is_none() {
+                let paths: BTreeSet<&str> =
+                    context.materials.values().flat_map(|m| m.keys().map(String::as_str)).collect();
+                let fault = Fault::new(format!("no material has `{}`, which factor `{name}` sets", factor.sets));
+                let fault = fault.known(&factor.sets, "parameters", paths);
+                self.complain(factors, &steps([name.as_str(), "sets"]), fault);
+            }
+            let Ok(unit) = Unit::parse(&factor.unit) else { continue };
+            if let Some((material, _)) = set.find(|(_, parameter)| parameter.dimension != unit.dimension) {
+                let unit =
+                    if factor.unit.is_empty() { "a pure number".to_owned() } else { format!("in {}", factor.unit) };
+                let fault =
+                    Fault::new(format!("factor `{name}` is {unit}, and `{}`, which it sets, is not", factor.sets));
+                let hint = format!("give it the unit that `{}` has in [material.{material}]", factor.sets);
+                self.complain(factors, &steps([name.as_str(), "unit"]), fault.hint(hint));
+            }
+        }
     }
 
     fn unit(&mut self, unit: &str, node: &Node) {

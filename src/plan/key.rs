@@ -29,8 +29,17 @@ pub const HEAD: &str = "flow task 1";
 /// The text of a task whose inputs have the given contents, in the order of [`Task::inputs`].
 pub fn task_text(task: &Task, inputs: &[ContentHash]) -> String {
     assert_eq!(task.inputs.len(), inputs.len(), "BUG: {} is given the contents of other inputs", task.work);
+    let mut text = text_without_inputs(task, inputs.len());
+    for ((name, _), content) in task.inputs.iter().zip(inputs) {
+        hash_line(&mut text, "input", name, &content.0);
+    }
+    text
+}
+
+/// The text of a task up to its inputs, with room for so many.
+pub fn text_without_inputs(task: &Task, room: usize) -> String {
     let version = work(task.work).map_or(0, |work| work.version);
-    let mut text = String::with_capacity(256 + 96 * (inputs.len() + task.files.len()));
+    let mut text = String::with_capacity(256 + 96 * (room + task.files.len()));
     write(&mut text, format_args!("{HEAD}\nwork {} {version}\n", task.work));
     if let Some(seed) = task.seed {
         write(&mut text, format_args!("seed {seed}\n"));
@@ -38,9 +47,6 @@ pub fn task_text(task: &Task, inputs: &[ContentHash]) -> String {
     params(&mut text, &mut String::with_capacity(64), &task.params);
     for file in &task.files {
         hash_line(&mut text, "file", &file.name, &file.digest);
-    }
-    for ((name, _), content) in task.inputs.iter().zip(inputs) {
-        hash_line(&mut text, "input", name, &content.0);
     }
     text
 }
@@ -101,8 +107,18 @@ fn hash_line(text: &mut String, what: &str, name: &str, hash: &[u8; 32]) {
     text.push(' ');
     push_name(text, name);
     text.push(' ');
-    text.push_str(&blake3::Hash::from_bytes(*hash).to_hex());
+    push_hex(text, hash);
     text.push('\n');
+}
+
+/// As blake3 shows a hash, sooner: a task may have a hundred thousand inputs.
+fn push_hex(text: &mut String, hash: &[u8; 32]) {
+    let mut digits = [0; 64];
+    for (pair, byte) in digits.as_chunks_mut::<2>().0.iter_mut().zip(hash) {
+        *pair = [byte >> 4, byte & 15];
+    }
+    digits.iter_mut().for_each(|digit| *digit += if *digit < 10 { b'0' } else { b'a' - 10 });
+    text.push_str(str::from_utf8(&digits).unwrap_or_default());
 }
 
 /// A name as it is when it is bare, else as a JSON text, so that no two paths have one form.
@@ -152,8 +168,9 @@ fn push_number(text: &mut String, number: &Number) {
 /// The fewest digits that read back to the same number; with an exponent when it is far from 1.
 fn push_real(text: &mut String, real: f64) {
     let size = real.abs();
-    if real == 0.0 {
-        text.push('0');
+    if size < 1e7 && real.trunc() == real {
+        // As below, but a whole number is told much sooner.
+        write(text, format_args!("{}", real as i64));
     } else if (1e-4..1e7).contains(&size) {
         write(text, format_args!("{real}"));
     } else {

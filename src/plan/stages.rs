@@ -50,6 +50,10 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &Context) -> Vec
         let by_kind = |reader: Reader<'_>| stage_of(kind, reader);
         let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, keys, by_kind) else { continue };
         for complaint in stage.check(context) {
+            // It only follows from a fault that was told already.
+            if check.lost.iter().any(|name| complaint.message.contains(&format!("`{name}`"))) {
+                continue;
+            }
             let fault = Fault { hint: complaint.hint, ..Fault::new(complaint.message) };
             check.complain(&entry.node, &steps(complaint.path.iter().map(String::as_str)), fault);
         }

@@ -21,6 +21,9 @@ const LARGEST_FAULTY: usize = 1 << 15;
 /// The deepest table or list.
 const DEEPEST: usize = 32;
 
+/// What to do about it.
+const NOT_DEEP: &str = "no table or list of a workflow is nested deeper than 32 levels";
+
 /// So many faults of one text are told.
 const MOST_FAULTS: usize = 20;
 
@@ -108,7 +111,7 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
                 let label = if header { "give it another name" } else { "remove one of them" };
                 Fault::new(format!("`{}` stands here a second time", shortened(&text[start..end]))).label(label)
             }
-            message if message.contains("recurs") => Fault::new("nested too deeply"),
+            message if message.contains("recurs") => Fault::new("nested too deeply").hint(NOT_DEEP),
             message => Fault::new(message),
         };
         faults.push(fault.at(sources.place(span)));

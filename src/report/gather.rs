@@ -79,7 +79,7 @@ fn state(status: Option<&StageStatus>, store: &Store) -> Result<State, StoreErro
 fn costs(workflow: &Workflow, report: &Report, store: &Store) -> Result<Vec<Cost>, StoreError> {
     let mut costs = vec![Cost::default(); workflow.stages.len()];
     let mut seen = HashSet::new();
-    for task in &report.tasks {
+    for task in report.tasks() {
         let Some(object) = task.object.filter(|object| seen.insert(object.key)) else { continue };
         let Some(record) = store.find(&object.key)? else { continue };
         costs[task.stage].add(record.started, record.seconds, &record.origin);

@@ -31,8 +31,8 @@ mod warning;
 
 pub use gather::{Asked, gather};
 pub use page::page;
-pub use paper::{Cost, Paper, Part, State};
-pub use time::duration;
+pub use paper::{Cost, Paper, Part, State, quoted};
+pub use time::{duration, moment};
 
 #[cfg(test)]
 mod tests;

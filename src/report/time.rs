@@ -13,7 +13,7 @@ pub fn duration(seconds: f64) -> String {
 }
 
 /// Milliseconds since 1970 as `2026-11-22 15:04`, in UTC.
-pub(super) fn moment(milliseconds: i64) -> String {
+pub fn moment(milliseconds: i64) -> String {
     let minutes = milliseconds.div_euclid(60_000);
     let (year, month, day) = date(minutes.div_euclid(1440));
     let minute = minutes.rem_euclid(1440);

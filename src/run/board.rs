@@ -1,18 +1,21 @@
 //! Every task known so far, as a graph that grows while the campaign runs.
 //!
 //! A node stands for one task; equal tasks are one node, whichever stage asked first. Equality is that of the
-//! *recipe*: the task text with the recipe of each input task in place of its result, so it is known before anything ran.
+//! *recipe*: the key of a task whose inputs are known; else a hash of its text with the recipe of each input task in place
+//! of its result, so it is known before anything ran.
 
 use super::TaskReport;
-use crate::artifact::{ContentHash, Key};
-use crate::plan::key::task_text;
+use crate::artifact::{ContentHash, FirstBytes, Key};
+use crate::plan::key::{task_text, text_without_inputs};
 use crate::stage::{Source, Task};
 use crate::store::ObjectId;
 use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
 use std::ops::Add;
 use std::sync::Arc;
 
 pub(super) type NodeId = usize;
+pub(super) type ByKey = HashMap<Key, NodeId, BuildHasherDefault<FirstBytes>>;
 
 /// Where a task stands.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,10 +96,12 @@ struct Node {
 #[derive(Default)]
 pub(super) struct Board {
     nodes: Vec<Node>,
-    by_recipe: HashMap<Key, NodeId>,
+    by_recipe: ByKey,
     /// Tasks seen already, by address; the board keeps them alive, so an address stays theirs.
     by_address: HashMap<*const Task, NodeId>,
     kept: Vec<Arc<Task>>,
+    /// The text that was written last: what is decided about is often started next, and texts may be long.
+    written: Option<(NodeId, String)>,
     counts: Vec<TaskCount>,
     /// Seconds that the tasks of each stage took in this run.
     seconds: Vec<f64>,
@@ -117,16 +122,18 @@ impl Board {
             })
             .collect();
         let inputs = self.with_kept(task, stage, inputs);
-        let recipe = self.recipe(task, &inputs);
+        let (recipe, text) = self.recipe(task, &inputs);
         self.kept.push(Arc::clone(task));
         let node = match self.by_recipe.get(&recipe) {
             Some(&node) => node,
             None => {
                 let missing = inputs.iter().flatten().filter(|&&input| !self.is_done(input)).count();
-                let (row, dependents, key, state) = (task.row, Vec::new(), None, TaskState::Open);
+                let key = text.is_some().then_some(recipe);
+                let (row, dependents, state) = (task.row, Vec::new(), TaskState::Open);
                 let task = Some(Arc::clone(task));
                 let node = self.add(Node { task, stage, row, inputs, dependents, missing, recipe, key, state });
                 self.by_recipe.insert(recipe, node);
+                self.written = text.map(|text| (node, text));
                 new.push(node);
                 node
             }
@@ -137,6 +144,7 @@ impl Board {
 
     /// The inputs of a task with a node for each one that is kept.
     fn with_kept(&mut self, task: &Task, stage: usize, mut inputs: Vec<Option<NodeId>>) -> Vec<Option<NodeId>> {
+        self.nodes.reserve(task.kept.as_ref().map_or(0, |kept| kept.runs.len()));
         for &(place, row, key, content) in task.kept.iter().flat_map(|kept| &kept.runs) {
             inputs[place] = Some(self.add(Node {
                 task: None,
@@ -176,18 +184,25 @@ impl Board {
         id
     }
 
-    fn recipe(&self, task: &Task, inputs: &[Option<NodeId>]) -> Key {
-        let parts: Vec<ContentHash> = task
-            .inputs
-            .iter()
-            .zip(inputs)
-            .map(|((_, source), node)| match (source, node) {
-                (Source::Content(content), _) => *content,
-                (Source::Task(_), Some(node)) => ContentHash(self.nodes[*node].recipe.0),
-                (Source::Task(_), None) => panic!("BUG: an input task without a node"),
-            })
-            .collect();
-        Key::of(&task_text(task, &parts))
+    /// The recipe of a task, and its text when no input is a task: then the recipe is the key.
+    fn recipe(&self, task: &Task, inputs: &[Option<NodeId>]) -> (Key, Option<String>) {
+        let part = |((_, source), node): (&(_, Source), &Option<NodeId>)| match (source, node) {
+            (Source::Content(content), _) => *content,
+            (Source::Task(_), Some(node)) => ContentHash(self.nodes[*node].recipe.0),
+            (Source::Task(_), None) => panic!("BUG: an input task without a node"),
+        };
+        let parts: Vec<ContentHash> = task.inputs.iter().zip(inputs).map(part).collect();
+        if task.inputs.iter().all(|(_, source)| matches!(source, Source::Content(_))) {
+            let text = task_text(task, &parts);
+            return (Key::of(&text), Some(text));
+        }
+        let mut bytes = text_without_inputs(task, parts.len()).into_bytes();
+        for ((name, _), part) in task.inputs.iter().zip(&parts) {
+            bytes.extend_from_slice(&(name.len() as u64).to_le_bytes());
+            bytes.extend_from_slice(name.as_bytes());
+            bytes.extend_from_slice(&part.0);
+        }
+        (Key(*blake3::hash(&bytes).as_bytes()), None)
     }
 
     /// The node of a task that was put on the board before.
@@ -200,7 +215,7 @@ impl Board {
                 Source::Task(task) => self.find(task).map(Some),
             })
             .collect();
-        self.by_recipe.get(&self.recipe(task, &inputs?)).copied()
+        self.by_recipe.get(&self.recipe(task, &inputs?).0).copied()
     }
 
     /// Contents of a node's inputs, when all are known.
@@ -235,9 +250,22 @@ impl Board {
 
     /// The key of an open node whose inputs are known.
     pub(super) fn key(&mut self, node: NodeId) -> Option<Key> {
-        let key = self.text(node).map(|text| Key::of(&text));
-        self.nodes[node].key = key.or(self.nodes[node].key);
-        key
+        if self.nodes[node].state != TaskState::Open {
+            return None;
+        }
+        if self.nodes[node].key.is_none() {
+            self.written = self.text(node).map(|text| (node, text));
+            self.nodes[node].key = self.written.as_ref().map(|(_, text)| Key::of(text));
+        }
+        self.nodes[node].key
+    }
+
+    /// As [`Board::text`]; the one that was written last is handed out as it is.
+    pub(super) fn take_text(&mut self, node: NodeId) -> Option<String> {
+        match self.written.take_if(|(of, _)| *of == node) {
+            Some((_, text)) => Some(text),
+            None => self.text(node),
+        }
     }
 
     /// The key of the task that is one of the inputs of a node.
@@ -251,7 +279,7 @@ impl Board {
     }
 
     /// Nodes by their keys, where those are known.
-    pub(super) fn by_key(&self) -> HashMap<Key, NodeId> {
+    pub(super) fn by_key(&self) -> ByKey {
         (0..self.nodes.len()).filter_map(|node| Some((self.nodes[node].key?, node))).collect()
     }
 
@@ -294,15 +322,19 @@ impl Board {
     }
 
     /// Every task.
-    pub(super) fn reports(&self) -> Vec<TaskReport> {
-        let report = |node: NodeId| TaskReport {
+    pub(super) fn reports(&self) -> impl DoubleEndedIterator<Item = TaskReport> {
+        (0..self.nodes.len()).map(|node| TaskReport {
             stage: self.nodes[node].stage,
             row: self.row(node),
             state: self.nodes[node].state.clone(),
             text: self.text(node),
             object: self.object(node),
-        };
-        (0..self.nodes.len()).map(report).collect()
+        })
+    }
+
+    /// The object of every task that is done.
+    pub(super) fn objects(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
+        (0..self.nodes.len()).filter_map(|node| self.object(node))
     }
 
     /// Seconds that the tasks of a stage took in this run.

@@ -6,19 +6,20 @@
 
 use super::board::{Board, NodeId, TaskState};
 use super::memo;
-use crate::artifact::{ContentHash, Key};
+use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
 use crate::stage::ledger::{Briefs, Kept, KeptRuns, RowName};
 use crate::stage::rows::RUN;
 use crate::store::{Memo, ObjectId, Store};
 use std::collections::{BTreeMap, HashMap};
+use std::hash::BuildHasherDefault;
 
 /// Files that were looked at, with their digests.
 pub(super) type Files = Vec<(String, String)>;
 
 /// The runs that earlier campaigns made.
 pub(super) struct Ledger {
-    places: HashMap<RowName, usize>,
+    places: HashMap<RowName, usize, BuildHasherDefault<FirstBytes>>,
     objects: Vec<ObjectId>,
     briefs: Briefs,
     pub(super) files: Files,

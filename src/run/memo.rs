@@ -58,14 +58,14 @@ pub(super) fn base(workflow: &Workflow) -> Base {
     let shared = format!("flow stages 2\nprogram {program:?}\nseed {seed}\n{responses:?}\n{materials:?}\n");
     let bare = factors.iter().map(|(name, f)| (name, &f.sets, &f.unit, &f.symbol));
     let run = Key::of(&format!("run\n{shared}{:?}\n", bare.collect::<Vec<_>>()));
-    let mut whole = format!("{shared}{outline:?}\n");
+    let mut whole = format!("{shared}{outline:?}\n{run}").into_bytes();
     for factor in factors.values() {
-        // The shortest text of a number takes long to find for ten thousand levels; a String takes any text.
-        let bits = factor.levels.iter().chain(factor.range.iter().flatten()).map(|level| level.to_bits());
-        whole.extend(bits.map(|bits| format!("{bits:x} ")));
-        let _ = writeln!(whole, "{} {}", factor.levels.len(), factor.range.is_some());
+        // Numbers as they are: their texts take long to find for ten thousand levels.
+        let numbers = factor.levels.iter().chain(factor.range.iter().flatten());
+        whole.extend(numbers.flat_map(|number| number.to_bits().to_le_bytes()));
+        whole.extend([factor.levels.len() as u64, factor.range.is_some().into()].map(u64::to_le_bytes).as_flattened());
     }
-    Base { whole: Key::of(&format!("{whole}{run}")), run }
+    Base { whole: Key(*blake3::hash(&whole).as_bytes()), run }
 }
 
 /// Key of a stage whose inputs are there: `inputs` holds their stage keys and contents.

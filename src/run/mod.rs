@@ -11,6 +11,7 @@
 //! same loop that starts nothing, so it cannot disagree with `run`.
 
 mod board;
+mod commit;
 mod ledger;
 mod library;
 mod memo;
@@ -19,6 +20,7 @@ mod stages;
 mod task;
 
 pub use board::{TaskCount, TaskState};
+pub use commit::commit;
 pub use memo::remembered;
 pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
@@ -101,7 +103,6 @@ pub trait Watch: Sync {
 }
 
 /// What became of a campaign.
-#[derive(Clone, Debug)]
 pub struct Report {
     /// Every wanted stage, in the order of the workflow.
     pub stages: Vec<StageReport>,
@@ -109,10 +110,8 @@ pub struct Report {
     pub interrupted: bool,
     /// The store could not be read; what was wrong.
     pub broken: Option<String>,
-    /// The tasks that are known, in the order they became known; none of stages that were remembered.
-    pub tasks: Vec<TaskReport>,
-    /// Every object that the campaign rests on.
-    pub objects: Vec<ObjectId>,
+    board: Board,
+    places: Stages,
 }
 
 /// One task, for people and programs.
@@ -131,6 +130,16 @@ pub struct TaskReport {
 }
 
 impl Report {
+    /// The tasks that are known, in the order they became known; none of stages that were remembered.
+    pub fn tasks(&self) -> impl DoubleEndedIterator<Item = TaskReport> {
+        self.board.reports()
+    }
+
+    /// Every object that the campaign rests on.
+    pub fn objects(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
+        self.board.objects().chain(self.places.remembered())
+    }
+
     /// Counts over all stages.
     pub fn count(&self) -> TaskCount {
         self.stages.iter().fold(TaskCount::default(), |sum, stage| sum + stage.tasks)
@@ -212,10 +221,9 @@ impl Loop<'_> {
             }
         }
         let interrupted = self.stop.load(Ordering::Relaxed);
-        let tasks: Vec<TaskReport> = self.board.reports();
-        let objects = tasks.iter().filter_map(|task| task.object).chain(self.stages.remembered()).collect();
         let broken = self.fatal.map(|error| error.to_string());
-        Report { stages: self.stages.reports(self.workflow, &self.board), interrupted, broken, tasks, objects }
+        let stages = self.stages.reports(self.workflow, &self.board);
+        Report { stages, interrupted, broken, board: self.board, places: self.stages }
     }
 
     /// Asks each stage that can say more; whether any did.
@@ -282,7 +290,7 @@ impl Loop<'_> {
             let Some(node) = self.ready.pop_first() else { return };
             let idle = self.pool.count() - self.running;
             let threads = (idle / (self.ready.len() + 1)).max(1);
-            match task::Order::new(&self.board, node, self.store, threads) {
+            match task::Order::new(&mut self.board, node, self.store, threads) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
                     Ok(()) => return,

@@ -1,17 +1,18 @@
 //! Where each stage of the workflow stands.
 
-use super::board::{Board, NodeId, TaskCount, TaskState};
+use super::board::{Board, ByKey, NodeId, TaskCount, TaskState};
 use super::ledger::{Files, Ledger};
 use super::library::{Notes, Shelf};
 use super::memo::{self, Base};
 use super::task::Lost;
-use crate::artifact::{ContentHash, Key};
+use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
 use crate::stage::ledger::RowName;
 use crate::stage::{Input, Known, Library, StageError, Step};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
 use std::collections::HashSet;
+use std::hash::BuildHasherDefault;
 use std::sync::Arc;
 
 /// What became of a stage, for people and programs.
@@ -290,8 +291,10 @@ impl Stages {
     /// Every wanted stage. A task that several stages rest on counts for the first of them in the workflow, whichever
     /// asked first, so that counts do not depend on timing.
     pub(super) fn reports(&self, workflow: &Workflow, board: &Board) -> Vec<StageReport> {
-        let by_key = board.by_key();
-        let (mut nodes, mut keys) = (vec![false; board.len()], HashSet::new());
+        let recalled = self.places.iter().any(|place| place.remembered.is_some());
+        let by_key = if recalled { board.by_key() } else { ByKey::default() };
+        let mut keys: HashSet<Key, BuildHasherDefault<FirstBytes>> = HashSet::default();
+        let mut nodes = vec![false; board.len()];
         let wanted = (0..self.places.len()).filter(|&index| self.places[index].wanted);
         wanted
             .map(|index| {
@@ -315,7 +318,7 @@ impl Stages {
     }
 
     /// Objects that memos spoke for.
-    pub(super) fn remembered(&self) -> impl Iterator<Item = ObjectId> {
+    pub(super) fn remembered(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
         self.places.iter().filter_map(|place| place.remembered.as_ref()).flat_map(|known| known.objects.iter().copied())
     }
 }

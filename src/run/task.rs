@@ -34,8 +34,8 @@ pub(super) struct Finished {
 
 impl Order {
     /// Loads the inputs of an open node, or says which of them is lost.
-    pub(super) fn new(board: &Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Box<Lost>> {
-        let (Some(text), Some(contents)) = (board.text(node), board.inputs(node)) else {
+    pub(super) fn new(board: &mut Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Box<Lost>> {
+        let (Some(text), Some(contents)) = (board.take_text(node), board.inputs(node)) else {
             panic!("BUG: a task was started before its inputs were known");
         };
         let task = Arc::clone(board.task(node));
@@ -44,7 +44,7 @@ impl Order {
         for (place, ((name, _), content)) in task.inputs.iter().zip(&contents).enumerate() {
             if kept.next_if_eq(&place).is_none() {
                 let lost = |error| Box::new(Lost { content: *content, error });
-                inputs.push((name.clone(), store.get(content).map_err(lost)?));
+                inputs.push((name.to_string(), store.get(content).map_err(lost)?));
             }
         }
         inputs.extend(task.kept.iter().map(|kept| ("kept".to_owned(), Arc::new(kept.artifact()))));

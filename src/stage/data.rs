@@ -6,6 +6,7 @@
 
 use super::{Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
+use crate::design::table::MOST_RUNS;
 use crate::unit::Unit;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -55,13 +56,16 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
     Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
 }
 
-/// Reads the whole table, or says every fault of it.
+/// Reads the whole table, or says what is wrong with it.
 pub(super) fn parse(bytes: &[u8]) -> Result<Table, StageError> {
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
     let fail = |e: csv::Error| StageError::new(e.to_string()).hint("every line must have the cells of the first line");
     let heads: Vec<String> = reader.headers().map_err(fail)?.iter().map(str::to_owned).collect();
     let mut cells = vec![Vec::new(); heads.len()];
-    for record in reader.records() {
+    for (row, record) in reader.records().enumerate() {
+        if row == MOST_RUNS {
+            return Err(StageError::new(format!("the table has more than {MOST_RUNS} rows")).hint("name a part of it"));
+        }
         for (column, cell) in cells.iter_mut().zip(record.map_err(fail)?.iter()) {
             column.push(cell.to_owned());
         }

@@ -55,9 +55,9 @@ impl Stage for Design {
         }
         match self.method() {
             // rows of a file are checked when it is read
-            Ok(Method::Given(given)) if given.rows.is_empty() => found,
+            Ok(Method::Given(_)) if self.file.is_some() => found,
             Ok(method) => {
-                let faults = check(&method, &self.factors(context));
+                let faults = check(&method, &self.factors(context), self.layout());
                 faults.iter().map(complaint).collect()
             }
             Err(complaint) => vec![complaint],
@@ -73,7 +73,7 @@ impl Stage for Design {
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let design = self.method().map_err(|c| StageError { message: c.message, hint: c.hint })?;
-        let layout = Layout { replicates: self.replicates, order: self.order };
+        let layout = self.layout();
         let draws = design.draws() || layout.order == Order::Random;
         let factors = self.factors(known.context);
         let params = Params { design, factors, layout, power: self.power };

@@ -13,15 +13,15 @@ pub type RowName = [u8; 16];
 
 /// The name of a row.
 pub fn row_name(point: &Point, replicate: u64) -> RowName {
-    let mut hasher = blake3::Hasher::new();
+    let mut bytes = Vec::with_capacity(256);
     for (factor, value) in point {
-        hasher.update(&(factor.len() as u64).to_le_bytes());
-        hasher.update(factor.as_bytes());
-        hasher.update(&(value + 0.0).to_bits().to_le_bytes());
+        bytes.extend_from_slice(&(factor.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(factor.as_bytes());
+        bytes.extend_from_slice(&(value + 0.0).to_bits().to_le_bytes());
     }
-    hasher.update(&replicate.to_le_bytes());
+    bytes.extend_from_slice(&replicate.to_le_bytes());
     let mut name = RowName::default();
-    name.copy_from_slice(&hasher.finalize().as_bytes()[..16]);
+    name.copy_from_slice(&blake3::hash(&bytes).as_bytes()[..16]);
     name
 }
 
@@ -46,6 +46,12 @@ pub struct KeptRuns {
 }
 
 impl KeptRuns {
+    /// None yet, with room for so many.
+    pub fn with_room(count: usize) -> Self {
+        let briefs = Briefs { runs: Vec::with_capacity(count), ..Briefs::default() };
+        Self { runs: Vec::with_capacity(count), briefs }
+    }
+
     /// Adds the run at a place among the inputs.
     pub fn push(&mut self, place: usize, row: usize, kept: Kept<'_>) {
         self.runs.push((place, row, kept.key, kept.content));

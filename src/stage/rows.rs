@@ -6,10 +6,11 @@
 use super::ledger::{Briefs, KeptRuns};
 use super::{Complaint, Context, Failure, Input, Job, Known, Point, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Column, Group, Node, Table, Values};
+use crate::math::occurrence::occurrences;
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// One row of a design.
@@ -33,31 +34,30 @@ fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a
 ///
 /// # Errors
 /// It has none, or a factor column holds no numbers.
-pub fn rows(design: &Artifact, context: &Context) -> Result<Vec<Row>, StageError> {
+pub fn rows<'a>(
+    design: &'a Artifact,
+    context: &Context,
+) -> Result<impl ExactSizeIterator<Item = Row> + use<'a>, StageError> {
     let columns = factor_columns(design, context)?;
-    let numbers: Vec<(&str, &Values)> = columns.iter().map(|column| (column.name.as_str(), &column.values)).collect();
     let count = columns.first().map_or(0, |column| column.values.len());
     if count == 0 {
         return Err(StageError::new("the design has no rows of known factors"));
     }
-    let mut seen: HashMap<Vec<u64>, u64> = HashMap::new();
-    (0..count)
-        .map(|index| {
-            let mut point = Point::new();
-            for (name, values) in &numbers {
-                let value = match values {
-                    Values::Reals(values) => values[index],
-                    Values::Ints(values) => values[index] as f64,
-                    Values::Texts(_) => return Err(StageError::new(format!("factor `{name}` holds texts"))),
-                };
-                point.insert((*name).to_owned(), value);
-            }
-            let content = point.values().map(|value| (value + 0.0).to_bits()).collect();
-            let replicate = seen.entry(content).or_insert(0);
-            *replicate += 1;
-            Ok(Row { index, point, replicate: *replicate })
-        })
-        .collect()
+    if let Some(column) = columns.iter().find(|column| matches!(column.values, Values::Texts(_))) {
+        return Err(StageError::new(format!("factor `{}` holds texts", column.name)));
+    }
+    let value = |column: &Column, index: usize| match &column.values {
+        Values::Reals(values) => values[index] + 0.0,
+        Values::Ints(values) => values[index] as f64,
+        Values::Texts(_) => f64::NAN,
+    };
+    let words: Vec<u64> =
+        (0..count).flat_map(|index| columns.iter().map(move |column| value(column, index).to_bits())).collect();
+    let replicates = occurrences(&words, columns.len(), count);
+    Ok(replicates.into_iter().enumerate().map(move |(index, replicate)| {
+        let point = columns.iter().map(|column| (column.name.clone(), value(column, index)));
+        Row { index, point: point.collect(), replicate }
+    }))
 }
 
 /// Parameters by path in SI units after a point of the factor space was applied to them.
@@ -132,8 +132,10 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
     };
     let artifact = known.load(design)?;
     let mut task = gather(known, design, &artifact)?;
-    let mut kept_runs = KeptRuns::default();
-    for row in rows(&artifact, known.context)? {
+    let rows = rows(&artifact, known.context)?;
+    task.inputs.reserve(rows.len());
+    let mut kept_runs = KeptRuns::with_room(rows.len());
+    for row in rows {
         task = match known.library.kept(&row.point, row.replicate) {
             Some(kept) => {
                 kept_runs.push(task.inputs.len(), row.index, kept);

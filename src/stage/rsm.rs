@@ -98,7 +98,7 @@ impl Stage for Rsm {
             let input = input.ok_or_else(|| StageError::new("`tables` names no stage"))?;
             let artifact = known.load(input)?;
             fittings.push(self.fitting(response, runs(&artifact)?, known.context)?);
-            task = task.input(response, input.content);
+            task = task.input(response.clone(), input.content);
         }
         let params = Params {
             fittings,

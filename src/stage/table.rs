@@ -193,7 +193,7 @@ impl Stage for Table {
         let ports: &[&str] = if self.list.is_some() { &["compare"] } else { &["of", "compare"] };
         for port in ports {
             for input in known.port(port) {
-                task = task.input(port, input.content);
+                task = task.input(*port, input.content);
             }
         }
         if let Some(path) = &self.published {

@@ -5,6 +5,7 @@ use super::ledger::KeptRuns;
 use crate::artifact::{Artifact, ContentHash};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,7 +20,7 @@ pub struct Task {
     /// Its seed, when it draws random numbers.
     pub seed: Option<u64>,
     /// Named inputs in a fixed order.
-    pub inputs: Vec<(String, Source)>,
+    pub inputs: Vec<(Cow<'static, str>, Source)>,
     /// Files it reads, known by content.
     pub files: Vec<FileInput>,
     /// Which design row (from 0) it computes; for people only, not part of its key.
@@ -54,15 +55,15 @@ impl Task {
 
     /// Adds an artifact that is known already.
     #[must_use]
-    pub fn input(mut self, name: &str, content: ContentHash) -> Self {
-        self.inputs.push((name.to_owned(), Source::Content(content)));
+    pub fn input(mut self, name: impl Into<Cow<'static, str>>, content: ContentHash) -> Self {
+        self.inputs.push((name.into(), Source::Content(content)));
         self
     }
 
     /// Adds the result of another task.
     #[must_use]
-    pub fn after(mut self, name: &str, task: Arc<Task>) -> Self {
-        self.inputs.push((name.to_owned(), Source::Task(task)));
+    pub fn after(mut self, name: impl Into<Cow<'static, str>>, task: Arc<Task>) -> Self {
+        self.inputs.push((name.into(), Source::Task(task)));
         self
     }
 

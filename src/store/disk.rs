@@ -132,10 +132,11 @@ impl Disk {
 
     /// Reads a file that was just written, `path` to be, and compares.
     fn read_back(&self, written: &Path, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
-        let mut back = Vec::with_capacity(bytes.len() + 1);
-        let read = File::open(written).and_then(|mut file| file.read_to_end(&mut back));
-        read.map_err(|error| self.fail("read back", path, error))?;
-        if back == bytes { Ok(()) } else { Err(self.fail("write", path, ErrorKind::StorageFull.into())) }
+        let same = File::open(written).and_then(|file| holds(file, bytes));
+        match same.map_err(|error| self.fail("read back", path, error))? {
+            true => Ok(()),
+            false => Err(self.fail("write", path, ErrorKind::StorageFull.into())),
+        }
     }
 
     /// Removes a file, if it is there.
@@ -149,6 +150,22 @@ impl Disk {
     /// Makes the names in a folder survive a power cut.
     pub(super) fn sync_dir(&self, path: &Path) -> Result<(), StoreError> {
         File::open(path).and_then(|dir| dir.sync_all()).map_err(|error| self.fail("sync", path, error))
+    }
+}
+
+/// Whether a file holds these bytes and no more.
+fn holds(mut file: File, mut bytes: &[u8]) -> std::io::Result<bool> {
+    let mut block = vec![0; (bytes.len() + 1).min(1 << 16)];
+    loop {
+        match file.read(&mut block) {
+            Ok(0) => return Ok(bytes.is_empty()),
+            Ok(count) => match bytes.strip_prefix(&block[..count]) {
+                Some(rest) => bytes = rest,
+                None => return Ok(false),
+            },
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
     }
 }
 

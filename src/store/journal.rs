@@ -22,11 +22,11 @@ use super::disk::{Disk, TEMPORARY};
 use super::lock::Held;
 use super::object::Seal;
 use super::{Origin, Record, StoreError};
-use crate::artifact::{ContentHash, Key};
+use crate::artifact::{ContentHash, FirstBytes, Key};
 use std::collections::{HashMap, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
-use std::hash::{BuildHasherDefault, Hasher};
+use std::hash::BuildHasherDefault;
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -164,16 +164,40 @@ impl Index {
         let mut file = File::open(path)?;
         // Asked before reading: what a dead process has written is all there is.
         let alive = file.try_lock_shared().is_err();
-        let mut bytes = Vec::with_capacity(file.metadata().map_or(0, |data| data.len() as usize + 1));
-        file.read_to_end(&mut bytes)?;
-        let Some((head, records)) = bytes.split_at_checked(HEAD) else { return Ok(()) };
-        self.origins.push(Arc::new(read_head(head)));
+        let mut head = [0; HEAD];
+        match file.read_exact(&mut head) {
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
+            other => other?,
+        }
+        self.origins.push(Arc::new(read_head(&head)));
         let origin = (self.origins.len() - 1) as u32;
-        let end = HEAD as u64 + self.take(records, origin);
+        let end = HEAD as u64 + self.read_records(&mut file, origin)?;
         if alive && !own {
             self.growing.push(Growing { file, end, origin });
         }
         Ok(())
+    }
+
+    /// Takes in the whole records that follow in a file, at once into their place; returns their length.
+    fn read_records(&mut self, file: &mut File, origin: u32) -> std::io::Result<u64> {
+        self.push(&[], origin);
+        let (first, length) = (self.records.len(), file.metadata()?.len().saturating_sub(HEAD as u64));
+        self.records.resize(first + (length / RECORD as u64) as usize, [0; RECORD]);
+        let place = self.records[first..].as_flattened_mut();
+        let mut read = 0;
+        while read < place.len() {
+            match file.read(&mut place[read..]) {
+                Ok(0) => break,
+                Ok(count) => read += count,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => {
+                    self.records.truncate(first);
+                    return Err(error);
+                }
+            }
+        }
+        self.records.truncate(first + read / RECORD);
+        Ok((read / RECORD * RECORD) as u64)
     }
 
     /// Takes in the whole records at the start of `bytes`; returns their length.
@@ -378,23 +402,4 @@ fn unpack(bytes: &[u8; RECORD], origin: &Arc<Origin>) -> Option<Record> {
 /// The eight bytes from `place` on, as a number.
 fn word(bytes: &[u8], place: usize) -> u64 {
     bytes[place..].first_chunk().map_or(0, |word| u64::from_le_bytes(*word))
-}
-
-/// Hashes are evenly spread already: their first bytes serve as the hash of the map.
-#[derive(Default)]
-pub(super) struct FirstBytes(u64);
-
-impl Hasher for FirstBytes {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        if let Some(first) = bytes.first_chunk::<8>() {
-            self.0 = u64::from_le_bytes(*first);
-        }
-    }
-    fn write_usize(&mut self, _: usize) {}
-    fn write_u64(&mut self, word: u64) {
-        self.0 ^= word;
-    }
 }

@@ -46,7 +46,7 @@ use object::Seal;
 use presence::Presence;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// What the journal says about a finished task.
@@ -100,7 +100,7 @@ pub enum Claim {
 /// An open store. All methods take `&self` and may be called from many threads.
 pub struct Store {
     disk: Disk,
-    origin: OnceLock<Arc<Origin>>,
+    origin: LazyLock<Arc<Origin>, Box<dyn FnOnce() -> Arc<Origin> + Send>>,
     index: OnceLock<Mutex<Index>>,
     segment: Mutex<Segment>,
     cache: Mutex<Cache>,
@@ -122,7 +122,7 @@ impl Store {
         let in_use = lock::share(&disk);
         Ok(Self {
             disk,
-            origin: OnceLock::new(),
+            origin: LazyLock::new(Box::new(|| Arc::new(Origin::here()))),
             index: OnceLock::new(),
             segment: Mutex::default(),
             cache: Mutex::default(),
@@ -132,16 +132,16 @@ impl Store {
         })
     }
 
-    /// Says where and by what results are computed from now on; without it [`Origin::here`] is taken.
+    /// Says where and by what results are computed, asked when the first is; without it [`Origin::here`] is taken.
     #[must_use]
-    pub fn with_origin(mut self, origin: Origin) -> Self {
-        self.origin = OnceLock::from(Arc::new(origin));
+    pub fn with_origin(mut self, origin: impl FnOnce() -> Origin + Send + 'static) -> Self {
+        self.origin = LazyLock::new(Box::new(|| Arc::new(origin())));
         self
     }
 
     /// Where and by what results are computed now.
     pub fn origin(&self) -> &Origin {
-        self.origin.get_or_init(|| Arc::new(Origin::here()))
+        &self.origin
     }
 
     /// The folder of the store.
@@ -251,7 +251,7 @@ impl Store {
             seal,
             started: milliseconds(timing.started),
             seconds: timing.seconds,
-            origin: self.origin.get_or_init(|| Arc::new(Origin::here())).clone(),
+            origin: Arc::clone(&self.origin),
         };
         locked(&self.segment).append(&self.disk, &record, durable)?;
         if let Some(index) = self.index.get() {
@@ -267,8 +267,7 @@ impl Store {
     /// # Errors
     /// The lock cannot be made or the journals cannot be read.
     pub fn claim(&self, key: &Key) -> Result<Claim, StoreError> {
-        let machine = &self.origin.get_or_init(|| Arc::new(Origin::here())).machine;
-        match lock::take(&self.disk, &key.to_string(), machine)? {
+        match lock::take(&self.disk, &key.to_string(), &self.origin.machine)? {
             lock::Taken::Theirs(waiting) => Ok(Claim::Theirs(waiting)),
             lock::Taken::Mine(guard) => {
                 // Its last holder recorded the result before it let go.

@@ -9,7 +9,8 @@ pub struct Origin {
     pub machine: String,
     /// Version of flow.
     pub version: String,
-    /// Git commit of the folder of the workflow, `""` when it is not known.
+    /// Git commit of the folder of the workflow, with `-dirty` behind it when files were changed since; `""` when it is not
+    /// known.
     pub commit: String,
 }
 

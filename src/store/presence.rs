@@ -14,8 +14,8 @@
 
 use super::StoreError;
 use super::disk::Disk;
-use super::journal::FirstBytes;
 use super::object::{self, ObjectId};
+use crate::artifact::FirstBytes;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::hash::BuildHasherDefault;

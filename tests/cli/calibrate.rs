@@ -88,7 +88,7 @@ fn an_unfinished_campaign_says_what_to_run_first_and_runs_nothing() {
     space.run(&["surfaces"]);
     space.write("w.toml", &CAMPAIGN.replace("simulator = \"ccd\"", "simulator = \"table\""));
     let output = space.flow(&[&target[..], &["--verify", "--set", "workflow.title=mine"]].concat());
-    let first = "run first: flow run w.toml table --set 'workflow.title=mine'\n";
+    let first = "run first: flow run w.toml table --set workflow.title=mine\n";
     assert!(told(&output).contains(first), "{}", told(&output));
     assert!(space.flow(&target).status.success());
 }

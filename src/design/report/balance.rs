@@ -43,6 +43,11 @@ pub(super) fn levels(table: &DesignTable, factor: usize) -> Levels {
     classes(table.natural.iter().map(|r| r[factor]).collect())
 }
 
+/// How many levels a factor has.
+pub(super) fn level_count(table: &DesignTable, factor: usize) -> usize {
+    ascending(table.natural.iter().map(|r| r[factor]).collect()).len()
+}
+
 /// The levels of a factor over the runs that are no centre points.
 fn without_centre(table: &DesignTable, factor: usize) -> Levels {
     let runs = table.natural.iter().zip(&table.point_type).filter(|(_, p)| **p != PointType::Centre);
@@ -50,11 +55,15 @@ fn without_centre(table: &DesignTable, factor: usize) -> Levels {
 }
 
 fn classes(cells: Vec<f64>) -> Levels {
-    let mut values = cells.clone();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
+    let values = ascending(cells.clone());
     let place = |x: f64| values.partition_point(|v| v.total_cmp(&x).is_lt());
     (cells.into_iter().map(place).collect(), values)
+}
+
+fn ascending(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
 }
 
 /// Balance and orthogonality.

@@ -10,7 +10,7 @@
 //! * condition number: largest over smallest singular value of X with columns of length 1 (Belsley, Kuh & Welsch 1980,
 //!   doi:10.1002/0471725153), by one-sided Jacobi rotations of R (Hestenes 1958, doi:10.1137/0106005)
 
-use super::balance::{MOST_LEVELS, levels};
+use super::balance::{MOST_LEVELS, level_count, levels};
 use super::{named, tidy};
 use crate::design::table::{DesignTable, PointType};
 
@@ -41,7 +41,7 @@ impl Kind {
     /// Whether the model means something for this table: classes need a table of levels; a product needs two factors;
     /// squares need a third value of some factor.
     pub fn applies(self, table: &DesignTable) -> bool {
-        let counts = || (0..table.factors.len()).map(|j| levels(table, j).1.len());
+        let counts = || (0..table.factors.len()).map(|j| level_count(table, j));
         let of_levels = |p: &PointType| matches!(p, PointType::Cube | PointType::Grid | PointType::Given);
         match self {
             Self::Main => true,

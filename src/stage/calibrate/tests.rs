@@ -122,10 +122,10 @@ fn finished(laboratory: &Laboratory, task: &Task) -> Result<Artifact, String> {
         .iter()
         .map(|(name, source)| match source {
             crate::stage::Source::Task(task) => match laboratory.outcome(task) {
-                Some(Outcome::Done(content)) => (name.clone(), laboratory.load(&content).unwrap()),
+                Some(Outcome::Done(content)) => (name.to_string(), laboratory.load(&content).unwrap()),
                 other => panic!("{other:?}"),
             },
-            crate::stage::Source::Content(content) => (name.clone(), laboratory.load(content).unwrap()),
+            crate::stage::Source::Content(content) => (name.to_string(), laboratory.load(content).unwrap()),
         })
         .collect();
     let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: Progress| ());

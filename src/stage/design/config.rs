@@ -10,7 +10,7 @@ use crate::design::orthogonal::Orthogonal;
 use crate::design::plackett_burman::PlackettBurman;
 use crate::design::report::power::Question;
 use crate::design::sobol::Sobol;
-use crate::design::{Domain, Factor, Method, Order};
+use crate::design::{Domain, Factor, Layout, Method, Order};
 use crate::stage::{Complaint, Context};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -196,12 +196,17 @@ impl Design {
     pub(super) fn factor_complaints(&self, context: &Context) -> Vec<Complaint> {
         let unknown = self.factors.iter().filter(|name| !context.factors.contains_key(*name));
         let known: Vec<&str> = context.factors.keys().map(String::as_str).collect();
-        unknown
-            .map(|name| {
-                Complaint::new("factors", format!("`{name}` is not a factor of this workflow"))
-                    .hint(format!("its factors are {}", known.join(", ")))
-            })
-            .collect()
+        let hint = match known.is_empty() {
+            true => "it has none: add [factor.NAME] with levels or a range".to_owned(),
+            false => format!("its factors are {}", known.join(", ")),
+        };
+        let complaint = |name| Complaint::new("factors", format!("`{name}` is not a factor of this workflow"));
+        unknown.map(|name| complaint(name).hint(&hint)).collect()
+    }
+
+    /// How the whole design is repeated and ordered.
+    pub(super) fn layout(&self) -> Layout {
+        Layout { replicates: self.replicates, order: self.order }
     }
 
     /// The design with its options.

@@ -17,11 +17,12 @@ fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
 }
 
 fn design(table: &DesignTable) -> Table {
+    let replicate = table.replicate().into_iter().map(|n| n as i64).collect();
     let types = table.point_type.iter().map(|p| p.word().to_owned()).collect();
     let mut found = Table { about: table.construction.clone(), columns: Vec::new() }
         .ints_column("run", "order of the runs", counted(1..=table.runs()))
         .ints_column("standard_order", "place in the order of the construction", counted(table.standard_order.clone()))
-        .ints_column("replicate", "which of the equal rows it is", counted(table.replicate()))
+        .ints_column("replicate", "which of the equal rows it is", replicate)
         .texts_column("point_type", "centre, cube, axial, edge, grid, sample or given", types);
     for (j, factor) in table.factors.iter().enumerate() {
         let values = table.natural.iter().map(|row| row[j]).collect();

@@ -16,9 +16,10 @@ fn design(moduli: &[f64]) -> Artifact {
 
 #[test]
 fn equal_rows_are_replicates_by_occurrence() {
-    let found = rows(&design(&[10.0, 20.0, 10.0]), &context()).unwrap();
-    let numbers: Vec<u64> = found.iter().map(|row| row.replicate).collect();
-    assert_eq!(numbers, [1, 1, 2]);
+    let design = design(&[10.0, 20.0, 10.0]);
+    let found: Vec<Row> = rows(&design, &context()).unwrap().collect();
+    assert_eq!(found.iter().map(|row| row.replicate).collect::<Vec<_>>(), [1, 1, 2]);
+    assert_eq!(found[2], Row { index: 2, point: Point::from([("Ec".to_owned(), 10.0)]), replicate: 2 });
 }
 
 #[test]

@@ -1,0 +1,37 @@
+//! What a reader must not miss at the end of a run: notes of the statistics, and runs that gave no result.
+
+use super::common::Campaign;
+use crate::artifact::{Artifact, Table, Values};
+use crate::run::{Report, StageStatus};
+use crate::store::Store;
+
+/// A line for each table that holds remarks, with the command that shows it; of the stages that ran.
+pub(super) fn remarks(campaign: &Campaign, report: &Report, store: &Store) -> Vec<String> {
+    let mut lines = Vec::new();
+    for stage in report.stages.iter().filter(|stage| stage.tasks.ran > 0) {
+        let StageStatus::Done(content) = &stage.status else { continue };
+        // A result that cannot be read is told by whoever needs it.
+        let Ok(artifact) = store.get(content) else { continue };
+        for (table, count) in [("notes", notes(&artifact)), ("runs", failures(&artifact))] {
+            if let Some(told) = count {
+                let show = campaign.command("show", &[&stage.name, "--table", table]);
+                lines.push(format!("note: {}: {told}; see {show}", stage.name));
+            }
+        }
+    }
+    lines
+}
+
+fn notes(artifact: &Artifact) -> Option<String> {
+    match artifact.table("notes").map_or(0, Table::rows) {
+        0 => None,
+        1 => Some("1 note on what to look at before trusting the numbers".to_owned()),
+        count => Some(format!("{count} notes on what to look at before trusting the numbers")),
+    }
+}
+
+fn failures(artifact: &Artifact) -> Option<String> {
+    let Values::Texts(failures) = &artifact.table("runs")?.column("failure")?.values else { return None };
+    let count = failures.iter().filter(|why| !why.is_empty()).count();
+    (count > 0).then(|| format!("{count} of {} runs gave no result", failures.len()))
+}
