@@ -5,8 +5,11 @@ use crate::dem::boundary::Image;
 use crate::dem::law::{
     BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Viscous,
 };
-use crate::dem::simd::{Lane, Quad, Row, WIDEST};
+use crate::dem::simd::{Lane, Quad, Row, WIDEST, prefetch};
 use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
+
+/// Blocks between the one at work and the one whose second ends are asked for.
+const AHEAD: usize = 2;
 
 /// The side of a wall that balls see, now.
 #[derive(Clone, Copy, Debug)]
@@ -129,6 +132,12 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
     let viscous = constants.dashpot != [0.0; 2];
     let dt = L::splat(task.dt);
     for (b, (ends, rows)) in chunk.ends.iter().zip(chunk.rows.chunks_exact_mut(K::ROWS)).enumerate() {
+        if let Some(next) = chunk.ends.get(b + AHEAD) {
+            for &j in &next[1] {
+                prefetch(task.records, S::RECORD, j);
+                prefetch(loads, S::LOADS, j);
+            }
+        }
         for at in (0..WIDEST).step_by(L::WIDTH) {
             let (first, others) = (&ends[0][at..at + L::WIDTH], &ends[1][at..at + L::WIDTH]);
             let i = S::ends::<L>(task.records, first);
