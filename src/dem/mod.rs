@@ -46,6 +46,10 @@
 //! v(t − dt/2) dt; local damping F − α |F| sign v ([`Settings::damping`], gravity included); velocities, then positions;
 //! walls. Laws: linear, contact bond, parallel bond; see [`interaction`] for the moduli.
 //!
+//! Masses: real, or of one critical step ([`Masses::EqualStep`]). Uniform density scaling is not offered, because it is the
+//! same thing as a higher speed: with the density times c² and the speed over c the steps are c times longer and every
+//! force is the same.
+//!
 //! Contacts are listed when nearer than a margin; a reference gap belongs to the pair and stays while the pair is nearer
 //! than the smallest radius, so it outlives a loss of contact, at platens too. The time step is derived from the closed
 //! and bonded contacts whenever the list is renewed.

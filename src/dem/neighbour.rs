@@ -2,15 +2,14 @@
 //!
 //! Pairs come out sorted by (i, j) with i < j, whatever the grid.
 
-/// Pairs of balls whose surfaces are nearer than `margin`, sorted. Balls of the same body are left out.
+/// Gives `put` the pairs of balls whose surfaces are nearer than `margin`, in order. Balls of the same body are left out.
 ///
 /// `positions` have three coordinates, the third 0 in the plane.
-pub(crate) fn pairs(positions: &[[f64; 3]], radii: &[f64], bodies: &[u32], margin: f64) -> Vec<(u32, u32)> {
+pub(crate) fn pairs(positions: &[[f64; 3]], radii: &[f64], bodies: &[u32], margin: f64, mut put: impl FnMut(u32, u32)) {
     let largest = radii.iter().copied().fold(0.0, f64::max);
     let grid = Grid::new(positions, 2.0 * largest + margin);
-    let mut found = Vec::with_capacity(positions.len() * 3);
+    let mut found = Vec::new();
     for (i, x) in positions.iter().enumerate() {
-        let first = found.len();
         grid.visit_around(x, |j| {
             let j = j as usize;
             if j > i && bodies[i] != bodies[j] {
@@ -18,13 +17,13 @@ pub(crate) fn pairs(positions: &[[f64; 3]], radii: &[f64], bodies: &[u32], margi
                 let y = &positions[j];
                 let d2: f64 = (0..3).map(|k| (y[k] - x[k]) * (y[k] - x[k])).sum();
                 if d2 < reach * reach {
-                    found.push((i as u32, j as u32));
+                    found.push(j as u32);
                 }
             }
         });
-        found[first..].sort_unstable();
+        found.sort_unstable();
+        found.drain(..).for_each(|j| put(i as u32, j));
     }
-    found
 }
 
 /// Balls by cell.
@@ -136,7 +135,9 @@ mod tests {
             }
         }
         assert!(brute.len() > 300);
-        assert_eq!(pairs(&positions, &radii, &bodies, 0.02), brute);
+        let mut found = Vec::new();
+        pairs(&positions, &radii, &bodies, 0.02, |i, j| found.push((i, j)));
+        assert_eq!(found, brute);
     }
 
     #[test]

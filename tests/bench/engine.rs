@@ -71,6 +71,7 @@ fn specimen<S: Space>(count: usize, speed: f64) -> (Engine<S>, Vector<S>) {
     let (porosity, spread) = if S::DIMENSION == 2 { (0.12, 2.5) } else { (0.36, 1.66) };
     let (model, size) = cloud::<S>(count, porosity, spread);
     let mut engine = Engine::new(&model).expect("a sound model");
+    drop(model);
     for _ in 0..60 {
         engine.advance(5).expect("calm");
         engine.calm();

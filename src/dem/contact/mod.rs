@@ -4,6 +4,6 @@ mod section;
 mod sweep;
 mod view;
 
-pub(crate) use section::{Key, LawKind, Packed, Section};
+pub(crate) use section::{Key, LawKind, Rank, Reader, Section, Writer};
 pub(crate) use sweep::{Break, Face, Second, Sweep, sweep_section};
 pub use view::{Contact, Other};

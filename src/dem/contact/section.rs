@@ -1,12 +1,17 @@
 //! Contacts of one class, in blocks of eight; between them the classes hold the whole list.
 //!
 //! The order of contacts (class, wall or image, i, j) decides the order of every sum, so it depends on nothing but the contacts.
+//! Blocks stand in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second whole list
+//! stands beside it.
 
 use crate::dem::interaction::Bond;
-use crate::dem::law::{KN, LEDGER, REFERENCE, Rows};
+use crate::dem::law::{ContactBondLaw, LEDGER, Law, LinearLaw, Memory, ParallelBondLaw, Rows, fresh};
 use crate::dem::simd::{Row, WIDEST};
 use crate::dem::space::Space;
 use std::ops::Range;
+
+/// Blocks of a chunk.
+const CHUNK: usize = 128;
 
 /// Which law a class follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +29,15 @@ impl LawKind {
             Bond::Parallel(_) => Self::ParallelBond,
         }
     }
+
+    /// Rows of memory of a contact.
+    fn rows<S: Space>(self) -> usize {
+        match self {
+            Self::Linear => <LinearLaw as Law<S>>::ROWS,
+            Self::ContactBond => <ContactBondLaw as Law<S>>::ROWS,
+            Self::ParallelBond => <ParallelBondLaw as Law<S>>::ROWS,
+        }
+    }
 }
 
 /// Who meets whom, in the engine's numbering: i with particle j, or with wall j.
@@ -39,22 +53,33 @@ pub(crate) struct Key {
     pub(crate) image: u8,
 }
 
-/// Contacts of one class: between particles, or with one wall.
-#[derive(Clone, Debug)]
-pub(crate) struct Section {
+/// What the contacts of a section have in common; sections stand in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Rank {
+    /// True when the second ends are walls.
+    pub(crate) at_wall: bool,
     /// Place in the contact table.
     pub(crate) class: usize,
-    /// The wall, for contacts with one.
-    pub(crate) wall: Option<u32>,
-    /// Image of the second ends in a periodic cell; 0 for themselves.
-    pub(crate) image: u8,
-    /// Real contacts; the last block is filled up with idle ones.
-    pub(crate) count: usize,
-    /// The contacts before this one belong to another stretch, which computes them too.
-    pub(crate) own_from: usize,
+    /// The wall, or the image of the second ends in a periodic cell (0 for themselves).
+    pub(crate) second: u32,
+}
+
+impl Rank {
+    /// The key of a contact with these ends (i and the wall at a wall).
+    pub(crate) fn key(self, [i, j]: [u32; 2]) -> Key {
+        if self.at_wall {
+            return Key { i, at_wall: true, j: self.second, image: 0 };
+        }
+        Key { i, at_wall: false, j, image: self.second as u8 }
+    }
+}
+
+/// Some blocks of a section, side by side.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Chunk {
     /// Ends of each block: i, then j.
     pub(crate) ends: Vec<[[u32; WIDEST]; 2]>,
-    /// `Rows::COUNT` rows a block.
+    /// As many rows a block as the law has.
     pub(crate) rows: Vec<Row>,
     /// Force on the wall, `DIMENSION` rows a block; empty between particles.
     pub(crate) reactions: Vec<Row>,
@@ -62,58 +87,90 @@ pub(crate) struct Section {
     pub(crate) ledger: Vec<Row>,
 }
 
+/// Contacts of one class: between particles, or with one wall.
+#[derive(Clone, Debug)]
+pub(crate) struct Section {
+    /// What they have in common.
+    pub(crate) rank: Rank,
+    /// The law that they follow: that of the class, or the linear one as long as no parallel bond was installed in the
+    /// class. It comes to the same bits with fewer rows.
+    pub(crate) law: LawKind,
+    /// Real contacts; the last block is filled up with idle ones.
+    pub(crate) count: usize,
+    /// The contacts before this one belong to another stretch, which computes them too.
+    pub(crate) own_from: usize,
+    /// The blocks, `CHUNK` in each chunk but the last.
+    pub(crate) chunks: Vec<Chunk>,
+    /// The first of the two dummies that idle lanes join.
+    dummy: u32,
+}
+
+/// Chunk, block and lane of a contact.
+fn place(c: usize) -> (usize, usize, usize) {
+    (c / (CHUNK * WIDEST), c / WIDEST % CHUNK, c % WIDEST)
+}
+
 impl Section {
-    /// An idle section. Idle lanes join the two dummies that stand after the `particles` real ones.
-    pub(crate) fn new<S: Space>(class: usize, wall: Option<u32>, contacts: usize, particles: usize) -> Self {
-        let blocks = contacts.div_ceil(WIDEST);
-        let dummy = [[particles as u32; WIDEST], [particles as u32 + 1; WIDEST]];
-        let mut rows = vec![Row::default(); blocks * Rows::<S>::COUNT];
-        for block in rows.chunks_exact_mut(Rows::<S>::COUNT) {
-            block[Rows::<S>::TENSION] = Row([f64::INFINITY; WIDEST]);
-            block[Rows::<S>::COHESION] = Row([f64::INFINITY; WIDEST]);
-        }
-        let reactions = if wall.is_some() { vec![Row::default(); blocks * S::DIMENSION] } else { Vec::new() };
-        Self {
-            class,
-            wall,
-            image: 0,
-            count: contacts,
-            own_from: 0,
-            ends: vec![dummy; blocks],
-            rows,
-            reactions,
-            ledger: Vec::new(),
-        }
+    /// Without contacts. The two dummies stand after the `particles` real ones.
+    pub(crate) fn new(rank: Rank, law: LawKind, particles: usize) -> Self {
+        Self { rank, law, count: 0, own_from: 0, chunks: Vec::new(), dummy: particles as u32 }
     }
 
-    /// Its place in the order of sections.
-    pub(crate) fn rank(&self) -> (bool, usize, u32) {
-        (self.wall.is_some(), self.class, self.wall.unwrap_or(u32::from(self.image)))
+    /// The wall, for contacts with one.
+    pub(crate) fn wall(&self) -> Option<u32> {
+        self.rank.at_wall.then_some(self.rank.second)
     }
 
     /// The key of contact `c`.
     pub(crate) fn key(&self, c: usize) -> Key {
-        let [i, j] = self.ends[c / WIDEST].map(|end| end[c % WIDEST]);
-        Key { i, at_wall: self.wall.is_some(), j: self.wall.unwrap_or(j), image: self.image }
-    }
-
-    /// Sets the ends of contact `c`.
-    pub(crate) fn set_key(&mut self, c: usize, key: Key) {
-        let ends = &mut self.ends[c / WIDEST];
-        ends[0][c % WIDEST] = key.i;
-        if !key.at_wall {
-            ends[1][c % WIDEST] = key.j;
-        }
+        let (chunk, block, lane) = place(c);
+        self.rank.key(self.chunks[chunk].ends[block].map(|end| end[lane]))
     }
 
     /// Row `row` of contact `c`.
     pub(crate) fn value<S: Space>(&self, c: usize, row: usize) -> f64 {
-        self.rows[c / WIDEST * Rows::<S>::COUNT + row].0[c % WIDEST]
+        let (chunk, block, lane) = place(c);
+        let rows = self.law.rows::<S>();
+        if row < rows { self.chunks[chunk].rows[block * rows + row].0[lane] } else { fresh::<S>()[row] }
     }
 
-    /// Writes row `row` of contact `c`.
-    pub(crate) fn set_value<S: Space>(&mut self, c: usize, row: usize, value: f64) {
-        self.rows[c / WIDEST * Rows::<S>::COUNT + row].0[c % WIDEST] = value;
+    /// The memory of contact `c`.
+    pub(crate) fn memory<S: Space>(&self, c: usize) -> Memory {
+        let (chunk, block, lane) = place(c);
+        let rows = self.law.rows::<S>();
+        let mut memory = fresh::<S>();
+        for (value, row) in memory.iter_mut().zip(&self.chunks[chunk].rows[block * rows..(block + 1) * rows]) {
+            *value = row.0[lane];
+        }
+        memory
+    }
+
+    /// Adds a contact at the end; `room` contacts are expected from here on, this one among them.
+    pub(crate) fn push<S: Space>(&mut self, key: Key, memory: &Memory, room: usize) {
+        let (chunk, block, lane) = place(self.count);
+        let rows = self.law.rows::<S>();
+        if chunk == self.chunks.len() {
+            let blocks = room.div_ceil(WIDEST).clamp(1, CHUNK);
+            let (ends, rows) = (Vec::with_capacity(blocks), Vec::with_capacity(blocks * rows));
+            self.chunks.push(Chunk { ends, rows, ..Chunk::default() });
+        }
+        let chunk = &mut self.chunks[chunk];
+        if block == chunk.ends.len() {
+            chunk.ends.push([[self.dummy; WIDEST], [self.dummy + 1; WIDEST]]);
+            chunk.rows.extend(fresh::<S>()[..rows].iter().map(|&x| Row([x; WIDEST])));
+            if self.rank.at_wall {
+                chunk.reactions.resize(chunk.ends.len() * S::DIMENSION, Row::default());
+            }
+        }
+        let ends = &mut chunk.ends[block];
+        ends[0][lane] = key.i;
+        if !key.at_wall {
+            ends[1][lane] = key.j;
+        }
+        for (row, value) in chunk.rows[block * rows..].iter_mut().zip(memory) {
+            row.0[lane] = *value;
+        }
+        self.count += 1;
     }
 
     /// Whether contact `c` is bonded.
@@ -121,102 +178,97 @@ impl Section {
         self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
     }
 
+    /// Force of contact `c` on the wall; the third component is 0 in the plane.
+    pub(crate) fn reaction<S: Space>(&self, c: usize) -> [f64; 3] {
+        let (chunk, block, lane) = place(c);
+        let rows = &self.chunks[chunk].reactions[block * S::DIMENSION..];
+        std::array::from_fn(|k| if k < S::DIMENSION { rows[k].0[lane] } else { 0.0 })
+    }
+
     /// Opens the books.
     pub(crate) fn open_ledger(&mut self) {
-        self.ledger = vec![Row::default(); self.ends.len() * LEDGER];
+        for chunk in &mut self.chunks {
+            chunk.ledger = vec![Row::default(); chunk.ends.len() * LEDGER];
+        }
     }
 
     /// Adds one row of the ledger of some contacts to `sum`, one by one: the order of the list decides the bits.
     pub(crate) fn add_spent(&self, row: usize, contacts: Range<usize>, sum: &mut f64) {
-        for c in contacts {
-            *sum += self.ledger.get(c / WIDEST * LEDGER + row).map_or(0.0, |r| r.0[c % WIDEST]);
+        for (chunk, block, lane) in contacts.map(place) {
+            *sum += self.chunks[chunk].ledger.get(block * LEDGER + row).map_or(0.0, |r| r.0[lane]);
         }
-    }
-
-    /// Copies contact `c` out.
-    pub(crate) fn pack<S: Space>(&self, c: usize, into: &mut Packed) {
-        into.keys.push((self.key(c), self.class as u32));
-        into.values.extend((0..Rows::<S>::COUNT).map(|row| self.value::<S>(c, row)));
     }
 }
 
-/// Contacts one after the other, `Rows::COUNT` numbers each.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Packed {
-    /// Key and class.
-    pub(crate) keys: Vec<(Key, u32)>,
-    /// Rows of each.
-    pub(crate) values: Vec<f64>,
+/// Reads the own contacts of sections of one rank, and gives back the chunks that were read.
+pub(crate) struct Reader {
+    sections: std::vec::IntoIter<Section>,
+    now: Option<(Section, usize)>,
 }
 
-impl Packed {
-    /// Empty, with room for `contacts`.
-    pub(crate) fn with_capacity<S: Space>(contacts: usize) -> Self {
-        let (keys, values) = (Vec::with_capacity(contacts), Vec::with_capacity(contacts * Rows::<S>::COUNT));
-        Self { keys, values }
+impl Reader {
+    /// At the first contact of `sections`, which stand in the order of their stretches.
+    pub(crate) fn new(sections: Vec<Section>) -> Self {
+        let mut reader = Self { sections: sections.into_iter(), now: None };
+        reader.open();
+        reader
     }
 
-    /// Adds a fresh, unbonded contact.
-    pub(crate) fn push_new<S: Space>(&mut self, key: Key, class: u32, kn: f64) {
-        self.keys.push((key, class));
-        let first = self.values.len();
-        self.values.resize(first + Rows::<S>::COUNT, 0.0);
-        self.values[first + KN] = kn;
-        self.values[first + REFERENCE] = 0.0;
-        self.values[first + Rows::<S>::TENSION] = f64::INFINITY;
-        self.values[first + Rows::<S>::COHESION] = f64::INFINITY;
+    /// Goes to the next section that has own contacts.
+    fn open(&mut self) {
+        self.now = self.sections.find(|s| s.own_from < s.count).map(|section| {
+            let first = section.own_from;
+            (section, first)
+        });
     }
 
-    /// Adds contact `k` of another list.
-    pub(crate) fn push_old<S: Space>(&mut self, from: &Packed, k: usize) {
-        self.keys.push(from.keys[k]);
-        self.values.extend_from_slice(from.rows::<S>(k));
+    /// The next contact.
+    pub(crate) fn key(&self) -> Option<Key> {
+        self.now.as_ref().map(|(section, next)| section.key(*next))
     }
 
-    /// Rows of contact `k`.
-    pub(crate) fn rows<S: Space>(&self, k: usize) -> &[f64] {
-        &self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
-    }
-
-    /// Rows of contact `k`.
-    pub(crate) fn rows_mut<S: Space>(&mut self, k: usize) -> &mut [f64] {
-        &mut self.values[k * Rows::<S>::COUNT..(k + 1) * Rows::<S>::COUNT]
-    }
-
-    /// Sections in the order (wall or not, class, wall or image), contacts by (i, j) within each; of the contacts that touch
-    /// `particles`, a stretch of all `total` ones.
-    pub(crate) fn sections<S: Space>(&self, total: usize, particles: &Range<usize>) -> Vec<Section> {
-        let own = |p: u32| particles.contains(&(p as usize));
-        let touches = |k: &u32| {
-            let key = self.keys[*k as usize].0;
-            own(key.i) || (!key.at_wall && own(key.j))
-        };
-        let mut order: Vec<u32> = (0..self.keys.len() as u32).filter(touches).collect();
-        let place = |k: u32| {
-            let (key, class) = self.keys[k as usize];
-            (key.at_wall, class, if key.at_wall { key.j } else { u32::from(key.image) }, key.i, key.j)
-        };
-        order.sort_unstable_by_key(|&k| place(k));
-        let same = |a: &u32, b: &u32| {
-            let (a, b) = (place(*a), place(*b));
-            (a.0, a.1, a.2) == (b.0, b.1, b.2)
-        };
-        order.chunk_by(same).map(|chunk| self.section::<S>(chunk, total, particles)).collect()
-    }
-
-    fn section<S: Space>(&self, chunk: &[u32], total: usize, particles: &Range<usize>) -> Section {
-        let (key, class) = self.keys[chunk[0] as usize];
-        let wall = key.at_wall.then_some(key.j);
-        let mut section = Section::new::<S>(class as usize, wall, chunk.len(), total);
-        section.image = key.image;
-        // i < j, so a contact whose i lies elsewhere has it before the stretch.
-        section.own_from = chunk.partition_point(|&k| (self.keys[k as usize].0.i as usize) < particles.start);
-        for (c, &k) in chunk.iter().enumerate() {
-            section.set_key(c, self.keys[k as usize].0);
-            for (row, &value) in self.rows::<S>(k as usize).iter().enumerate() {
-                section.set_value::<S>(c, row, value);
-            }
+    /// Takes the memory of the next contact.
+    pub(crate) fn take<S: Space>(&mut self) -> Memory {
+        let Some((section, next)) = &mut self.now else { return fresh::<S>() };
+        let memory = section.memory::<S>(*next);
+        *next += 1;
+        if *next % (CHUNK * WIDEST) == 0 {
+            section.chunks[place(*next - 1).0] = Chunk::default();
         }
-        section
+        if *next == section.count {
+            self.open();
+        }
+        memory
+    }
+}
+
+/// Writes the contacts of one rank into a section for each stretch of particles.
+pub(crate) struct Writer<'a> {
+    cuts: &'a [usize],
+    expected: usize,
+    /// One for each stretch.
+    pub(crate) sections: Vec<Section>,
+}
+
+impl<'a> Writer<'a> {
+    /// For the stretches between `cuts`; about `expected` contacts will come.
+    pub(crate) fn new(rank: Rank, law: LawKind, cuts: &'a [usize], expected: usize) -> Self {
+        let (stretches, particles) = (cuts.len() - 1, cuts[cuts.len() - 1]);
+        let sections = (0..stretches).map(|_| Section::new(rank, law, particles)).collect();
+        Self { cuts, expected: expected.div_ceil(stretches), sections }
+    }
+
+    /// Adds a contact, after all that stand before it in the order of the list.
+    pub(crate) fn push<S: Space>(&mut self, key: Key, memory: &Memory) {
+        let stretch = |p: u32| self.cuts.partition_point(|&cut| cut <= p as usize) - 1;
+        let first = stretch(key.i);
+        let second = if key.at_wall { first } else { stretch(key.j) };
+        for d in [Some(first), (second != first).then_some(second)].into_iter().flatten() {
+            let section = &mut self.sections[d];
+            let room = self.expected.saturating_sub(section.count);
+            section.push::<S>(key, memory, room);
+            // i < j, so a contact whose i lies elsewhere comes before the own ones.
+            section.own_from += usize::from(d != first);
+        }
     }
 }

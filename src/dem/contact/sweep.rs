@@ -1,12 +1,15 @@
 //! The one contact loop: geometry, law, loads, for every block of a section.
 
-use super::section::{LawKind, Section};
+use super::section::{Chunk, LawKind, Rank, Section};
 use crate::dem::boundary::Image;
 use crate::dem::law::{
-    BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Rows, Viscous,
+    BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Viscous,
 };
-use crate::dem::simd::{Lane, Quad, Row, WIDEST};
+use crate::dem::simd::{Lane, Quad, Row, WIDEST, prefetch};
 use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
+
+/// Blocks between the one at work and the one whose second ends are asked for.
+const AHEAD: usize = 2;
 
 /// The side of a wall that balls see, now.
 #[derive(Clone, Copy, Debug)]
@@ -97,7 +100,6 @@ fn wall_touch<S: Space, L: Lane>(i: &End<S, L>, face: &Face<S>, dt: L) -> Touch<
 /// Runs the law of a section over all its blocks.
 #[inline(always)]
 pub(crate) fn sweep_section<S: Space, L: Lane>(
-    kind: LawKind,
     constants: &Constants,
     second: Second<'_, S>,
     section: &mut Section,
@@ -105,10 +107,15 @@ pub(crate) fn sweep_section<S: Space, L: Lane>(
     loads: &mut [Quad],
     breaks: &mut Vec<Break>,
 ) {
-    match kind {
-        LawKind::Linear => blocks::<S, L, LinearLaw>(constants, second, section, task, loads, breaks),
-        LawKind::ContactBond => blocks::<S, L, ContactBondLaw>(constants, second, section, task, loads, breaks),
-        LawKind::ParallelBond => blocks::<S, L, ParallelBondLaw>(constants, second, section, task, loads, breaks),
+    let rank = section.rank;
+    for chunk in &mut section.chunks {
+        match section.law {
+            LawKind::Linear => blocks::<S, L, LinearLaw>(constants, second, rank, chunk, task, loads, breaks),
+            LawKind::ContactBond => blocks::<S, L, ContactBondLaw>(constants, second, rank, chunk, task, loads, breaks),
+            LawKind::ParallelBond => {
+                blocks::<S, L, ParallelBondLaw>(constants, second, rank, chunk, task, loads, breaks);
+            }
+        }
     }
 }
 
@@ -116,16 +123,21 @@ pub(crate) fn sweep_section<S: Space, L: Lane>(
 fn blocks<S: Space, L: Lane, K: Law<S>>(
     constants: &Constants,
     second: Second<'_, S>,
-    section: &mut Section,
+    rank: Rank,
+    chunk: &mut Chunk,
     task: &Sweep<'_>,
     loads: &mut [Quad],
     breaks: &mut Vec<Break>,
 ) {
     let viscous = constants.dashpot != [0.0; 2];
     let dt = L::splat(task.dt);
-    let class = section.class;
-    let wall = section.wall;
-    for (b, (ends, rows)) in section.ends.iter().zip(section.rows.chunks_exact_mut(Rows::<S>::COUNT)).enumerate() {
+    for (b, (ends, rows)) in chunk.ends.iter().zip(chunk.rows.chunks_exact_mut(K::ROWS)).enumerate() {
+        if let Some(next) = chunk.ends.get(b + AHEAD) {
+            for &j in &next[1] {
+                prefetch(task.records, S::RECORD, j);
+                prefetch(loads, S::LOADS, j);
+            }
+        }
         for at in (0..WIDEST).step_by(L::WIDTH) {
             let (first, others) = (&ends[0][at..at + L::WIDTH], &ends[1][at..at + L::WIDTH]);
             let i = S::ends::<L>(task.records, first);
@@ -136,7 +148,7 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
             };
             let balls = (!matches!(second, Second::Wall(_))).then_some(others);
             let drag = viscous.then(|| drag(constants, task, first, balls, rows, at));
-            let mut ledger = Ledger(section.ledger.get_mut(b * LEDGER..(b + 1) * LEDGER));
+            let mut ledger = Ledger(chunk.ledger.get_mut(b * LEDGER..(b + 1) * LEDGER));
             let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at, &mut ledger);
             match second {
                 Second::Balls => S::push_both(loads, [first, others], &touch, &load),
@@ -151,13 +163,13 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
                         ledger.charge(BOUNDARY, at, work(face.velocity, task.dt, &touch, &load));
                     }
                     S::push_one(loads, first, &touch, &load);
-                    react(&mut section.reactions[b * S::DIMENSION..], at, &touch, &load);
+                    react(&mut chunk.reactions[b * S::DIMENSION..], at, &touch, &load);
                 }
             }
             if let Some(broken) = broken {
                 let (tension, shear) = (L::bits(broken.tension), L::bits(broken.shear));
                 let places = Places::new(&i, &touch);
-                note(class, wall, [first, others], [tension, tension | shear], &places, breaks);
+                note(rank, [first, others], [tension, tension | shear], &places, breaks);
             }
         }
     }
@@ -229,13 +241,13 @@ impl Places {
 /// Notes the contacts of a lane that broke: in tension (first mask) or at all (second).
 #[cold]
 #[inline(never)]
-fn note(class: usize, wall: Option<u32>, ends: [&[u32]; 2], masks: [u8; 2], places: &Places, breaks: &mut Vec<Break>) {
+fn note(rank: Rank, ends: [&[u32]; 2], masks: [u8; 2], places: &Places, breaks: &mut Vec<Break>) {
     for k in (0..ends[0].len()).filter(|k| masks[1] >> k & 1 == 1) {
         breaks.push(Break {
-            class,
+            class: rank.class,
             i: ends[0][k],
-            j: wall.unwrap_or(ends[1][k]),
-            at_wall: wall.is_some(),
+            j: if rank.at_wall { rank.second } else { ends[1][k] },
+            at_wall: rank.at_wall,
             tensile: masks[0] >> k & 1 == 1,
             gap: places.gap.0[k],
             normal: places.normal.map(|row| row.0[k]),
@@ -248,6 +260,7 @@ fn note(class: usize, wall: Option<u32>, ends: [&[u32]; 2], masks: [u8; 2], plac
 mod tests {
     use super::*;
     use crate::dem::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
+    use crate::dem::law::Rows;
     use crate::dem::space::{D2, D3};
 
     /// Loads a bonded pair, then turns it as a whole once around `axis` in `steps` steps (chords against arcs leave an

@@ -155,7 +155,7 @@ impl<S: Space> Engine<S> {
     /// Force of the balls on wall `w`, N, at the positions of the last step.
     pub fn wall_force(&self, w: usize) -> Vector<S> {
         let mut sum = Vector::<S>::zero();
-        for (section, _) in self.stretches().filter(|(s, _)| s.wall == Some(w as u32)) {
+        for (section, _) in self.stretches().filter(|(s, _)| s.wall() == Some(w as u32)) {
             Self::visit_reactions(section, |force| sum = sum.plus(Vector::<S>::build(|k| force[k])));
         }
         sum
@@ -196,7 +196,7 @@ impl<S: Space> Engine<S> {
         let reach = self.radii[i] + 0.5 * gap;
         let value = |row: usize| section.value::<S>(c, row);
         let bonded = section.bonded::<S>(c);
-        let point_bond = bonded && self.classes[section.class].law == crate::dem::contact::LawKind::ContactBond;
+        let point_bond = bonded && self.classes[section.rank.class].law == crate::dem::contact::LawKind::ContactBond;
         let overlap = value(REFERENCE) - gap;
         let push = value(KN) * if point_bond { overlap } else { overlap.max(0.0) };
         let shear = |first: usize| S::Shear::<f64>::build(|k| value(first + k));
@@ -209,7 +209,7 @@ impl<S: Space> Engine<S> {
         };
         let spring = Load::<S, f64> { normal: -push, shear: shear(SHEAR), ..cement };
         let touch = Touch::<S, f64>::still(normal, gap);
-        let constants = &self.classes[section.class].constants;
+        let constants = &self.classes[section.rank.class].constants;
         let [first, second] = self.contact_radii(key);
         let bond_radius = constants.multiplier * first.min(second);
         Contact {

@@ -1,9 +1,9 @@
 //! Bonds put into contacts, and overlaps taken as the state of rest.
 
 use super::Engine;
-use crate::dem::contact::{Key, Packed};
+use crate::dem::contact::Key;
 use crate::dem::interaction::Bond;
-use crate::dem::law::{REFERENCE, Rows, SHEAR};
+use crate::dem::law::{Memory, REFERENCE, Rows, SHEAR};
 use crate::dem::space::Space;
 use crate::math::random::Stream;
 
@@ -17,21 +17,44 @@ impl<S: Space> Engine<S> {
         // Bonded bodies move little: begin with a narrow list.
         self.margin = (0.02 * self.smallest_radius).max(1.01 * gap);
         self.relist();
-        let mut listed = self.packed();
-        let near = |k: &usize| {
-            let (key, class) = listed.keys[*k];
-            let bonded = listed.rows::<S>(*k)[Rows::<S>::TENSION] < f64::INFINITY;
-            self.table.entries[class as usize].2.bond != Bond::None && !bonded && self.gap(key) <= gap
-        };
-        let mut chosen: Vec<usize> = (0..listed.keys.len()).filter(near).collect();
-        chosen.sort_by_cached_key(|&k| self.caller_ends(listed.keys[k].0));
-        let mut stream = Stream::new(seed, "bond strength", 0);
-        for &k in &chosen {
-            self.install_bond(&mut listed, k, &mut stream);
+        let mut chosen: Vec<(Key, u32)> = Vec::new();
+        let mut classes: Vec<usize> = Vec::new();
+        for (section, own) in self.stretches() {
+            let class = section.rank.class;
+            if self.table.entries[class].2.bond == Bond::None {
+                continue;
+            }
+            let before = chosen.len();
+            let near = own.filter(|&c| !section.bonded::<S>(c)).map(|c| section.key(c));
+            chosen.extend(near.filter(|&key| self.gap(key) <= gap).zip(before as u32..));
+            classes.extend((chosen.len() > before).then_some(class));
         }
-        self.adopt(&listed);
+        let strengths = self.draw_strengths(&mut chosen, &mut Stream::new(seed, "bond strength", 0));
+        chosen.sort_unstable_by_key(|&(_, order)| order);
+        let mut next = 0;
+        self.rewrite(&classes, |engine, key, memory| {
+            if chosen.get(next).is_some_and(|&(chosen, _)| chosen == key) {
+                engine.install_bond(key, memory, strengths[next]);
+                next += 1;
+            }
+        });
         self.choose_masses();
         chosen.len()
+    }
+
+    /// Strengths of the chosen contacts, drawn in the caller's order; each stands at the number of its contact.
+    fn draw_strengths(&self, chosen: &mut [(Key, u32)], stream: &mut Stream) -> Vec<[f64; 2]> {
+        chosen.sort_unstable_by_key(|&(key, order)| (self.caller_ends(key), order));
+        let mut strengths = vec![[0.0; 2]; chosen.len()];
+        for &(key, order) in &*chosen {
+            let (means, deviation) = match self.table.entries[self.class_of(key) as usize].2.bond {
+                Bond::None => continue,
+                Bond::Contact(b) => ([b.tensile_strength, b.shear_strength], b.deviation),
+                Bond::Parallel(b) => ([b.tensile_strength, b.cohesion], b.deviation),
+            };
+            strengths[order as usize] = means.map(|mean| draw(mean, deviation, stream));
+        }
+        strengths
     }
 
     /// The caller's places of the two ends, the smaller first; walls after all particles.
@@ -41,23 +64,18 @@ impl<S: Space> Engine<S> {
         (i.min(j), i.max(j))
     }
 
-    fn install_bond(&self, listed: &mut Packed, k: usize, stream: &mut Stream) {
-        let (key, class) = listed.keys[k];
+    fn install_bond(&self, key: Key, rows: &mut Memory, strengths: [f64; 2]) {
         let (gap, radii) = (self.gap(key), self.contact_radii(key));
-        let rows = listed.rows_mut::<S>(k);
-        let (strengths, deviation, section, stiffness, reference) = match self.table.entries[class as usize].2.bond {
+        let (section, stiffness, reference) = match self.table.entries[self.class_of(key) as usize].2.bond {
             Bond::None => return,
-            Bond::Contact(b) => {
-                let section = S::section(radii[0].min(radii[1]));
-                ([b.tensile_strength, b.shear_strength], b.deviation, section, 0.0, gap)
-            }
+            Bond::Contact(_) => (S::section(radii[0].min(radii[1])), 0.0, gap),
             Bond::Parallel(b) => {
                 let reference = if gap < 0.0 { gap } else { rows[REFERENCE] };
-                ([b.tensile_strength, b.cohesion], b.deviation, b.section::<S>(radii), b.normal::<S>(radii), reference)
+                (b.section::<S>(radii), b.normal::<S>(radii), reference)
             }
         };
         // A bond is in force where its capacity is finite, so an endless strength is the largest number.
-        let capacity = strengths.map(|mean| (draw(mean, deviation, stream) * section).min(f64::MAX));
+        let capacity = strengths.map(|strength| (strength * section).min(f64::MAX));
         rows[REFERENCE] = reference;
         rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
         rows[Rows::<S>::BOND..].fill(0.0);
@@ -69,16 +87,13 @@ impl<S: Space> Engine<S> {
     /// Takes every overlap, at walls too, as the state of rest: its gap becomes the reference gap and its forces vanish.
     pub fn absorb_overlaps(&mut self) {
         self.relist();
-        let mut listed = self.packed();
-        for k in 0..listed.keys.len() {
-            let gap = self.gap(listed.keys[k].0);
-            let rows = listed.rows_mut::<S>(k);
-            if gap < rows[REFERENCE].min(0.0) {
-                rows[REFERENCE] = gap;
-                rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
+        self.rewrite(&[], |engine, key, memory| {
+            let gap = engine.gap(key);
+            if gap < memory[REFERENCE].min(0.0) {
+                memory[REFERENCE] = gap;
+                memory[SHEAR..SHEAR + S::SHEAR].fill(0.0);
             }
-        }
-        self.adopt(&listed);
+        });
         self.derive_step();
     }
 

@@ -13,8 +13,7 @@ impl<S: Space> Engine<S> {
         let now = stored(self);
         let initial = now.kinetic + now.spring + now.bond + now.potential;
         self.books = Some(Books { initial, ..Books::default() });
-        let listed = self.packed();
-        self.divide(&listed);
+        self.domains.iter_mut().for_each(super::domain::Domain::open_books);
     }
 
     /// Energy now; spent and given energy since the books were opened.

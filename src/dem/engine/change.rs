@@ -4,10 +4,9 @@ use super::Engine;
 use super::build::{classes, moving};
 use crate::dem::body::set_kinematics;
 use crate::dem::boundary::{Motion, Wall};
-use crate::dem::contact::LawKind;
 use crate::dem::error::Faults;
 use crate::dem::interaction::ContactTable;
-use crate::dem::law::Rows;
+use crate::dem::law::unbond;
 use crate::dem::simd::{Same, Width};
 use crate::dem::space::{Space, Spin, Tuple, Vector};
 
@@ -83,23 +82,23 @@ impl<S: Space> Engine<S> {
     /// All faults of the table.
     pub fn set_contacts(&mut self, table: &ContactTable) -> Result<(), Faults> {
         super::validate::check_table(table, &self.meetings())?;
-        let mut all = self.packed();
-        let before: Vec<LawKind> = self.classes.iter().map(|class| class.law).collect();
+        let before = std::mem::replace(&mut self.classes, classes(table));
         self.table = table.clone();
-        self.classes = classes(table);
-        for k in 0..all.keys.len() {
-            let (key, old) = all.keys[k];
-            let class = self.class_of(key);
-            all.keys[k].1 = class;
-            let rows = all.rows_mut::<S>(k);
-            if self.classes[class as usize].law != before[old as usize] {
-                rows[Rows::<S>::TENSION] = f64::INFINITY;
-                rows[Rows::<S>::COHESION] = f64::INFINITY;
-                rows[Rows::<S>::BOND..].fill(0.0);
-            }
-            self.set_stiffness(key, rows);
+        // A class is a pair of groups, so a section keeps its contacts and takes the pair's place in the new table.
+        let mut domains = std::mem::take(&mut self.domains);
+        let mut exchanged = vec![false; self.classes.len()];
+        for section in domains.iter_mut().flat_map(|domain| &mut domain.sections) {
+            let class = self.class_of(section.key(0)) as usize;
+            exchanged[class] = self.classes[class].law != before[section.rank.class].law;
+            section.rank.class = class;
         }
-        self.adopt(&all);
+        self.domains = domains;
+        self.rewrite(&[], |engine, key, memory| {
+            if exchanged[engine.class_of(key) as usize] {
+                unbond::<S>(memory);
+            }
+            engine.set_stiffness(key, memory);
+        });
         self.renew();
         Ok(())
     }
@@ -174,8 +173,7 @@ impl<S: Space> Engine<S> {
     /// Threads of a run from now on, at least one. Results do not depend on it.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
-        let listed = self.packed();
-        self.divide(&listed);
+        self.rewrite(&[], |_, _, _| ());
     }
 
     /// Threads of a run.

@@ -4,8 +4,9 @@
 //! of the list, so the number of stretches does not change a sum.
 
 use super::Engine;
-use crate::dem::contact::{Break, Packed, Section};
-use crate::dem::simd::{Table, WIDEST};
+use super::list::Found;
+use crate::dem::contact::{Break, Section};
+use crate::dem::simd::Table;
 use crate::dem::space::Space;
 use std::ops::Range;
 
@@ -32,7 +33,7 @@ pub(crate) struct Domain {
 
 impl Domain {
     /// Begins to keep the books of energy.
-    fn open_books(&mut self) {
+    pub(super) fn open_books(&mut self) {
         self.sections.iter_mut().for_each(Section::open_ledger);
         self.spent = vec![[0.0; 2]; self.particles.len()];
         self.clump_spent = vec![0.0; self.clumps.len()];
@@ -43,50 +44,36 @@ impl Domain {
 const SMALLEST: usize = 64;
 
 impl<S: Space> Engine<S> {
-    /// Cuts the bodies into stretches of about equal work and deals out the contacts.
-    pub(super) fn divide(&mut self, listed: &Packed) {
-        let cuts = self.cuts(listed);
-        let n = self.caller.len();
-        let old = std::mem::take(&mut self.domains);
-        let mut loads: Vec<Table> =
-            old.into_iter().map(|d| d.loads).filter(|t| t.len() == (n + 2) * S::LOADS).collect();
-        self.domains = cuts
-            .windows(2)
-            .map(|cut| {
-                let particles = cut[0]..cut[1];
-                let mut loads = loads.pop().unwrap_or_else(|| Table::new((n + 2) * S::LOADS));
-                loads.fill(crate::dem::simd::Quad::default());
-                let clumps = self.clumps.partition_point(|c| c.pebbles.start < cut[0])
-                    ..self.clumps.partition_point(|c| c.pebbles.start < cut[1]);
-                let mut domain = Domain {
-                    singles: self.singles(&particles, &clumps),
-                    sections: listed.sections::<S>(n, &particles),
-                    particles,
-                    clumps,
-                    loads,
-                    ..Domain::default()
-                };
-                if self.books.is_some() {
-                    domain.open_books();
-                }
-                domain
-            })
-            .collect();
+    /// The stretches between `cuts`, without contacts; `loads` are tables that may be used again.
+    pub(super) fn divide(&self, cuts: &[usize], mut loads: Vec<Table>) -> Vec<Domain> {
+        let rows = (self.caller.len() + 2) * S::LOADS;
+        loads.retain(|table| table.len() == rows);
+        let stretch = |cut: &[usize]| {
+            let particles = cut[0]..cut[1];
+            let mut loads = loads.pop().unwrap_or_else(|| Table::new(rows));
+            loads.fill(crate::dem::simd::Quad::default());
+            let clumps = self.clumps.partition_point(|c| c.pebbles.start < cut[0])
+                ..self.clumps.partition_point(|c| c.pebbles.start < cut[1]);
+            Domain { singles: self.singles(&particles, &clumps), particles, clumps, loads, ..Domain::default() }
+        };
+        cuts.windows(2).map(stretch).collect()
     }
 
-    /// Where the stretches begin, and the end of the last.
-    fn cuts(&self, listed: &Packed) -> Vec<usize> {
+    /// Where stretches of about equal work begin, and the end of the last.
+    pub(super) fn cuts(&self, found: &Found) -> Vec<usize> {
         let n = self.caller.len();
         let parts = self.threads.min(n / SMALLEST).max(1);
         // A contact costs about twice what moving a particle does.
-        let mut work = vec![1_u64; n];
-        for (key, _) in &listed.keys {
-            work[key.i as usize] += 1;
-            if !key.at_wall {
-                work[key.j as usize] += 1;
+        let mut work = vec![1_u32; n];
+        for (rank, ends) in found {
+            for [i, j] in ends {
+                work[*i as usize] += 1;
+                if !rank.at_wall {
+                    work[*j as usize] += 1;
+                }
             }
         }
-        let total: u64 = work.iter().sum();
+        let total: u64 = work.iter().map(|&w| u64::from(w)).sum();
         let mut cuts = vec![0];
         let mut sum = 0;
         for p in 0..n {
@@ -94,7 +81,7 @@ impl<S: Space> Engine<S> {
             if sum >= next && cuts.len() < parts && self.begins_body(p) {
                 cuts.push(p);
             }
-            sum += work[p];
+            sum += u64::from(work[p]);
         }
         cuts.push(n);
         cuts
@@ -119,15 +106,14 @@ impl<S: Space> Engine<S> {
     /// Sections that hold the contacts of one class (and wall), in the order of the list, with the own ones of each.
     pub(crate) fn stretches(&self) -> impl Iterator<Item = (&Section, Range<usize>)> + '_ {
         let mut found: Vec<_> = self.domains.iter().flat_map(|d| d.sections.iter()).collect();
-        found.sort_by_key(|section| section.rank());
+        found.sort_by_key(|section| section.rank);
         found.into_iter().map(|section| (section, section.own_from..section.count))
     }
 
     /// Forces on the wall of a section, lane by lane, with `visit`.
     pub(super) fn visit_reactions(section: &Section, mut visit: impl FnMut([f64; 3])) {
         for c in 0..section.count {
-            let block = &section.reactions[c / WIDEST * S::DIMENSION..];
-            visit(std::array::from_fn(|k| if k < S::DIMENSION { block[k].0[c % WIDEST] } else { 0.0 }));
+            visit(section.reaction::<S>(c));
         }
     }
 }

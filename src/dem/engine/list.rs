@@ -5,11 +5,16 @@
 //! motion: it widens when lists grow old fast and narrows when they last, by step counts alone.
 
 use super::Engine;
+use super::domain::Domain;
 use crate::dem::body::position;
-use crate::dem::contact::{Key, Packed};
-use crate::dem::law::{KN, REFERENCE, Rows};
+use crate::dem::contact::{Key, LawKind, Rank, Reader, Section, Writer};
+use crate::dem::law::{KN, Memory, REFERENCE, bonded, fresh};
 use crate::dem::neighbour::pairs;
 use crate::dem::space::{Space, Tuple, Vector};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Ends of contacts by what they have in common, each list in order.
+pub(super) type Found = BTreeMap<Rank, Vec<[u32; 2]>>;
 
 /// Limits of the margin over the smallest radius.
 const NARROW: f64 = 0.01;
@@ -36,126 +41,154 @@ impl<S: Space> Engine<S> {
 
     /// Searches contacts with the present margin.
     pub(super) fn relist(&mut self) {
-        self.close_ledgers();
-        let old = self.packed();
-        // The blocks are written anew; two lists at a time are enough memory.
-        self.domains.iter_mut().for_each(|domain| domain.sections = Vec::new());
         let found = self.candidates();
-        let listed = self.merge(&old, &found);
-        drop(old);
-        self.adopt(&listed);
-    }
-
-    /// Makes `listed` (sorted by key) the contact list, as of now.
-    pub(super) fn adopt(&mut self, listed: &Packed) {
-        self.divide(listed);
+        self.deal(found, &[], |_, _, _| ());
         self.origins = (0..self.caller.len()).map(|p| position::<S>(&self.records, p)).collect();
         if let Some(cell) = &mut self.cell {
             cell.origin = cell.edges;
         }
-        for wall in &mut self.walls {
-            wall.origin = wall.face.point;
-            wall.stiffness = 0.0;
-        }
-        for (k, (key, _)) in listed.keys.iter().enumerate().filter(|(_, (key, _))| key.at_wall) {
-            self.walls[key.j as usize].stiffness += listed.rows::<S>(k)[KN];
+        let stiffness = self.wall_stiffness();
+        for (wall, stiffness) in self.walls.iter_mut().zip(stiffness) {
+            (wall.origin, wall.stiffness) = (wall.face.point, stiffness);
         }
         self.travelled = 0.0;
         self.listed_at = self.step;
         self.stale = false;
     }
 
-    /// All contacts, sorted by key.
-    pub(super) fn packed(&self) -> Packed {
-        let mut places: Vec<_> = Vec::new();
-        for (section, own) in self.stretches() {
-            places.extend(own.map(|c| (section.key(c), section, c)));
+    /// Sum of the normal stiffnesses of the contacts of each wall, in the order of their balls.
+    fn wall_stiffness(&self) -> Vec<f64> {
+        let mut contacts: Vec<(Key, f64)> = Vec::new();
+        for (section, own) in self.stretches().filter(|(section, _)| section.wall().is_some()) {
+            contacts.extend(own.map(|c| (section.key(c), section.value::<S>(c, KN))));
         }
-        places.sort_unstable_by_key(|place| place.0);
-        let mut packed = Packed::with_capacity::<S>(places.len());
-        for (_, section, c) in places {
-            section.pack::<S>(c, &mut packed);
-        }
-        packed
+        contacts.sort_unstable_by_key(|(key, _)| *key);
+        let mut sums = vec![0.0; self.walls.len()];
+        contacts.into_iter().for_each(|(key, kn)| sums[key.j as usize] += kn);
+        sums
     }
 
-    /// Keys of everything nearer than the margin, sorted.
-    fn candidates(&self) -> Vec<Key> {
+    /// Calls `change` with the memory of every contact in the order of the list. Classes that are `bonded` now get the
+    /// rows of their law.
+    pub(super) fn rewrite(&mut self, bonded: &[usize], change: impl FnMut(&Self, Key, &mut Memory)) {
+        let mut all = Found::new();
+        for (section, own) in self.stretches() {
+            let ends = all.entry(section.rank).or_insert_with(|| Vec::with_capacity(section.count));
+            ends.extend(own.map(|c| section.key(c)).map(|key| [key.i, key.j]));
+        }
+        self.deal(all, bonded, change);
+    }
+
+    /// Writes the contact list anew with what was `found`. A contact of the old list keeps its memory; one that was not
+    /// found stays if it must not be forgotten. `change` sees every contact in the order of the list. The old list is
+    /// given back piece by piece.
+    fn deal(&mut self, mut found: Found, bonded: &[usize], mut change: impl FnMut(&Self, Key, &mut Memory)) {
+        self.close_ledgers();
+        let cuts = self.cuts(&found);
+        let mut old: BTreeMap<Rank, Vec<Section>> = BTreeMap::new();
+        let mut loads = Vec::new();
+        for domain in std::mem::take(&mut self.domains) {
+            loads.push(domain.loads);
+            for section in domain.sections {
+                old.entry(section.rank).or_default().push(section);
+            }
+        }
+        let mut domains = self.divide(&cuts, loads);
+        let ranks: BTreeSet<Rank> = old.keys().chain(found.keys()).copied().collect();
+        for rank in ranks {
+            let (ends, sections) = (found.remove(&rank).unwrap_or_default(), old.remove(&rank).unwrap_or_default());
+            let cemented = bonded.contains(&rank.class) || sections.iter().any(|s| s.law == LawKind::ParallelBond);
+            let law = match self.classes[rank.class].law {
+                LawKind::ParallelBond if !cemented => LawKind::Linear,
+                law => law,
+            };
+            let mut writer = Writer::new(rank, law, &cuts, ends.len());
+            self.merge(rank, &ends, Reader::new(sections), |key, mut memory| {
+                change(self, key, &mut memory);
+                writer.push::<S>(key, &memory);
+            });
+            for (domain, section) in domains.iter_mut().zip(writer.sections) {
+                domain.sections.extend((section.count > 0).then_some(section));
+            }
+        }
+        if self.books.is_some() {
+            domains.iter_mut().for_each(Domain::open_books);
+        }
+        self.domains = domains;
+    }
+
+    /// The contacts of one rank in their order: what was found, with the memory of the old contacts, and old ones that
+    /// must not be forgotten.
+    fn merge(&self, rank: Rank, found: &[[u32; 2]], mut old: Reader, mut put: impl FnMut(Key, Memory)) {
+        let keep = |key: Key, old: &mut Reader, put: &mut dyn FnMut(Key, Memory)| {
+            let memory = old.take::<S>();
+            if self.memorable(key, &memory) {
+                put(key, memory);
+            }
+        };
+        for &ends in found {
+            let key = rank.key(ends);
+            while let Some(earlier) = old.key().filter(|&earlier| earlier < key) {
+                keep(earlier, &mut old, &mut put);
+            }
+            let mut memory = if old.key() == Some(key) { old.take::<S>() } else { fresh::<S>() };
+            self.set_stiffness(key, &mut memory);
+            put(key, memory);
+        }
+        while let Some(later) = old.key() {
+            keep(later, &mut old, &mut put);
+        }
+    }
+
+    /// Whether a contact that was not found must not be forgotten.
+    fn memorable(&self, key: Key, memory: &Memory) -> bool {
+        if key.at_wall && !self.walls[key.j as usize].present {
+            return false;
+        }
+        bonded::<S>(memory) || (memory[REFERENCE] != 0.0 && self.gap(key) < self.smallest_radius)
+    }
+
+    /// Everything nearer than the margin.
+    fn candidates(&self) -> Found {
         let n = self.caller.len();
-        let positions: Vec<Vector<S>> = (0..n).map(|p| position::<S>(&self.records, p)).collect();
-        let flat: Vec<[f64; 3]> = positions.iter().map(coordinates::<S>).collect();
-        let mut keys: Vec<Key> = pairs(&flat, &self.radii, &self.bodies, self.margin)
-            .into_iter()
-            .map(|(i, j)| Key { i, at_wall: false, j, image: 0 })
-            .collect();
+        let places: Vec<[f64; 3]> = (0..n).map(|p| coordinates::<S>(&position::<S>(&self.records, p))).collect();
+        let mut found = Found::new();
+        let mut put = |key: Key| {
+            let second = if key.at_wall { key.j } else { u32::from(key.image) };
+            let rank = Rank { at_wall: key.at_wall, class: self.class_of(key) as usize, second };
+            found.entry(rank).or_default().push([key.i, key.j]);
+        };
+        pairs(&places, &self.radii, &self.bodies, self.margin, |i, j| put(Key { i, at_wall: false, j, image: 0 }));
         for (w, wall) in self.walls.iter().enumerate().filter(|(_, wall)| wall.present) {
-            for (p, x) in positions.iter().enumerate() {
+            for p in 0..n {
+                let x = position::<S>(&self.records, p);
                 let gap = x.minus(wall.face.point).dot(wall.face.normal) - self.radii[p];
                 if gap < self.margin {
-                    keys.push(Key { i: p as u32, at_wall: true, j: w as u32, image: 0 });
+                    put(Key { i: p as u32, at_wall: true, j: w as u32, image: 0 });
                 }
             }
         }
-        keys.extend(self.across(&positions));
-        keys.sort_unstable();
-        keys
+        self.across(places, put);
+        found
     }
 
-    /// Keys of the contacts across the faces of a periodic cell, each once: from the particle that comes first.
-    fn across(&self, positions: &[Vector<S>]) -> Vec<Key> {
-        let Some(cell) = &self.cell else { return Vec::new() };
+    /// Contacts across the faces of a periodic cell, each once: from the particle that comes first.
+    fn across(&self, mut places: Vec<[f64; 3]>, mut put: impl FnMut(Key)) {
+        let Some(cell) = &self.cell else { return };
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
-        let images = cell.images_near(positions, 2.0 * largest + self.margin);
-        let n = positions.len();
-        let places = positions.iter().chain(images.iter().map(|(_, _, y)| y));
-        let flat: Vec<[f64; 3]> = places.map(coordinates::<S>).collect();
+        let n = places.len();
+        let positions: Vec<Vector<S>> = (0..n).map(|p| position::<S>(&self.records, p)).collect();
+        let images = cell.images_near(&positions, 2.0 * largest + self.margin);
+        places.extend(images.iter().map(|(_, _, y)| coordinates::<S>(y)));
         let origins: Vec<usize> = (0..n).chain(images.iter().map(|&(p, ..)| p)).collect();
         let radii: Vec<f64> = origins.iter().map(|&p| self.radii[p]).collect();
         let bodies: Vec<u32> = origins.iter().map(|&p| self.bodies[p]).collect();
-        let found = pairs(&flat, &radii, &bodies, self.margin).into_iter();
-        let outward = found.filter(|&(i, k)| (i as usize) < n && k as usize >= n && (i as usize) < origins[k as usize]);
-        let key = |(i, k): (u32, u32)| {
-            let (j, image, _) = images[k as usize - n];
-            Key { i, at_wall: false, j: j as u32, image }
-        };
-        outward.map(key).collect()
-    }
-
-    /// The new list: what was found, with the state of the old contacts, and old ones that must not be forgotten.
-    fn merge(&self, old: &Packed, found: &[Key]) -> Packed {
-        let mut listed = Packed::with_capacity::<S>(found.len());
-        let mut next = 0;
-        for &key in found {
-            while next < old.keys.len() && old.keys[next].0 < key {
-                self.keep_if_needed(old, next, &mut listed);
-                next += 1;
+        pairs(&places, &radii, &bodies, self.margin, |i, k| {
+            if (i as usize) < n && k as usize >= n && (i as usize) < origins[k as usize] {
+                let (j, image, _) = images[k as usize - n];
+                put(Key { i, at_wall: false, j: j as u32, image });
             }
-            if next < old.keys.len() && old.keys[next].0 == key {
-                listed.push_old::<S>(old, next);
-                next += 1;
-            } else {
-                listed.push_new::<S>(key, self.class_of(key), 0.0);
-            }
-            let last = listed.keys.len() - 1;
-            self.set_stiffness(key, listed.rows_mut::<S>(last));
-        }
-        for k in next..old.keys.len() {
-            self.keep_if_needed(old, k, &mut listed);
-        }
-        listed
-    }
-
-    fn keep_if_needed(&self, old: &Packed, k: usize, listed: &mut Packed) {
-        let key = old.keys[k].0;
-        if key.at_wall && !self.walls[key.j as usize].present {
-            return;
-        }
-        let rows = old.rows::<S>(k);
-        let bonded = rows[Rows::<S>::TENSION] < f64::INFINITY;
-        let remembered = rows[REFERENCE] != 0.0 && self.gap(key) < self.smallest_radius;
-        if bonded || remembered {
-            listed.push_old::<S>(old, k);
-        }
+        });
     }
 
     /// Distance of the surfaces of a pair, m.

@@ -54,9 +54,9 @@ impl Notes {
             }
             let start = count;
             let sections = engine.domains.iter().enumerate().flat_map(|(d, domain)| {
-                domain.sections.iter().enumerate().map(move |(s, section)| (section.rank(), d, s, section.count))
+                domain.sections.iter().enumerate().map(move |(s, section)| (section.rank, d, s, section.count))
             });
-            let mut own: Vec<_> = sections.filter(|(rank, ..)| rank.0 && rank.2 == w as u32).collect();
+            let mut own: Vec<_> = sections.filter(|(rank, ..)| rank.at_wall && rank.second == w as u32).collect();
             own.sort_unstable();
             for (_, d, s, contacts) in own {
                 places[d][s] = Some(count);
@@ -138,14 +138,15 @@ impl<S: Space> March<'_, S> {
         let task = Sweep { records: self.board.all(), inverse_mass: self.orders.inverse_mass, dt: self.orders.dt };
         let mut broken: Vec<Break> = Vec::new();
         for section in sections {
-            let class = &self.orders.classes[section.class];
-            let image = self.cell.as_ref().filter(|_| section.image != 0).map(|cell| cell.image(section.image));
-            let second = match (section.wall, &image) {
+            let class = &self.orders.classes[section.rank.class];
+            let image = section.wall().is_none().then_some(section.rank.second as u8).filter(|&image| image != 0);
+            let image = self.cell.as_ref().zip(image).map(|(cell, image)| cell.image(image));
+            let second = match (section.wall(), &image) {
                 (Some(w), _) => Second::Wall(&self.walls[w as usize].face),
                 (None, Some(image)) => Second::Images(image),
                 (None, None) => Second::Balls,
             };
-            sweep_section::<S, L>(class.law, &class.constants, second, section, &task, loads, &mut broken);
+            sweep_section::<S, L>(&class.constants, second, section, &task, loads, &mut broken);
         }
         // A bond across two stretches breaks in both; its first particle's owner reports it.
         breaks.extend(broken.into_iter().filter(|b| particles.contains(&(b.i as usize))).map(|b| (step, b)));
@@ -157,7 +158,7 @@ impl<S: Space> March<'_, S> {
         let notes = self.orders.notes;
         notes.speeds[parity][self.index].store(fastest.to_bits(), Ordering::Relaxed);
         for (section, place) in self.domain.sections.iter().zip(&notes.places[self.index]) {
-            if let (Some(place), Some(wall)) = (place, section.wall) {
+            if let (Some(place), Some(wall)) = (place, section.wall()) {
                 let normal = self.walls[wall as usize].face.normal;
                 let mut next = *place;
                 Engine::<S>::visit_reactions(section, |force| {

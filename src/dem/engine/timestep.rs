@@ -87,7 +87,7 @@ impl<S: Space> Engine<S> {
         if !bonded && gap >= section.value::<S>(c, REFERENCE) {
             return;
         }
-        let constants = &self.classes[section.class].constants;
+        let constants = &self.classes[section.rank.class].constants;
         let (kn, kb) = (section.value::<S>(c, KN), section.value::<S>(c, Rows::<S>::BOND));
         let ks = kn * constants.shear_share + kb * constants.bond_share;
         let kn = kn + kb;

@@ -289,17 +289,17 @@ fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
     let radii: Vec<f64> = origins.iter().map(|&p| model.particles[p].radius).collect();
     let bodies: Vec<u32> = origins.iter().map(|&p| body[p]).collect();
     let n = model.particles.len();
-    for (i, j) in pairs(&flat, &radii, &bodies, 0.0) {
+    pairs(&flat, &radii, &bodies, 0.0, |i, j| {
         let [i, j] = [i, j].map(|k| k as usize);
         let (a, b) = (origins[i], origins[j]);
         // Across a face each pair is found from both sides; two images meet as their bodies do.
         if i >= n || (j >= n && a > b) {
-            continue;
+            return;
         }
         let distance = places[j].minus(places[i]).norm();
         let overlap = (radii[i] + radii[j] - distance) / radii[i].min(radii[j]);
         if overlap > model.settings.overlap_limit || distance == 0.0 {
             faults.push(Fault::Overlap { a, b, overlap });
         }
-    }
+    });
 }

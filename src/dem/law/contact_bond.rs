@@ -15,6 +15,8 @@ use crate::dem::space::{Load, Space, Touch, Tuple};
 pub(crate) struct ContactBondLaw;
 
 impl<S: Space> Law<S> for ContactBondLaw {
+    const ROWS: usize = Rows::<S>::BOND;
+
     #[inline(always)]
     fn respond<L: Lane>(
         constants: &Constants,

@@ -6,7 +6,9 @@
 //! touch: 2 β √(m k) v in each direction, the shear one only while the contact does not slip. SI units; Δ_s is the
 //! displacement of j's surface relative to i's, F_s acts on i.
 
-use super::{Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, SHEAR, SLIP, Viscous, load_shear, store_shear};
+use super::{
+    Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
+};
 use crate::dem::simd::{Lane, Row};
 use crate::dem::space::{Load, Space, Touch, Tuple};
 
@@ -69,6 +71,8 @@ pub(crate) fn slip_energy<S: Space, L: Lane>(old: S::Shear<L>, trial: S::Shear<L
 }
 
 impl<S: Space> Law<S> for LinearLaw {
+    const ROWS: usize = Rows::<S>::TENSION;
+
     #[inline(always)]
     fn respond<L: Lane>(
         constants: &Constants,

@@ -13,7 +13,7 @@ pub(crate) use parallel_bond::ParallelBondLaw;
 
 use super::interaction::{Bond, Interaction, NormalForce, ShearBreak};
 use super::simd::{Lane, Row};
-use super::space::{Load, Space, Touch, Tuple};
+use super::space::{D3, Load, Space, Touch, Tuple};
 
 /// Row of k_n, N/m.
 pub(crate) const KN: usize = 0;
@@ -42,6 +42,31 @@ impl<S: Space> Rows<S> {
     pub(crate) const BOND_TWIST: usize = Self::BOND_BEND + S::SHEAR;
     /// All rows of a block.
     pub(crate) const COUNT: usize = if S::DIMENSION == 2 { Self::BOND_TWIST } else { Self::BOND_TWIST + 1 };
+}
+
+/// Rows of one contact, the longest list of them; a law with fewer rows keeps the first ones.
+pub(crate) type Memory = [f64; LONGEST];
+
+/// Rows of the law and space that have most.
+const LONGEST: usize = Rows::<D3>::COUNT;
+
+/// Memory of a fresh, unbonded contact.
+pub(crate) fn fresh<S: Space>() -> Memory {
+    let mut memory = [0.0; LONGEST];
+    unbond::<S>(&mut memory);
+    memory
+}
+
+/// Takes the bond out of a contact's memory.
+pub(crate) fn unbond<S: Space>(memory: &mut Memory) {
+    memory[Rows::<S>::TENSION..].fill(0.0);
+    memory[Rows::<S>::TENSION] = f64::INFINITY;
+    memory[Rows::<S>::COHESION] = f64::INFINITY;
+}
+
+/// Whether a contact's memory holds a bond.
+pub(crate) fn bonded<S: Space>(memory: &Memory) -> bool {
+    memory[Rows::<S>::TENSION] < f64::INFINITY
 }
 
 /// Constants of a class, in the form in which the laws use them.
@@ -143,6 +168,8 @@ impl Ledger<'_> {
 
 /// One law: how a contact answers a step, and what is left in its rows.
 pub(crate) trait Law<S: Space> {
+    /// Rows of memory that it uses, from the first on.
+    const ROWS: usize;
     /// Load on i, and the breaks if there was any.
     fn respond<L: Lane>(
         constants: &Constants,

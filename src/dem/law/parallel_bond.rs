@@ -70,6 +70,8 @@ impl<S: Space, L: Lane> Cement<S, L> {
 }
 
 impl<S: Space> Law<S> for ParallelBondLaw {
+    const ROWS: usize = Rows::<S>::COUNT;
+
     #[inline(always)]
     fn respond<L: Lane>(
         constants: &Constants,

@@ -2,7 +2,6 @@
 //!
 //! Every call is sound because [`super::width::dispatch`] is the only way here, and it has asked the processor.
 
-use super::four::{add_to, read, transpose};
 use super::{Lane, Quad, Row};
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -37,25 +36,77 @@ impl Neg for Eight {
     }
 }
 
-/// Two halves side by side.
+/// Two rows of a table side by side.
 #[inline(always)]
-fn join(low: __m256d, high: __m256d) -> Eight {
+fn pair(low: &Quad, high: &Quad) -> __m512d {
+    // SAFETY: a quad is 32 bytes, aligned to 32.
+    unsafe {
+        let low = _mm512_castpd256_pd512(_mm256_load_pd(low.0.as_ptr()));
+        _mm512_insertf64x4::<1>(low, _mm256_load_pd(high.0.as_ptr()))
+    }
+}
+
+/// Eight rows as four columns. `x02` and the like: what is in each sixteen bytes.
+#[inline(always)]
+fn columns(rows: [&Quad; 8]) -> [Eight; 4] {
+    let [a, b] = [pair(rows[0], rows[2]), pair(rows[1], rows[3])];
+    let [c, d] = [pair(rows[4], rows[6]), pair(rows[5], rows[7])];
     // SAFETY: see the head.
-    Eight(unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low), high) })
+    unsafe {
+        // x01 z01 x23 z23, x45 z45 x67 z67, and y, w.
+        let (xz_low, xz_high) = (_mm512_unpacklo_pd(a, b), _mm512_unpacklo_pd(c, d));
+        let (yw_low, yw_high) = (_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d));
+        [
+            Eight(_mm512_shuffle_f64x2::<0x88>(xz_low, xz_high)),
+            Eight(_mm512_shuffle_f64x2::<0x88>(yw_low, yw_high)),
+            Eight(_mm512_shuffle_f64x2::<0xDD>(xz_low, xz_high)),
+            Eight(_mm512_shuffle_f64x2::<0xDD>(yw_low, yw_high)),
+        ]
+    }
+}
+
+/// Four columns as eight rows.
+#[inline(always)]
+fn rows([x, y, z, w]: [Eight; 4]) -> [__m256d; 8] {
+    // SAFETY: see the head.
+    unsafe {
+        // x0y0 x2y2 x4y4 x6y6, the odd ones, and z, w.
+        let (xy_even, xy_odd) = (_mm512_unpacklo_pd(x.0, y.0), _mm512_unpackhi_pd(x.0, y.0));
+        let (zw_even, zw_odd) = (_mm512_unpacklo_pd(z.0, w.0), _mm512_unpackhi_pd(z.0, w.0));
+        let near = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+        let far = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+        let a = halves(_mm512_permutex2var_pd(xy_even, near, zw_even));
+        let b = halves(_mm512_permutex2var_pd(xy_odd, near, zw_odd));
+        let c = halves(_mm512_permutex2var_pd(xy_even, far, zw_even));
+        let d = halves(_mm512_permutex2var_pd(xy_odd, far, zw_odd));
+        [a[0], b[0], a[1], b[1], c[0], d[0], c[1], d[1]]
+    }
+}
+
+/// The rows of some records, each from its four columns.
+#[inline(always)]
+fn turned<const ROWS: usize>(value: [[Eight; 4]; ROWS]) -> [[__m256d; 8]; ROWS] {
+    let mut turned = [rows(value[0]); ROWS];
+    for row in 1..ROWS {
+        turned[row] = rows(value[row]);
+    }
+    turned
 }
 
 /// The first and the last four.
 #[inline(always)]
-fn halves(x: Eight) -> [__m256d; 2] {
+fn halves(x: __m512d) -> [__m256d; 2] {
     // SAFETY: see the head.
-    unsafe { [_mm512_castpd512_pd256(x.0), _mm512_extractf64x4_pd::<1>(x.0)] }
+    unsafe { [_mm512_castpd512_pd256(x), _mm512_extractf64x4_pd::<1>(x)] }
 }
 
-/// Four columns as eight rows, in two halves.
+/// Adds the rows of contact `k` to one record of a table.
 #[inline(always)]
-fn rows(value: [Eight; 4]) -> [[__m256d; 4]; 2] {
-    let [a, b, c, d] = [halves(value[0]), halves(value[1]), halves(value[2]), halves(value[3])];
-    [transpose([a[0], b[0], c[0], d[0]]), transpose([a[1], b[1], c[1], d[1]])]
+fn add_to<const ROWS: usize>(record: &mut [Quad; ROWS], value: &[[__m256d; 8]; ROWS], k: usize) {
+    for (row, add) in record.iter_mut().zip(value) {
+        // SAFETY: a quad is 32 bytes, aligned to 32.
+        unsafe { _mm256_store_pd(row.0.as_mut_ptr(), _mm256_add_pd(_mm256_load_pd(row.0.as_ptr()), add[k])) }
+    }
 }
 
 impl Lane for Eight {
@@ -115,28 +166,31 @@ impl Lane for Eight {
         mask
     }
     #[inline(always)]
-    fn gather(table: &[Quad], stride: usize, row: usize, ends: &[u32]) -> [Self; 4] {
-        let at = |k: usize| read(&table[ends[k] as usize * stride + row]);
-        let low = transpose([at(0), at(1), at(2), at(3)]);
-        let high = transpose([at(4), at(5), at(6), at(7)]);
-        [join(low[0], high[0]), join(low[1], high[1]), join(low[2], high[2]), join(low[3], high[3])]
+    fn gather<const ROWS: usize>(table: &[Quad], ends: &[u32]) -> [[Self; 4]; ROWS] {
+        let records = table.as_chunks::<ROWS>().0;
+        let at = |k: usize| &records[ends[k] as usize];
+        let [a, b, c, d, e, f, g, h] = [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)];
+        let mut turned = [[Self::splat(0.0); 4]; ROWS];
+        for (row, turned) in turned.iter_mut().enumerate() {
+            *turned = columns([&a[row], &b[row], &c[row], &d[row], &e[row], &f[row], &g[row], &h[row]]);
+        }
+        turned
     }
     #[inline(always)]
-    fn scatter_add(table: &mut [Quad], stride: usize, row: usize, ends: &[u32], value: [Self; 4]) {
-        for (half, rows) in rows(value).into_iter().enumerate() {
-            for k in 0..4 {
-                add_to(&mut table[ends[4 * half + k] as usize * stride + row], rows[k]);
-            }
+    fn scatter_add<const ROWS: usize>(table: &mut [Quad], ends: &[u32], value: [[Self; 4]; ROWS]) {
+        let records = table.as_chunks_mut::<ROWS>().0;
+        let value = turned(value);
+        for k in 0..8 {
+            add_to(&mut records[ends[k] as usize], &value, k);
         }
     }
     #[inline(always)]
-    fn scatter_add_both(table: &mut [Quad], stride: usize, row: usize, ends: [&[u32]; 2], value: [[Self; 4]; 2]) {
-        let [first, second] = [rows(value[0]), rows(value[1])];
-        for half in 0..2 {
-            for k in 0..4 {
-                add_to(&mut table[ends[0][4 * half + k] as usize * stride + row], first[half][k]);
-                add_to(&mut table[ends[1][4 * half + k] as usize * stride + row], second[half][k]);
-            }
+    fn scatter_add_both<const ROWS: usize>(table: &mut [Quad], ends: [&[u32]; 2], value: [[[Self; 4]; ROWS]; 2]) {
+        let records = table.as_chunks_mut::<ROWS>().0;
+        let [first, second] = [turned(value[0]), turned(value[1])];
+        for k in 0..8 {
+            add_to(&mut records[ends[0][k] as usize], &first, k);
+            add_to(&mut records[ends[1][k] as usize], &second, k);
         }
     }
 }

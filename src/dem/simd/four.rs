@@ -38,7 +38,7 @@ impl Neg for Four {
 
 /// Rows to columns and back.
 #[inline(always)]
-pub(super) fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
     // SAFETY: see the head.
     unsafe {
         let (ab, cd) = (_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d));
@@ -54,16 +54,18 @@ pub(super) fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
 
 /// One row of a table.
 #[inline(always)]
-pub(super) fn read(quad: &Quad) -> __m256d {
+fn read(quad: &Quad) -> __m256d {
     // SAFETY: a quad is 32 bytes, aligned to 32.
     unsafe { _mm256_load_pd(quad.0.as_ptr()) }
 }
 
-/// Adds to one row of a table.
+/// Adds the rows of contact `k` to one record of a table.
 #[inline(always)]
-pub(super) fn add_to(quad: &mut Quad, value: __m256d) {
-    // SAFETY: a quad is 32 bytes, aligned to 32.
-    unsafe { _mm256_store_pd(quad.0.as_mut_ptr(), _mm256_add_pd(_mm256_load_pd(quad.0.as_ptr()), value)) }
+fn add_to<const ROWS: usize>(record: &mut [Quad; ROWS], value: &[[__m256d; 4]; ROWS], k: usize) {
+    for (row, add) in record.iter_mut().zip(value) {
+        // SAFETY: a quad is 32 bytes, aligned to 32.
+        unsafe { _mm256_store_pd(row.0.as_mut_ptr(), _mm256_add_pd(_mm256_load_pd(row.0.as_ptr()), add[k])) }
+    }
 }
 
 impl Lane for Four {
@@ -130,25 +132,48 @@ impl Lane for Four {
         unsafe { _mm256_movemask_pd(mask) as u8 }
     }
     #[inline(always)]
-    fn gather(table: &[Quad], stride: usize, row: usize, ends: &[u32]) -> [Self; 4] {
-        let at = |k: usize| read(&table[ends[k] as usize * stride + row]);
-        let [a, b, c, d] = transpose([at(0), at(1), at(2), at(3)]);
-        [Self(a), Self(b), Self(c), Self(d)]
+    fn gather<const ROWS: usize>(table: &[Quad], ends: &[u32]) -> [[Self; 4]; ROWS] {
+        let records = table.as_chunks::<ROWS>().0;
+        let at = |k: usize| &records[ends[k] as usize];
+        let [a, b, c, d] = [at(0), at(1), at(2), at(3)];
+        let mut turned = [[Self::splat(0.0); 4]; ROWS];
+        for (row, turned) in turned.iter_mut().enumerate() {
+            let [x, y, z, w] = transpose([read(&a[row]), read(&b[row]), read(&c[row]), read(&d[row])]);
+            *turned = [Self(x), Self(y), Self(z), Self(w)];
+        }
+        turned
     }
     #[inline(always)]
-    fn scatter_add(table: &mut [Quad], stride: usize, row: usize, ends: &[u32], value: [Self; 4]) {
-        let rows = transpose([value[0].0, value[1].0, value[2].0, value[3].0]);
+    fn scatter_add<const ROWS: usize>(table: &mut [Quad], ends: &[u32], value: [[Self; 4]; ROWS]) {
+        let records = table.as_chunks_mut::<ROWS>().0;
+        let value = turned(value);
         for k in 0..4 {
-            add_to(&mut table[ends[k] as usize * stride + row], rows[k]);
+            add_to(&mut records[ends[k] as usize], &value, k);
         }
     }
     #[inline(always)]
-    fn scatter_add_both(table: &mut [Quad], stride: usize, row: usize, ends: [&[u32]; 2], value: [[Self; 4]; 2]) {
-        let rows = |v: [Self; 4]| transpose([v[0].0, v[1].0, v[2].0, v[3].0]);
-        let [first, second] = [rows(value[0]), rows(value[1])];
+    fn scatter_add_both<const ROWS: usize>(table: &mut [Quad], ends: [&[u32]; 2], value: [[[Self; 4]; ROWS]; 2]) {
+        let records = table.as_chunks_mut::<ROWS>().0;
+        let [first, second] = [turned(value[0]), turned(value[1])];
         for k in 0..4 {
-            add_to(&mut table[ends[0][k] as usize * stride + row], first[k]);
-            add_to(&mut table[ends[1][k] as usize * stride + row], second[k]);
+            add_to(&mut records[ends[0][k] as usize], &first, k);
+            add_to(&mut records[ends[1][k] as usize], &second, k);
         }
     }
+}
+
+/// Four columns as four rows.
+#[inline(always)]
+fn rows([x, y, z, w]: [Four; 4]) -> [__m256d; 4] {
+    transpose([x.0, y.0, z.0, w.0])
+}
+
+/// The rows of some records, each from its four columns.
+#[inline(always)]
+fn turned<const ROWS: usize>(value: [[Four; 4]; ROWS]) -> [[__m256d; 4]; ROWS] {
+    let mut turned = [rows(value[0]); ROWS];
+    for row in 1..ROWS {
+        turned[row] = rows(value[row]);
+    }
+    turned
 }

@@ -87,12 +87,12 @@ pub trait Lane:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// One bit per contact.
     fn bits(mask: Self::Mask) -> u8;
-    /// Row `row` of the records `ends` (records of `stride` rows), turned so that each result holds one component.
-    fn gather(table: &[Quad], stride: usize, row: usize, ends: &[u32]) -> [Self; 4];
-    /// Adds one row to each of the records `ends`, in their order.
-    fn scatter_add(table: &mut [Quad], stride: usize, row: usize, ends: &[u32], value: [Self; 4]);
-    /// Adds one row to both ends of each contact: contact by contact, its first end before its second.
-    fn scatter_add_both(table: &mut [Quad], stride: usize, row: usize, ends: [&[u32]; 2], value: [[Self; 4]; 2]);
+    /// The records `ends` of a table of records of `ROWS` rows, turned so that each result holds one component.
+    fn gather<const ROWS: usize>(table: &[Quad], ends: &[u32]) -> [[Self; 4]; ROWS];
+    /// Adds to each of the records `ends`, in their order.
+    fn scatter_add<const ROWS: usize>(table: &mut [Quad], ends: &[u32], value: [[Self; 4]; ROWS]);
+    /// Adds to both ends of each contact: contact by contact, its first end before its second.
+    fn scatter_add_both<const ROWS: usize>(table: &mut [Quad], ends: [&[u32]; 2], value: [[[Self; 4]; ROWS]; 2]);
 }
 
 impl Lane for f64 {
@@ -143,19 +143,26 @@ impl Lane for f64 {
         u8::from(mask)
     }
     #[inline(always)]
-    fn gather(table: &[Quad], stride: usize, row: usize, ends: &[u32]) -> [Self; 4] {
-        table[ends[0] as usize * stride + row].0
+    fn gather<const ROWS: usize>(table: &[Quad], ends: &[u32]) -> [[Self; 4]; ROWS] {
+        let record = &table.as_chunks::<ROWS>().0[ends[0] as usize];
+        let mut values = [[0.0; 4]; ROWS];
+        for (value, row) in values.iter_mut().zip(record) {
+            *value = row.0;
+        }
+        values
     }
     #[inline(always)]
-    fn scatter_add(table: &mut [Quad], stride: usize, row: usize, ends: &[u32], value: [Self; 4]) {
-        let target = &mut table[ends[0] as usize * stride + row].0;
-        for (t, v) in target.iter_mut().zip(value) {
-            *t += v;
+    fn scatter_add<const ROWS: usize>(table: &mut [Quad], ends: &[u32], value: [[Self; 4]; ROWS]) {
+        let record = &mut table.as_chunks_mut::<ROWS>().0[ends[0] as usize];
+        for (row, add) in record.iter_mut().zip(value) {
+            for (t, v) in row.0.iter_mut().zip(add) {
+                *t += v;
+            }
         }
     }
     #[inline(always)]
-    fn scatter_add_both(table: &mut [Quad], stride: usize, row: usize, ends: [&[u32]; 2], value: [[Self; 4]; 2]) {
-        Self::scatter_add(table, stride, row, ends[0], value[0]);
-        Self::scatter_add(table, stride, row, ends[1], value[1]);
+    fn scatter_add_both<const ROWS: usize>(table: &mut [Quad], ends: [&[u32]; 2], value: [[[Self; 4]; ROWS]; 2]) {
+        Self::scatter_add(table, ends[0], value[0]);
+        Self::scatter_add(table, ends[1], value[1]);
     }
 }

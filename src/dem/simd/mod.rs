@@ -23,6 +23,6 @@ mod width;
 
 pub(crate) use exchange::{Board, Rows, Same, Update, exchange};
 pub use lane::{Lane, Quad, Row, WIDEST};
-pub(crate) use table::Table;
+pub(crate) use table::{Table, prefetch};
 pub use width::Width;
 pub(crate) use width::{Kernel, dispatch};

@@ -20,6 +20,18 @@ impl Table {
     }
 }
 
+/// Asks for record `k` of a table of records of `rows` rows ahead of its use.
+#[inline(always)]
+pub(crate) fn prefetch(table: &[Quad], rows: usize, k: u32) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(record) = table.get(k as usize * rows..(k as usize + 1) * rows) {
+        for quad in record.iter().step_by(2) {
+            // SAFETY: a hint about an address inside the table; it reads nothing.
+            unsafe { std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(quad.0.as_ptr().cast()) }
+        }
+    }
+}
+
 impl Clone for Table {
     fn clone(&self) -> Self {
         let mut copy = Self::new(self.len);

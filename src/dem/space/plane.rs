@@ -35,8 +35,7 @@ impl Space for D2 {
 
     #[inline(always)]
     fn ends<L: Lane>(table: &[Quad], ends: &[u32]) -> End<Self, L> {
-        let [x, y, _, radius] = L::gather(table, Self::RECORD, 0, ends);
-        let [vx, vy, spin, _] = L::gather(table, Self::RECORD, 1, ends);
+        let [[x, y, _, radius], [vx, vy, spin, _]] = L::gather(table, ends);
         End { position: [x, y], radius, velocity: [vx, vy], spin: [spin] }
     }
 
@@ -86,7 +85,7 @@ impl Space for D2 {
     fn push_one<L: Lane>(loads: &mut [Quad], ends: &[u32], touch: &Touch<Self, L>, load: &Load<Self, L>) {
         let [fx, fy] = Self::force(touch, load);
         let moment = touch.arm_i * load.shear[0] + load.bend[0];
-        L::scatter_add(loads, Self::LOADS, 0, ends, [fx, fy, moment, L::splat(0.0)]);
+        L::scatter_add(loads, ends, [[fx, fy, moment, L::splat(0.0)]]);
     }
 
     #[inline(always)]
@@ -95,7 +94,7 @@ impl Space for D2 {
         let [fx, fy] = Self::force(touch, load);
         let first = touch.arm_i * load.shear[0] + load.bend[0];
         let second = touch.arm_j * load.shear[0] - load.bend[0];
-        L::scatter_add_both(loads, Self::LOADS, 0, ends, [[fx, fy, first, zero], [-fx, -fy, second, zero]]);
+        L::scatter_add_both(loads, ends, [[[fx, fy, first, zero]], [[-fx, -fy, second, zero]]]);
     }
 
     #[inline(always)]

@@ -52,9 +52,7 @@ impl Space for D3 {
 
     #[inline(always)]
     fn ends<L: Lane>(table: &[Quad], ends: &[u32]) -> End<Self, L> {
-        let [x, y, z, radius] = L::gather(table, Self::RECORD, 0, ends);
-        let [vx, vy, vz, _] = L::gather(table, Self::RECORD, 1, ends);
-        let [wx, wy, wz, _] = L::gather(table, Self::RECORD, 2, ends);
+        let [[x, y, z, radius], [vx, vy, vz, _], [wx, wy, wz, _]] = L::gather(table, ends);
         End { position: [x, y, z], radius, velocity: [vx, vy, vz], spin: [wx, wy, wz] }
     }
 
@@ -115,8 +113,7 @@ impl Space for D3 {
         let [fx, fy, fz] = Self::force(touch, load);
         let bond = Self::bond_moment(touch, load);
         let [mx, my, mz] = cross(touch.normal, load.shear).times(touch.arm_i).plus(bond);
-        L::scatter_add(loads, Self::LOADS, 0, ends, [fx, fy, fz, zero]);
-        L::scatter_add(loads, Self::LOADS, 1, ends, [mx, my, mz, zero]);
+        L::scatter_add(loads, ends, [[fx, fy, fz, zero], [mx, my, mz, zero]]);
     }
 
     #[inline(always)]
@@ -127,8 +124,9 @@ impl Space for D3 {
         let lever = cross(touch.normal, load.shear);
         let [mx, my, mz] = lever.times(touch.arm_i).plus(bond);
         let [ox, oy, oz] = lever.times(touch.arm_j).minus(bond);
-        L::scatter_add_both(loads, Self::LOADS, 0, ends, [[fx, fy, fz, zero], [-fx, -fy, -fz, zero]]);
-        L::scatter_add_both(loads, Self::LOADS, 1, ends, [[mx, my, mz, zero], [ox, oy, oz, zero]]);
+        let first = [[fx, fy, fz, zero], [mx, my, mz, zero]];
+        let second = [[-fx, -fy, -fz, zero], [ox, oy, oz, zero]];
+        L::scatter_add_both(loads, ends, [first, second]);
     }
 
     #[inline(always)]
