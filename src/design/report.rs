@@ -82,7 +82,7 @@ pub fn report(table: &DesignTable, question: Question) -> Report {
         runs: table.runs(),
         distinct: table.replicate().iter().filter(|r| **r == 1).count(),
         balance,
-        aliases: aliases(table),
+        aliases: models.iter().find(|(model, _)| model.kind == Kind::Main).and_then(|(main, _)| aliases(table, main)),
         power_model: richest.map(|(_, r)| r.kind),
         power: richest.map(|(m, r)| powers(m, r, question)).unwrap_or_default(),
         spread: table.point_type.contains(&PointType::Sample).then(|| spread(table)),

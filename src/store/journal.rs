@@ -164,16 +164,40 @@ impl Index {
         let mut file = File::open(path)?;
         // Asked before reading: what a dead process has written is all there is.
         let alive = file.try_lock_shared().is_err();
-        let mut bytes = Vec::with_capacity(file.metadata().map_or(0, |data| data.len() as usize + 1));
-        file.read_to_end(&mut bytes)?;
-        let Some((head, records)) = bytes.split_at_checked(HEAD) else { return Ok(()) };
-        self.origins.push(Arc::new(read_head(head)));
+        let mut head = [0; HEAD];
+        match file.read_exact(&mut head) {
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
+            other => other?,
+        }
+        self.origins.push(Arc::new(read_head(&head)));
         let origin = (self.origins.len() - 1) as u32;
-        let end = HEAD as u64 + self.take(records, origin);
+        let end = HEAD as u64 + self.read_records(&mut file, origin)?;
         if alive && !own {
             self.growing.push(Growing { file, end, origin });
         }
         Ok(())
+    }
+
+    /// Takes in the whole records that follow in a file, at once into their place; returns their length.
+    fn read_records(&mut self, file: &mut File, origin: u32) -> std::io::Result<u64> {
+        self.push(&[], origin);
+        let (first, length) = (self.records.len(), file.metadata()?.len().saturating_sub(HEAD as u64));
+        self.records.resize(first + (length / RECORD as u64) as usize, [0; RECORD]);
+        let place = self.records[first..].as_flattened_mut();
+        let mut read = 0;
+        while read < place.len() {
+            match file.read(&mut place[read..]) {
+                Ok(0) => break,
+                Ok(count) => read += count,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => {
+                    self.records.truncate(first);
+                    return Err(error);
+                }
+            }
+        }
+        self.records.truncate(first + read / RECORD);
+        Ok((read / RECORD * RECORD) as u64)
     }
 
     /// Takes in the whole records at the start of `bytes`; returns their length.

@@ -5,7 +5,7 @@
 //! doi:10.1111/j.2517-6161.1951.tb00067.x). In a regular fraction its entries are 0 and ±1, in a Plackett–Burman design
 //! also ±1/3 and the like.
 
-use super::model::{Kind, Model};
+use super::model::Model;
 use super::tidy;
 use crate::design::table::DesignTable;
 
@@ -26,14 +26,13 @@ const NOTHING: f64 = 1e-9;
 const MOST_WORK: f64 = 4e9;
 
 /// Every alias of the slopes that is not 0, by slope and descending size. The constant is left out: squares always add
-/// to it. None when there are too many runs and factors to compute it.
-pub fn aliases(table: &DesignTable) -> Option<Vec<Alias>> {
+/// to it. None when there are too many runs and factors to compute it. `model` is the one of main effects.
+pub fn aliases(table: &DesignTable, model: &Model) -> Option<Vec<Alias>> {
     let k = table.factors.len();
     let pairs = (k * (k + 1) / 2) as f64;
     if pairs * table.runs() as f64 * k as f64 > MOST_WORK {
         return None;
     }
-    let model = Model::new(Kind::Main, table);
     let name = |j: usize| table.factors[j].name.as_str();
     let mut found: Vec<Vec<Alias>> = vec![Vec::new(); k + 1];
     for a in 0..k {
