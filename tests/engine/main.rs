@@ -24,5 +24,7 @@ mod lattice;
 mod memory;
 mod packing;
 mod page;
+mod scaling;
 mod step;
+mod turned;
 mod twin;

@@ -30,6 +30,8 @@ fn families() -> Vec<Family> {
         crate::clump::family(),
         crate::balance::family(),
         crate::invariance::family(),
+        crate::turned::family(),
+        crate::scaling::family(),
         crate::energy::family(),
     ]
 }
