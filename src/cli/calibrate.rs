@@ -7,7 +7,7 @@
 mod answer;
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, system, workers};
 use super::progress::{Progress, Silent};
 use super::run::{expected, interruption};
 use crate::artifact::Artifact;
@@ -36,8 +36,8 @@ pub(super) struct Calibrate {
     #[arg(long)]
     verify: bool,
     /// Simulations at once with --verify; the number of cores when not given.
-    #[arg(long, short, value_name = "N")]
-    jobs: Option<std::num::NonZero<usize>>,
+    #[arg(long, short, value_name = "N", value_parser = workers)]
+    jobs: Option<usize>,
     /// As one JSON document.
     #[arg(long, conflicts_with = "csv")]
     json: bool,
@@ -182,7 +182,7 @@ impl Calibrate {
 
     /// The results of the verifications, and how their runs ended.
     fn verified(&self, asked: &Asked) -> (Vec<Arc<Artifact>>, Exit) {
-        let jobs = self.jobs.map_or_else(cores, std::num::NonZero::get);
+        let jobs = self.jobs.unwrap_or_else(cores);
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&asked.workflow, &asked.store), jobs)),

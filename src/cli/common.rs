@@ -125,6 +125,11 @@ pub(super) fn provenance(started: i64, seconds: f64, origin: &Origin) -> String 
     format!("{} UTC, took {}, by flow {version} on {machine}{commit}", moment(started), duration(seconds))
 }
 
+/// The number of `--jobs`.
+pub(super) fn workers(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&jobs| jobs > 0).ok_or_else(|| "wanted a whole number of 1 or more".to_owned())
+}
+
 /// Prints what is wrong with the store or the system.
 pub(super) fn system(error: &dyn std::error::Error) -> Exit {
     eprintln!("error: {error}");

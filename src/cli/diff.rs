@@ -12,7 +12,7 @@ use crate::store::{self, Store};
 use clap::Args;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 /// Compare two campaigns: what was set otherwise, what came out otherwise.
@@ -75,6 +75,10 @@ impl Diff {
     fn side(&self, text: &str, store: &Store) -> Result<Sides, Exit> {
         match text.strip_prefix('#') {
             Some(number) => self.recorded(number, store),
+            None if text.parse::<u64>().is_ok() && !Path::new(text).exists() => {
+                eprintln!("error: there is no workflow file `{text}`; the recorded run {text} is written '#{text}'");
+                Err(Exit::BadInput)
+            }
             None => self.planned(text, store),
         }
     }

@@ -45,16 +45,8 @@ impl Show {
         // Single rows are known only when every task is looked up.
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: vec![stage.clone()], memos: false };
         let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
-        let object = object(&workflow, &report, &stage, row);
-        let Some(object) = object else {
-            let place = workflow.position(&stage);
-            let rows = report.tasks().filter(|task| Some(task.stage) == place).filter_map(|task| task.row).max();
-            if let (Some(row), Some(last)) = (row, rows.filter(|last| row.is_some_and(|row| row > *last))) {
-                eprintln!("error: `{stage}` has {} rows, no row {}", last + 1, row + 1);
-                return Err(Exit::BadInput);
-            }
-            let first = self.campaign.command("run", &[&stage]);
-            eprintln!("error: `{}` has no result yet; run it first: {first}", self.what);
+        let Some(object) = object(&workflow, &report, &stage, row) else {
+            eprintln!("error: {}", self.missing(&workflow, &report, &stage, row));
             return Err(Exit::BadInput);
         };
         if self.path {
@@ -62,6 +54,24 @@ impl Show {
             return Ok(Exit::Done);
         }
         self.values(&store, &object)
+    }
+
+    /// Why there is nothing to show.
+    fn missing(&self, workflow: &Workflow, report: &Report, stage: &str, row: Option<usize>) -> String {
+        let place = workflow.position(stage);
+        let rows: Vec<Option<usize>> =
+            report.tasks().filter(|task| Some(task.stage) == place).map(|task| task.row).collect();
+        match (row, rows.iter().flatten().max()) {
+            (Some(_), None) if !rows.is_empty() => {
+                let whole = self.campaign.command("show", &[stage]);
+                format!("`{stage}` is one result and has no rows; see {whole}")
+            }
+            (Some(row), Some(last)) if row > *last => format!("`{stage}` has {} rows, no row {}", last + 1, row + 1),
+            _ => {
+                let first = self.campaign.command("run", &[stage]);
+                format!("`{}` has no result yet; run it first: {first}", self.what)
+            }
+        }
     }
 
     fn values(&self, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {

@@ -225,9 +225,12 @@ impl Check<'_> {
         }
     }
 
-    /// A fault at `path` below `node`, or as near to it as the file goes.
+    /// A fault at `path` below `node`, or as near to it as the file goes; once, though two stages may find it.
     pub(super) fn complain(&mut self, node: &Node, path: &[Step], fault: Fault) {
-        self.faults.push(fault.at(self.sources.place(node.nearest(path).span)));
+        let fault = fault.at(self.sources.place(node.nearest(path).span));
+        if !self.faults.contains(&fault) {
+            self.faults.push(fault);
+        }
     }
 }
 

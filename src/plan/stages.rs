@@ -21,11 +21,13 @@ struct Configured {
 pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Context) -> Option<Vec<StageNode>> {
     if !root.0.contains_key("stage") {
         let hint = "add a table such as [stage.runs] with its `kind`";
-        check.faults.push(Fault::new("the workflow has no stage").hint(hint));
+        let file = &check.sources.0[0].name;
+        check.faults.push(Fault::new(format!("{file}: the workflow has no stage")).hint(hint));
         return None;
     }
+    let materials = root.get("material").cloned();
     let table = check.tables(root, "stage")?;
-    let stages = configure(check, table, context);
+    let stages = configure(check, table, materials.as_ref(), context);
     same_but_for_case(check, table);
     let inputs = connect(check, table, &stages);
     let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| inputs.iter().map(|(_, i)| *i).collect()).collect();
@@ -36,7 +38,7 @@ pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Contex
 }
 
 /// Reads every stage by its kind, in the order of the file.
-fn configure(check: &mut Check<'_>, table: &mut Table, context: &Context) -> Vec<Configured> {
+fn configure(check: &mut Check<'_>, table: &mut Table, materials: Option<&Node>, context: &Context) -> Vec<Configured> {
     let mut entries: Vec<(&String, &mut Entry)> = table.0.iter_mut().collect();
     entries.sort_by_key(|(_, entry)| entry.key);
     let mut stages = Vec::new();
@@ -55,7 +57,9 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &Context) -> Vec
                 continue;
             }
             let fault = Fault { hint: complaint.hint, ..Fault::new(complaint.message) };
-            check.complain(&entry.node, &steps(complaint.path.iter().map(String::as_str)), fault);
+            let path = complaint.material.iter().chain(&complaint.path).map(String::as_str);
+            let node = materials.filter(|_| complaint.material.is_some()).unwrap_or(&entry.node);
+            check.complain(node, &steps(path), fault);
         }
         stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
     }

@@ -92,7 +92,10 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
     let mut last = None;
     let mut doubled = None;
     for error in errors {
-        let span = span(sources, index, error.span().unwrap_or(text.len()..text.len()));
+        let end = text.len()..text.len();
+        // Of a dotted key the reader does not say where it stands.
+        let deep = || deepest_key(text).filter(|_| error.message().contains("recurs"));
+        let span = span(sources, index, error.span().or_else(deep).unwrap_or(end));
         let (start, end) = (span.start as usize, span.end as usize);
         // Every key of a table that stands there twice would be told again.
         let inside = |header: usize| header <= start && !text[header..start].contains("\n[");
@@ -117,6 +120,27 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
         faults.push(fault.at(sources.place(span)));
     }
     faults
+}
+
+/// The first dotted key of more parts than the TOML reader takes.
+fn deepest_key(text: &str) -> Option<Range<usize>> {
+    const PARTS: usize = 80;
+    let name = |part: &str| {
+        let part = part.trim();
+        let quoted =
+            ['"', '\''].iter().any(|&quote| part.len() > 1 && part.starts_with(quote) && part.ends_with(quote));
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        quoted || !part.is_empty() && part.chars().all(plain)
+    };
+    let mut start = 0;
+    for piece in text.split(['=', '{', '}', ',', '[', ']', '#', '\n']) {
+        if piece.split('.').count() >= PARTS && piece.split('.').all(name) {
+            let start = start + piece.len() - piece.trim_start().len();
+            return Some(start..start + piece.trim().len());
+        }
+        start += piece.len() + 1;
+    }
+    None
 }
 
 /// A single value, as in `--set path=value`; `offset` is where it begins in its source.

@@ -2,7 +2,8 @@
 //!
 //! A node stands for one task; equal tasks are one node, whichever stage asked first. Equality is that of the
 //! *recipe*: the key of a task whose inputs are known; else a hash of its text with the recipe of each input task in place
-//! of its result, so it is known before anything ran.
+//! of its result, so it is known before anything ran. A run that an earlier campaign made has no node: it stands with the
+//! task that gathers it ([`Task::kept`]), and counts there.
 
 use super::TaskReport;
 use crate::artifact::{ContentHash, FirstBytes, Key};
@@ -76,8 +77,7 @@ impl Add for TaskCount {
 }
 
 struct Node {
-    /// Nothing for a run that is kept: it is done and nobody looks at it.
-    task: Option<Arc<Task>>,
+    task: Arc<Task>,
     stage: usize,
     /// Its design row.
     row: Option<usize>,
@@ -90,6 +90,14 @@ struct Node {
     /// Its key, once its inputs are known.
     key: Option<Key>,
     state: TaskState,
+}
+
+/// Bytes that are hashed at once.
+const BLOCK: usize = 1 << 16;
+
+/// The runs of an earlier campaign among the inputs of a task.
+fn kept_runs(task: &Task) -> &[(usize, usize, Key, ContentHash)] {
+    task.kept.as_ref().map_or(&[], |kept| &kept.runs)
 }
 
 /// The graph of tasks.
@@ -121,7 +129,6 @@ impl Board {
                 Source::Task(task) => Some(self.put(task, stage, new)),
             })
             .collect();
-        let inputs = self.with_kept(task, stage, inputs);
         let (recipe, text) = self.recipe(task, &inputs);
         self.kept.push(Arc::clone(task));
         let node = match self.by_recipe.get(&recipe) {
@@ -130,7 +137,7 @@ impl Board {
                 let missing = inputs.iter().flatten().filter(|&&input| !self.is_done(input)).count();
                 let key = text.is_some().then_some(recipe);
                 let (row, dependents, state) = (task.row, Vec::new(), TaskState::Open);
-                let task = Some(Arc::clone(task));
+                let task = Arc::clone(task);
                 let node = self.add(Node { task, stage, row, inputs, dependents, missing, recipe, key, state });
                 self.by_recipe.insert(recipe, node);
                 self.written = text.map(|text| (node, text));
@@ -140,26 +147,6 @@ impl Board {
         };
         self.by_address.insert(Arc::as_ptr(task), node);
         node
-    }
-
-    /// The inputs of a task with a node for each one that is kept.
-    fn with_kept(&mut self, task: &Task, stage: usize, mut inputs: Vec<Option<NodeId>>) -> Vec<Option<NodeId>> {
-        self.nodes.reserve(task.kept.as_ref().map_or(0, |kept| kept.runs.len()));
-        for &(place, row, key, content) in task.kept.iter().flat_map(|kept| &kept.runs) {
-            inputs[place] = Some(self.add(Node {
-                task: None,
-                stage,
-                row: Some(row),
-                inputs: Vec::new(),
-                dependents: Vec::new(),
-                missing: 0,
-                recipe: Key(content.0),
-                key: Some(key),
-                state: TaskState::Done { content, cached: true },
-            }));
-            self.counts[stage].cached += 1;
-        }
-        inputs
     }
 
     fn add(&mut self, node: Node) -> NodeId {
@@ -173,7 +160,9 @@ impl Board {
             self.counts.resize(node.stage + 1, TaskCount::default());
             self.seconds.resize(node.stage + 1, 0.0);
         }
-        self.counts[node.stage].total += 1;
+        let kept = kept_runs(&node.task).len();
+        self.counts[node.stage].total += 1 + kept;
+        self.counts[node.stage].cached += kept;
         let lost = |input: &NodeId| matches!(self.state(*input), TaskState::Failed(_) | TaskState::Skipped);
         let lost = node.inputs.iter().flatten().any(lost);
         self.nodes.push(node);
@@ -191,18 +180,23 @@ impl Board {
             (Source::Task(_), Some(node)) => ContentHash(self.nodes[*node].recipe.0),
             (Source::Task(_), None) => panic!("BUG: an input task without a node"),
         };
-        let parts: Vec<ContentHash> = task.inputs.iter().zip(inputs).map(part).collect();
+        let parts = task.inputs.iter().zip(inputs).map(part);
         if task.inputs.iter().all(|(_, source)| matches!(source, Source::Content(_))) {
-            let text = task_text(task, &parts);
+            let text = task_text(task, &parts.collect::<Vec<_>>());
             return (Key::of(&text), Some(text));
         }
-        let mut bytes = text_without_inputs(task, parts.len()).into_bytes();
-        for ((name, _), part) in task.inputs.iter().zip(&parts) {
+        let mut hash = blake3::Hasher::new();
+        let mut bytes = text_without_inputs(task, 0).into_bytes();
+        for ((name, _), part) in task.inputs.iter().zip(parts) {
             bytes.extend_from_slice(&(name.len() as u64).to_le_bytes());
             bytes.extend_from_slice(name.as_bytes());
             bytes.extend_from_slice(&part.0);
+            if bytes.len() >= BLOCK {
+                hash.update(&bytes);
+                bytes.clear();
+            }
         }
-        (Key(*blake3::hash(&bytes).as_bytes()), None)
+        (Key(*hash.update(&bytes).finalize().as_bytes()), None)
     }
 
     /// The node of a task that was put on the board before.
@@ -225,7 +219,6 @@ impl Board {
             return None;
         }
         node.task
-            .as_ref()?
             .inputs
             .iter()
             .zip(&node.inputs)
@@ -268,7 +261,7 @@ impl Board {
         }
     }
 
-    /// The key of the task that is one of the inputs of a node.
+    /// The key of the task that is one of the inputs of a node, unless that is kept.
     pub(super) fn input_key(&self, node: NodeId, place: usize) -> Option<Key> {
         self.key_of(self.nodes[node].inputs[place]?)
     }
@@ -321,7 +314,21 @@ impl Board {
         (0..self.nodes.len()).filter(|&node| seen[node]).collect()
     }
 
-    /// Every task.
+    /// Results and rows of these nodes that are done, each behind the runs that are kept for it.
+    pub(super) fn results(&self, nodes: &[NodeId]) -> impl Iterator<Item = (ObjectId, Option<usize>)> {
+        nodes.iter().flat_map(|&node| {
+            let kept = kept_runs(&self.nodes[node].task).iter();
+            let kept = kept.map(|&(_, row, key, content)| (ObjectId { content, key }, Some(row)));
+            kept.chain(self.object(node).map(|object| (object, self.row(node))))
+        })
+    }
+
+    /// Keys of the runs that are kept for a node.
+    pub(super) fn kept_keys(&self, node: NodeId) -> impl Iterator<Item = Key> {
+        kept_runs(&self.nodes[node].task).iter().map(|&(_, _, key, _)| key)
+    }
+
+    /// Every task but the runs that are kept.
     pub(super) fn reports(&self) -> impl DoubleEndedIterator<Item = TaskReport> {
         (0..self.nodes.len()).map(|node| TaskReport {
             stage: self.nodes[node].stage,
@@ -334,7 +341,10 @@ impl Board {
 
     /// The object of every task that is done.
     pub(super) fn objects(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
-        (0..self.nodes.len()).filter_map(|node| self.object(node))
+        (0..self.nodes.len()).flat_map(|node| {
+            let kept = kept_runs(&self.nodes[node].task).iter();
+            kept.map(|&(_, _, key, content)| ObjectId { content, key }).chain(self.object(node))
+        })
     }
 
     /// Seconds that the tasks of a stage took in this run.
@@ -412,9 +422,9 @@ impl Board {
         self.nodes[node].row
     }
 
-    /// The task of a node that is not a kept run.
+    /// The task of a node.
     pub(super) fn task(&self, node: NodeId) -> &Arc<Task> {
-        self.nodes[node].task.as_ref().unwrap_or_else(|| panic!("BUG: a kept run is not run"))
+        &self.nodes[node].task
     }
 
     /// The first failure among a node and all that it needs.

@@ -5,8 +5,9 @@ use super::ledger::{Files, Ledger};
 use super::task::Lost;
 use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
-use crate::stage::ledger::{Kept, RowName, row_name};
-use crate::stage::{FileInput, Library, Outcome, Point, StageError, Task};
+use crate::stage::ledger::Kept;
+use crate::stage::rows::Rows;
+use crate::stage::{FileInput, Library, Outcome, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -26,8 +27,8 @@ pub(super) struct Shelf<'a> {
 pub(super) struct Notes {
     /// Files that were looked at, with their digests.
     pub(super) files: Files,
-    /// Names of the rows of a fan-out, in order.
-    pub(super) rows: Vec<RowName>,
+    /// The rows of a fan-out.
+    pub(super) rows: Option<Arc<Rows>>,
     /// A result that could not be read.
     pub(super) lost: Option<Lost>,
 }
@@ -46,10 +47,9 @@ impl Library for Shelf<'_> {
         })
     }
 
-    fn kept(&self, point: &Point, replicate: u64) -> Option<Kept<'_>> {
-        let name = row_name(point, replicate);
-        self.notes.borrow_mut().rows.push(name);
-        self.ledger?.kept(&name)
+    fn kept(&self, rows: &Arc<Rows>, index: usize) -> Option<Kept<'_>> {
+        self.notes.borrow_mut().rows.get_or_insert_with(|| Arc::clone(rows));
+        self.ledger?.kept(rows, index)
     }
 
     fn outcome(&self, task: &Task) -> Option<Outcome> {

@@ -117,8 +117,8 @@ pub fn remembered(store: &Store, key: &Key) -> Option<Vec<(Option<usize>, Key)>>
 
 /// Keeps what a stage came to: `nodes` are all the tasks it rests on.
 pub(super) fn keep(store: &Store, key: &Key, content: ContentHash, board: &Board, nodes: &[NodeId], files: Files) {
-    let objects: Vec<ObjectId> = nodes.iter().filter_map(|&node| board.object(node)).collect();
-    let rows = nodes.iter().map(|&node| board.row(node).map_or(-1, |row| row as i64)).collect();
+    let (objects, rows): (Vec<ObjectId>, Vec<Option<usize>>) = board.results(nodes).unzip();
+    let rows = rows.into_iter().map(|row| row.map_or(-1, |row| row as i64)).collect();
     let note = Note { content: content.to_string(), files, rows };
     let note = serde_json::to_string(&note).unwrap_or_else(|e| panic!("BUG: the note of a memo: {e}"));
     // A memo that cannot be written costs time only; the store says what is wrong when it matters.

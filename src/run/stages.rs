@@ -7,7 +7,7 @@ use super::memo::{self, Base};
 use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
-use crate::stage::ledger::RowName;
+use crate::stage::rows::Rows;
 use crate::stage::{Input, Known, Library, StageError, Step};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
@@ -76,8 +76,8 @@ struct Place {
     key: Option<Key>,
     /// Key of the ledger of its runs, known as soon.
     run: Option<Key>,
-    /// Names of the runs that it gathers, in order.
-    rows: Vec<RowName>,
+    /// The rows whose runs it gathers.
+    rows: Option<Arc<Rows>>,
     /// Every node it asked for, and the one it finishes with.
     asked: Vec<NodeId>,
     files: Files,
@@ -107,7 +107,7 @@ impl Stages {
             wanted,
             key: None,
             run: None,
-            rows: Vec::new(),
+            rows: None,
             asked: Vec::new(),
             files: Vec::new(),
             remembered: None,
@@ -190,7 +190,7 @@ impl Stages {
             State::Waiting | State::Broken(_) | State::Ended(_) => {}
         }
         place.files.extend(files);
-        if !rows.is_empty() {
+        if rows.is_some() {
             // A kept run does not look at its files, and yet rests on them.
             place.files.extend(ledger.into_iter().flat_map(|ledger| ledger.files));
             place.rows = rows;
@@ -242,8 +242,8 @@ impl Stages {
     fn keep(&mut self, index: usize, content: ContentHash, board: &Board, store: &Store) {
         let place = &mut self.places[index];
         if let Some(key) = &place.key {
-            if let (State::Finishing(node), Some(run), false) = (&place.state, &place.run, place.rows.is_empty()) {
-                Ledger::keep(store, run, board, *node, &place.rows, &place.files);
+            if let (State::Finishing(node), Some(run), Some(rows)) = (&place.state, &place.run, &place.rows) {
+                Ledger::keep(store, run, board, *node, rows, &place.files);
             }
             let nodes = board.closure(&place.asked);
             memo::keep(store, key, content, board, &nodes, std::mem::take(&mut place.files));
@@ -308,6 +308,11 @@ impl Stages {
                 }
                 for node in board.closure(&place.asked) {
                     let new = !std::mem::replace(&mut nodes[node], true);
+                    for key in board.kept_keys(node).filter(|_| new) {
+                        if keys.insert(key) {
+                            tasks = tasks + TaskCount::CACHED;
+                        }
+                    }
                     if new && board.key_of(node).is_none_or(|key| keys.insert(key)) {
                         tasks = tasks + board.count_of(node);
                     }

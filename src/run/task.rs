@@ -12,6 +12,7 @@ use std::time::{Instant, SystemTime};
 pub(super) struct Order {
     pub(super) node: NodeId,
     task: Arc<Task>,
+    key: Key,
     text: String,
     inputs: Vec<(String, Arc<Artifact>)>,
     threads: usize,
@@ -35,7 +36,8 @@ pub(super) struct Finished {
 impl Order {
     /// Loads the inputs of an open node, or says which of them is lost.
     pub(super) fn new(board: &mut Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Box<Lost>> {
-        let (Some(text), Some(contents)) = (board.take_text(node), board.inputs(node)) else {
+        let known = (board.take_text(node), board.inputs(node), board.key_of(node));
+        let (Some(text), Some(contents), Some(key)) = known else {
             panic!("BUG: a task was started before its inputs were known");
         };
         let task = Arc::clone(board.task(node));
@@ -48,19 +50,18 @@ impl Order {
             }
         }
         inputs.extend(task.kept.iter().map(|kept| ("kept".to_owned(), Arc::new(kept.artifact()))));
-        Ok(Self { node, task, text, inputs, threads })
+        Ok(Self { node, task, key, text, inputs, threads })
     }
 
     /// Computes and stores the result, unless another process does: then waits for its result.
     pub(super) fn execute(
-        &self,
+        self,
         store: &Store,
         say: &(dyn Fn(Progress) + Sync),
         stop: &AtomicBool,
     ) -> Result<Finished, Failure> {
-        let key = Key::of(&self.text);
         loop {
-            match store.claim(&key).map_err(failure)? {
+            match store.claim(&self.key).map_err(failure)? {
                 Claim::Done(record) => return Ok(Finished { content: record.content, shared: true, seconds: 0.0 }),
                 Claim::Mine(claim) => return self.compute(claim, store, say, stop),
                 Claim::Theirs(waiting) => {
@@ -74,7 +75,7 @@ impl Order {
     }
 
     fn compute(
-        &self,
+        self,
         claim: Guard,
         store: &Store,
         say: &(dyn Fn(Progress) + Sync),
@@ -94,7 +95,7 @@ impl Order {
         let (started, clock) = (SystemTime::now(), Instant::now());
         let artifact = (work.run)(&job)?;
         let timing = Timing { started, seconds: clock.elapsed().as_secs_f64() };
-        let (record, _) = store.finish(claim, &self.text, artifact, &timing).map_err(failure)?;
+        let (record, _) = store.finish(claim, self.text, artifact, &timing).map_err(failure)?;
         Ok(Finished { content: record.content, shared: false, seconds: timing.seconds })
     }
 }

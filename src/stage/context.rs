@@ -1,6 +1,7 @@
 //! What a stage can see when it decides what to do next.
 
 use super::ledger::Kept;
+use super::rows::Rows;
 use super::{StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
 use crate::unit::Dimension;
@@ -106,9 +107,9 @@ pub trait Library {
     /// What became of a task asked for earlier; `None` when it was not asked for yet.
     fn outcome(&self, task: &Task) -> Option<Outcome>;
 
-    /// The run of this point and replicate that an earlier campaign made, if it knows of one and all that decides a run
-    /// is as it was. Asked once for every row of a fan-out, in order.
-    fn kept(&self, _point: &Point, _replicate: u64) -> Option<Kept<'_>> {
+    /// The run of a row that an earlier campaign made, if it knows of one and all that decides a run is as it was. Asked
+    /// once for every row of a fan-out, in order.
+    fn kept(&self, _rows: &Arc<Rows>, _index: usize) -> Option<Kept<'_>> {
         None
     }
 

@@ -4,26 +4,8 @@
 //! runner knows the key and the result of an old row without making its task, and a [`Brief`] of it: all that gathering
 //! takes from a run. Briefs only spare work: with them, without them or with some, the gathered table is the same.
 
-use super::Point;
 use super::rows::Responses;
 use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
-
-/// Names one row of any design: its point and replicate.
-pub type RowName = [u8; 16];
-
-/// The name of a row.
-pub fn row_name(point: &Point, replicate: u64) -> RowName {
-    let mut bytes = Vec::with_capacity(256);
-    for (factor, value) in point {
-        bytes.extend_from_slice(&(factor.len() as u64).to_le_bytes());
-        bytes.extend_from_slice(factor.as_bytes());
-        bytes.extend_from_slice(&(value + 0.0).to_bits().to_le_bytes());
-    }
-    bytes.extend_from_slice(&replicate.to_le_bytes());
-    let mut name = RowName::default();
-    name.copy_from_slice(&blake3::hash(&bytes).as_bytes()[..16]);
-    name
-}
 
 /// A run that was made before and need not be looked at again.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -200,15 +182,5 @@ mod tests {
         }
         assert_eq!(back.get(4), None);
         assert!((0..bytes.len()).all(|end| Briefs::from_bytes(&bytes[..end]).is_none_or(|cut| cut != back)));
-    }
-
-    #[test]
-    fn rows_are_told_apart_by_point_and_replicate() {
-        let point = |name: &str, value: f64| Point::from([(name.to_owned(), value)]);
-        let base = row_name(&point("a", 1.0), 1);
-        assert_eq!(row_name(&point("z", -0.0), 1), row_name(&point("z", 0.0), 1));
-        for other in [row_name(&point("a", 2.0), 1), row_name(&point("a", 1.0), 2), row_name(&point("b", 1.0), 1)] {
-            assert_ne!(base, other);
-        }
     }
 }

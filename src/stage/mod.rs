@@ -128,6 +128,8 @@ pub struct Port {
 pub struct Complaint {
     /// Path below the stage's table, such as `["levels", "Ec"]`; empty for the table itself.
     pub path: Vec<String>,
+    /// The `[material.NAME]` that the path lies below instead.
+    pub material: Option<String>,
     /// What was found and what was expected.
     pub message: String,
     /// What to do.
@@ -138,7 +140,14 @@ impl Complaint {
     /// A complaint about the value at `path` (keys separated by dots).
     pub fn new(path: &str, message: impl Into<String>) -> Self {
         let path = path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect();
-        Self { path, message: message.into(), hint: None }
+        Self { path, material: None, message: message.into(), hint: None }
+    }
+
+    /// Says that the path lies below this material.
+    #[must_use]
+    pub fn in_material(mut self, name: &str) -> Self {
+        self.material = Some(name.to_owned());
+        self
     }
 
     /// Adds what to do.

@@ -60,7 +60,7 @@ pub(super) fn check_doubled(terms: &[Term], path: &[String]) -> Vec<Complaint> {
     let doubled = (0..terms.len()).filter(|&i| terms[..i].iter().any(|other| other.same(&terms[i])));
     let complaint = |i: usize| {
         let message = format!("the model has `{}` twice", terms[i]);
-        Complaint { path: path.to_vec(), message, hint: Some("list each term once".to_owned()) }
+        Complaint { path: path.to_vec(), ..Complaint::new("", message) }.hint("list each term once")
     };
     doubled.map(complaint).collect()
 }

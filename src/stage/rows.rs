@@ -3,61 +3,23 @@
 //! Rows are known by content. Equal rows of one design are replicates, numbered from 1 by occurrence, so adding rows
 //! changes nothing for the others, and the same row and replicate in two designs is one run.
 
+mod points;
+
+pub use points::Rows;
+
 use super::ledger::{Briefs, KeptRuns};
-use super::{Complaint, Context, Failure, Input, Job, Known, Point, Stage, StageError, Step, Task, Work};
+use super::{Complaint, Context, Failure, Input, Job, Known, Point, Source, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Column, Group, Node, Table, Values};
-use crate::math::occurrence::occurrences;
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// One row of a design.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Its place in the design, from 0.
-    pub index: usize,
-    /// Values of its factors, in the factors' units.
-    pub point: Point,
-    /// Which of the equal rows it is, from 1.
-    pub replicate: u64,
-}
-
 /// The columns of a design that are factors, by name.
 fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a Column>, StageError> {
     let table = design.table("design").ok_or_else(|| StageError::new("the design holds no table `design`"))?;
     Ok(table.columns.iter().filter(|column| context.factors.contains_key(&column.name)).collect())
-}
-
-/// The rows of a design.
-///
-/// # Errors
-/// It has none, or a factor column holds no numbers.
-pub fn rows<'a>(
-    design: &'a Artifact,
-    context: &Context,
-) -> Result<impl ExactSizeIterator<Item = Row> + use<'a>, StageError> {
-    let columns = factor_columns(design, context)?;
-    let count = columns.first().map_or(0, |column| column.values.len());
-    if count == 0 {
-        return Err(StageError::new("the design has no rows of known factors"));
-    }
-    if let Some(column) = columns.iter().find(|column| matches!(column.values, Values::Texts(_))) {
-        return Err(StageError::new(format!("factor `{}` holds texts", column.name)));
-    }
-    let value = |column: &Column, index: usize| match &column.values {
-        Values::Reals(values) => values[index] + 0.0,
-        Values::Ints(values) => values[index] as f64,
-        Values::Texts(_) => f64::NAN,
-    };
-    let words: Vec<u64> =
-        (0..count).flat_map(|index| columns.iter().map(move |column| value(column, index).to_bits())).collect();
-    let replicates = occurrences(&words, columns.len(), count);
-    Ok(replicates.into_iter().enumerate().map(move |(index, replicate)| {
-        let point = columns.iter().map(|column| (column.name.clone(), value(column, index)));
-        Row { index, point: point.collect(), replicate }
-    }))
 }
 
 /// Parameters by path in SI units after a point of the factor space was applied to them.
@@ -132,17 +94,21 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
     };
     let artifact = known.load(design)?;
     let mut task = gather(known, design, &artifact)?;
-    let rows = rows(&artifact, known.context)?;
+    let rows = Arc::new(Rows::of(&artifact, known.context)?);
     task.inputs.reserve(rows.len());
     let mut kept_runs = KeptRuns::with_room(rows.len());
-    for row in rows {
-        task = match known.library.kept(&row.point, row.replicate) {
+    for index in 0..rows.len() {
+        let source = match known.library.kept(&rows, index) {
             Some(kept) => {
-                kept_runs.push(task.inputs.len(), row.index, kept);
-                task.input(RUN, kept.content)
+                kept_runs.push(task.inputs.len(), index, kept);
+                Source::Content(kept.content)
             }
-            None => task.after(RUN, Arc::new(simulator.sample(known, &row.point, row.replicate)?.row(row.index))),
+            None => {
+                let run = simulator.sample(known, &rows.point(index), rows.replicate(index))?;
+                Source::Task(Arc::new(run.row(index)))
+            }
         };
+        task.inputs.push((RUN.into(), source));
     }
     task.kept = (!kept_runs.runs.is_empty()).then(|| Arc::new(kept_runs));
     Ok(Step::Finish(task))

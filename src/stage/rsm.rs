@@ -75,7 +75,7 @@ impl Stage for Rsm {
             found.extend(check_doubled(terms, &path));
             if !self.responses.contains(response) {
                 let message = format!("`{response}` is none of the stage's responses, so its terms have no effect");
-                found.push(Complaint { path, message, hint: None });
+                found.push(Complaint { path, ..Complaint::new("", message) });
             }
         }
         found.extend(check_predict(self.predict.as_ref(), context));

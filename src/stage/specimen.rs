@@ -7,12 +7,12 @@ use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageErr
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Artifact, Table, Values};
 use crate::dem::genesis::clump::{Clump, ClumpMass};
-use crate::dem::genesis::gradation::Gradation;
-use crate::dem::genesis::packing::Packing;
+use crate::dem::genesis::gradation::{Gradation, GradationError};
+use crate::dem::genesis::packing::{Packing, PackingError};
 use crate::dem::genesis::placement::{ClassSize, Placement};
-use crate::dem::genesis::polygon::{AngleLaw, Polygon, PolygonRecipe, SizeRule};
+use crate::dem::genesis::polygon::{AngleLaw, Polygon, PolygonError, PolygonRecipe, SizeRule};
 use crate::dem::genesis::region::Region;
-use crate::dem::genesis::specimen::{Aggregate, Quality, Recipe, Specimen as Made};
+use crate::dem::genesis::specimen::{Aggregate, Quality, Recipe, Specimen as Made, SpecimenError};
 use crate::math::random::Stream;
 use crate::unit::{Density, Length};
 use schemars::JsonSchema;
@@ -210,12 +210,40 @@ impl Specimen {
         if faults.is_empty() {
             return Ok(recipe);
         }
-        Err(faults.iter().map(|fault| Complaint::new("", fault.to_string())).collect())
+        Err(faults.iter().map(|fault| Complaint::new(key(fault), fault.to_string())).collect())
     }
 
     fn task(&self, seed: u64, number: u64) -> Result<Task, Vec<Complaint>> {
         let seed = Stream::new(seed, "specimen", number).bits();
         Ok(Task::new("specimen", json!(self.recipe()?)).seed(seed))
+    }
+}
+
+/// The setting that a fault is about; a key that was not given stands for its table.
+fn key(fault: &SpecimenError) -> &'static str {
+    match fault {
+        SpecimenError::Packing(PackingError::Value { name, .. }) | SpecimenError::Value { name, .. } => match *name {
+            "porosity" => "porosity",
+            "mean_radius" => "mean_radius",
+            "radius ratio" => "radius_ratio",
+            "floaters" => "floaters",
+            "density" => "density",
+            "aggregate density" => "aggregate.density",
+            "aggregate gap" => "aggregate.gap",
+            "aggregate wall gap" => "aggregate.wall_gap",
+            "attempts" => "aggregate.attempts",
+            _ => "",
+        },
+        SpecimenError::Packing(PackingError::Few { .. }) => "mean_radius",
+        SpecimenError::Packing(_) => "",
+        SpecimenError::Gradation(GradationError::Value { name: "content", .. }) => "aggregate.content",
+        SpecimenError::Gradation(GradationError::Value { name: "max_size", .. }) => "aggregate.max_size",
+        SpecimenError::Gradation(GradationError::Value { name: "exponent", .. }) => "aggregate.exponent",
+        SpecimenError::Gradation(GradationError::Value { name: "passing fraction", .. }) => "aggregate.passing",
+        SpecimenError::Gradation(_) => "aggregate.classes",
+        SpecimenError::Polygon(PolygonError::Vertices { .. }) => "aggregate.vertices",
+        SpecimenError::Polygon(PolygonError::Fill(_)) => "aggregate.least_fill",
+        SpecimenError::Placement(_) => "aggregate",
     }
 }
 

@@ -301,6 +301,8 @@ struct Open {
     held: Held,
     path: PathBuf,
     end: u64,
+    /// Whether its head and its name would survive a power cut; a record that must survive one sees to it.
+    safe: bool,
 }
 
 impl Segment {
@@ -316,6 +318,10 @@ impl Segment {
             .and_then(|()| if durable { file.sync_data() } else { Ok(()) })
             .map_err(|error| disk.fail("write", &open.path, error))?;
         open.end += RECORD as u64;
+        if durable && !open.safe {
+            disk.sync_dir(&folder(disk))?;
+            open.safe = true;
+        }
         Ok(())
     }
 
@@ -332,12 +338,11 @@ fn create(disk: &Disk, origin: &Origin) -> Result<Open, StoreError> {
     let fail = |error| disk.fail("create a file in", &folder, error);
     let mut file = disk.temporary_in(&folder, 0o644)?;
     let _ = file.as_file().try_lock();
-    file.write_all(&head(origin)).and_then(|()| file.as_file().sync_all()).map_err(fail)?;
+    file.write_all(&head(origin)).map_err(fail)?;
     let name = file.path().file_name().unwrap_or_default().to_string_lossy().replacen(TEMPORARY, "", 1);
     let path = folder.join(format!("{:013}-{}-{name}.journal", super::now_ms(), std::process::id()));
     let file = file.persist_noclobber(&path).map_err(|error| fail(error.error))?;
-    disk.sync_dir(&folder)?;
-    Ok(Open { held: Held(file), path, end: HEAD as u64 })
+    Ok(Open { held: Held(file), path, end: HEAD as u64, safe: false })
 }
 
 /// Writes a finished segment with these records, which have one origin.
@@ -347,7 +352,8 @@ pub(super) fn write_segment(disk: &Disk, records: &[Record]) -> Result<(), Store
     let mut file = &open.held.0;
     let bytes: Vec<u8> = records.iter().flat_map(pack).collect();
     let written = file.write_all(&bytes).and_then(|()| file.sync_all());
-    written.map_err(|error| disk.fail("write", &open.path, error))
+    written.map_err(|error| disk.fail("write", &open.path, error))?;
+    disk.sync_dir(&folder(disk))
 }
 
 /// The head of a segment: one line of text, padded.

@@ -213,11 +213,11 @@ impl Store {
     pub fn finish(
         &self,
         mut claim: Guard,
-        task_text: &str,
+        task_text: impl Into<String>,
         artifact: Artifact,
         timing: &Timing,
     ) -> Result<(Record, Arc<Artifact>), StoreError> {
-        self.store(Some(&mut claim), task_text, artifact, timing)
+        self.store(Some(&mut claim), task_text.into(), artifact, timing)
     }
 
     /// Stores the result of a task that was not claimed.
@@ -230,18 +230,18 @@ impl Store {
         artifact: Artifact,
         timing: &Timing,
     ) -> Result<(Record, Arc<Artifact>), StoreError> {
-        self.store(None, task_text, artifact, timing)
+        self.store(None, task_text.to_owned(), artifact, timing)
     }
 
     fn store(
         &self,
         claim: Option<&mut Guard>,
-        task_text: &str,
+        task_text: String,
         artifact: Artifact,
         timing: &Timing,
     ) -> Result<(Record, Arc<Artifact>), StoreError> {
         let artifact = Arc::new(artifact.canonical());
-        let id = ObjectId { content: artifact.content_hash(), key: Key::of(task_text) };
+        let id = ObjectId { content: artifact.content_hash(), key: Key::of(&task_text) };
         let image = hdf5::encode(&artifact, task_text).map_err(StoreError::Unstorable)?;
         let durable = timing.seconds >= object::SYNC_FROM;
         let seal = object::write(&self.disk, &id, &image, durable, claim)?;

@@ -16,9 +16,11 @@ use super::StoreError;
 use super::disk::Disk;
 use super::object::{self, ObjectId};
 use crate::artifact::FirstBytes;
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::hash::BuildHasherDefault;
+use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
@@ -37,8 +39,10 @@ type Short = [u64; 2];
 #[derive(Default)]
 pub(super) struct Presence {
     asked: usize,
-    listed: Option<HashSet<Short, BuildHasherDefault<FirstBytes>>>,
+    listed: Option<Listed>,
 }
+
+type Listed = HashSet<Short, BuildHasherDefault<FirstBytes>>;
 
 impl Presence {
     /// Announces that `count` objects will be asked for.
@@ -47,11 +51,7 @@ impl Presence {
         if self.asked < LIST_FROM || self.listed.is_some() {
             return Ok(());
         }
-        let shards = list(disk)?;
-        let mut listed = HashSet::default();
-        listed.reserve(shards.iter().map(|shard| shard.names.len()).sum());
-        shards.iter().for_each(|shard| listed.extend(&shard.names));
-        self.listed = Some(listed);
+        self.listed = Some(list(disk)?);
         Ok(())
     }
 
@@ -82,29 +82,39 @@ impl Presence {
 }
 
 /// A folder of objects as it was listed.
-struct Shard {
+struct Shard<'a> {
     /// Inode, seconds and nanoseconds of its last change; nothing when they say nothing.
     state: Option<[u64; 3]>,
+    names: Cow<'a, [Short]>,
+}
+
+/// What an earlier listing says: all names, and which of them each folder holds that is still in the same state.
+#[derive(Debug, Default, PartialEq)]
+struct Known {
     names: Vec<Short>,
+    folders: HashMap<[u64; 3], Range<usize>>,
 }
 
 /// The objects of all folders; what is new in the listing is kept for the next time.
-fn list(disk: &Disk) -> Result<Vec<Shard>, StoreError> {
+fn list(disk: &Disk) -> Result<Listed, StoreError> {
     let file = disk.root.join("listing");
     let known = fs::read(&file).ok().and_then(|bytes| unpack(&bytes)).unwrap_or_default();
     let (mut shards, mut news) = (Vec::new(), false);
     for folder in object::shards(disk)? {
         let state = state(&folder);
-        let old = state.and_then(|state| known.get(&state));
+        let old = state.and_then(|state| known.folders.get(&state));
         news |= old.is_none() && state.is_some();
-        let names = old.cloned().unwrap_or_else(|| names(&folder));
+        let names = old.map_or_else(|| Cow::from(names(&folder)), |old| Cow::from(&known.names[old.clone()]));
         shards.push(Shard { state, names });
     }
     if news {
         // A store that cannot be written is listed each time.
         let _ = disk.replace(&file, &pack(&shards));
     }
-    Ok(shards)
+    let mut listed = Listed::default();
+    listed.reserve(shards.iter().map(|shard| shard.names.len()).sum());
+    shards.iter().for_each(|shard| listed.extend(shard.names.iter()));
+    Ok(listed)
 }
 
 fn names(folder: &Path) -> Vec<Short> {
@@ -129,7 +139,7 @@ fn state(_: &Path) -> Option<[u64; 3]> {
     None
 }
 
-fn pack(shards: &[Shard]) -> Vec<u8> {
+fn pack(shards: &[Shard<'_>]) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     for (state, names) in shards.iter().filter_map(|shard| Some((shard.state?, &shard.names))) {
         let words = state.into_iter().chain([names.len() as u64]).chain(names.iter().flatten().copied());
@@ -139,24 +149,24 @@ fn pack(shards: &[Shard]) -> Vec<u8> {
     bytes
 }
 
-fn unpack(bytes: &[u8]) -> Option<HashMap<[u64; 3], Vec<Short>>> {
+fn unpack(bytes: &[u8]) -> Option<Known> {
     let (body, check) = bytes.split_last_chunk::<32>()?;
     if blake3::hash(body).as_bytes() != check {
         return None;
     }
     let (words, []) = body.strip_prefix(MAGIC)?.as_chunks::<8>() else { return None };
     let mut words = words.iter().map(|word| u64::from_le_bytes(*word));
-    let mut shards = HashMap::new();
+    let mut known = Known { names: Vec::with_capacity(bytes.len() / size_of::<Short>()), folders: HashMap::new() };
     while let Some(inode) = words.next() {
         let state = [inode, words.next()?, words.next()?];
         let count = usize::try_from(words.next()?).ok()?;
-        let mut names = Vec::with_capacity(count.min(bytes.len()));
+        let first = known.names.len();
         for _ in 0..count {
-            names.push([words.next()?, words.next()?]);
+            known.names.push([words.next()?, words.next()?]);
         }
-        shards.insert(state, names);
+        known.folders.insert(state, first..first + count);
     }
-    Some(shards)
+    Some(known)
 }
 
 fn short(id: &ObjectId) -> Short {
@@ -184,13 +194,13 @@ mod tests {
     #[test]
     fn a_listing_is_read_as_it_was_written_or_not_at_all() {
         let shards = [
-            Shard { state: Some([1, 2, 3]), names: vec![[4, 5], [6, 7]] },
-            Shard { state: None, names: vec![[8, 9]] },
-            Shard { state: Some([9, 2, 3]), names: Vec::new() },
+            Shard { state: Some([1, 2, 3]), names: vec![[4, 5], [6, 7]].into() },
+            Shard { state: None, names: vec![[8, 9]].into() },
+            Shard { state: Some([9, 2, 3]), names: Vec::new().into() },
         ];
         let bytes = pack(&shards);
-        let expected = HashMap::from([([1, 2, 3], vec![[4, 5], [6, 7]]), ([9, 2, 3], Vec::new())]);
-        assert_eq!(unpack(&bytes), Some(expected));
+        let folders = HashMap::from([([1, 2, 3], 0..2), ([9, 2, 3], 2..2)]);
+        assert_eq!(unpack(&bytes), Some(Known { names: vec![[4, 5], [6, 7]], folders }));
         for place in 0..bytes.len() {
             let mut damaged = bytes.clone();
             damaged[place] ^= 1;

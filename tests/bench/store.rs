@@ -47,7 +47,7 @@ fn main() {
         Box::new(move || {
             for task in 0..tasks {
                 let Ok(Claim::Mine(claim)) = store.claim(&Key::of(&text(task))) else { panic!("not mine") };
-                store.finish(claim, &text(task), result(task as f64), &timing).expect("a record");
+                store.finish(claim, text(task), result(task as f64), &timing).expect("a record");
             }
         })
     });

@@ -224,6 +224,8 @@ fn slips_on_the_command_line_are_told_with_what_is_there() {
         (&["run", "w.toml", "--set", "workflow.seed=x"], 2, "found the text \"x\""),
         (&["run", "w.toml", "--set", "seed"], 2, "`seed` has no `=`"),
         (&["diff", "#7", "w.toml"], 2, "no recorded run #7"),
+        (&["diff", "7", "w.toml"], 2, "the recorded run 7 is written '#7'"),
+        (&["run", "w.toml", "--jobs", "0"], 2, "a whole number of 1 or more"),
     ];
     for (arguments, code, wanted) in cases {
         let found = complaint(&space, arguments, *code);
@@ -231,6 +233,8 @@ fn slips_on_the_command_line_are_told_with_what_is_there() {
     }
     space.run(&[]);
     assert!(complaint(&space, &["show", "w.toml", "rows[4]"], 2).contains("`rows` has 3 rows"));
+    let whole = complaint(&space, &["show", "w.toml", "grid[1]"], 2);
+    assert!(whole.contains("`grid` is one result and has no rows; see flow show w.toml grid"), "{whole}");
 }
 
 /// The command that the summary of a failed run ends with, typed into a shell.

@@ -1,7 +1,9 @@
-//! Every command of the README, run in order, on a campaign that has the names of c30.toml and takes seconds.
+//! Every command of the README, run in order, on a campaign that has the names of c30.toml and takes seconds; and the
+//! links of all pages.
 
 use crate::space::{Space, told};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
+use std::process::Command;
 
 const README: &str = include_str!("../../README.md");
 
@@ -84,4 +86,55 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
     }
     let space = Space::new();
     space.stdout(&plan.iter().map(String::as_str).collect::<Vec<_>>());
+}
+
+/// Pages for people who look at the repository, by their path in it.
+const PAGES: [&str; 4] = ["README.md", "workflows/c30/README.md", "store/README.md", "tests/engine/VALIDATION.md"];
+
+/// What the links and pictures of a Markdown text point to.
+fn links(text: &str) -> Vec<&str> {
+    let markdown = text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next());
+    let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
+    markdown.chain(pictures).map(|link| link.split('#').next().unwrap_or(link)).collect()
+}
+
+/// Files of the repository, when this is a clone and not an unpacked archive.
+fn committed(root: &Path) -> Option<Vec<PathBuf>> {
+    let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(root).output().ok()?;
+    let names = String::from_utf8(listed.stdout).ok()?;
+    let files: Vec<PathBuf> = names.split_terminator('\0').map(PathBuf::from).collect();
+    (listed.status.success() && files.contains(&PathBuf::from("Cargo.toml"))).then_some(files)
+}
+
+#[test]
+fn every_link_of_the_pages_leads_to_a_file_of_the_repository() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let committed = committed(root);
+    let (mut faults, mut seen) = (Vec::new(), 0);
+    for page in PAGES {
+        let text = std::fs::read_to_string(root.join(page)).unwrap();
+        let relative = |link: &&str| !link.is_empty() && !link.contains("://") && !link.starts_with("mailto:");
+        for link in links(&text).into_iter().filter(relative) {
+            seen += 1;
+            let mut path = PathBuf::new();
+            for part in Path::new(page).parent().unwrap().join(link).components() {
+                match part {
+                    Component::ParentDir => assert!(path.pop(), "{page}: {link} leaves the repository"),
+                    part => path.push(part),
+                }
+            }
+            let is_committed = |files: &Vec<PathBuf>| files.iter().any(|file| file.starts_with(&path));
+            if !root.join(&path).exists() || !committed.as_ref().is_none_or(is_committed) {
+                faults.push(format!("{page}: {link}"));
+            }
+        }
+    }
+    assert!(seen >= 5, "only {seen} links were found");
+    assert_eq!(faults, Vec::<String>::new());
+}
+
+#[test]
+fn links_are_found_in_every_form() {
+    let text = "[a](x/y.md#part) ![b](z.svg \"title\") <img src=\"w.png\"> [c](https://a.b/c) [d](#here)";
+    assert_eq!(links(text), ["x/y.md", "z.svg", "https://a.b/c", "", "w.png"]);
 }

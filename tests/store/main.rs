@@ -60,7 +60,7 @@ fn run(store: &Store, count: u64, computing: impl Fn(u64)) -> Vec<Record> {
         match store.claim(&Key::of(&text(number))).expect("the store can be locked") {
             Claim::Mine(claim) => {
                 computing(number);
-                return store.finish(claim, &text(number), result(number), &timing()).expect("the result is stored").0;
+                return store.finish(claim, text(number), result(number), &timing()).expect("the result is stored").0;
             }
             Claim::Done(record) => return record,
             Claim::Theirs(waiting) => assert!(waiting.wait(|| false)),

@@ -53,6 +53,25 @@ fn deep_files_are_refused() {
     }
 }
 
+/// The TOML reader does not say where a key of too many parts stands.
+#[test]
+fn a_key_that_is_nested_too_deeply_is_pointed_at() {
+    let key = vec!["a"; 20_000].join(".");
+    let quoted = vec!["\"a b\""; 200].join(" . ");
+    let texts = [
+        (format!("[workflow]\nseed = 1\n{key} = 1\n[stage.b]\n"), (3, 1), key.len()),
+        (format!("[workflow]\nseed = 1\nx = {{ y = 1, {key} = 1 }}\n"), (3, 14), key.len()),
+        (format!("about = \"{}\"\n[[{key}]]\n", ".".repeat(200)), (2, 3), key.len()),
+        (format!("# {}\n\t{quoted} = 1\n", "a,".repeat(200)), (2, 2), quoted.len()),
+    ];
+    for (text, place, length) in texts {
+        let faults = parse("deep.toml", &text, &Overrides::default()).err().unwrap_or_default();
+        let deep = faults.iter().find(|fault| fault.message == "nested too deeply").unwrap();
+        let found = deep.place.as_ref().unwrap();
+        assert_eq!((found.line_column(), found.span.len()), (place, length), "{text:.90}");
+    }
+}
+
 /// Large and wrong everywhere: the faults that are told are bounded.
 #[test]
 fn faults_are_bounded() {

@@ -69,7 +69,10 @@ fn ascending(mut values: Vec<f64>) -> Vec<f64> {
 /// Balance and orthogonality.
 pub fn balance(table: &DesignTable) -> Balance {
     let all_runs: Vec<Levels> = (0..table.factors.len()).map(|j| levels(table, j)).collect();
-    let columns: Vec<Levels> = (0..table.factors.len()).map(|j| without_centre(table, j)).collect();
+    let with_centre = table.point_type.contains(&PointType::Centre);
+    let apart: Option<Vec<Levels>> =
+        with_centre.then(|| (0..table.factors.len()).map(|j| without_centre(table, j)).collect());
+    let columns = apart.as_ref().unwrap_or(&all_runs);
     let counts = |(cells, values): &Levels| {
         let mut counts: Vec<(f64, usize)> = values.iter().map(|&v| (v, 0)).collect();
         cells.iter().for_each(|&level| counts[level].1 += 1);
@@ -80,7 +83,7 @@ pub fn balance(table: &DesignTable) -> Balance {
     let (largest_correlation, worst) = correlation(table);
     let sampled = table.point_type.contains(&PointType::Sample);
     let discrete = !sampled && columns.iter().all(|(_, values)| values.len() <= MOST_LEVELS);
-    let bad = discrete.then(|| disproportional(&columns, &of_columns));
+    let bad = discrete.then(|| disproportional(columns, &of_columns));
     let first = bad.as_ref().and_then(|b| b.first()).map(|&(a, b)| (name(a), name(b)));
     Balance {
         factors: all_runs
@@ -92,7 +95,7 @@ pub fn balance(table: &DesignTable) -> Balance {
         worst: worst.map(|(a, b)| (name(a), name(b))),
         disproportional_pairs: bad.map(|b| b.len()),
         disproportional: first,
-        strength: discrete.then(|| strength(&columns)).flatten(),
+        strength: discrete.then(|| strength(columns)).flatten(),
     }
 }
 
@@ -105,7 +108,8 @@ fn correlation(table: &DesignTable) -> (f64, Option<(usize, usize)>) {
         let length = centred.iter().map(|x| x * x).sum::<f64>().sqrt();
         centred.into_iter().map(|x| if length > 0.0 { x / length } else { 0.0 }).collect::<Vec<f64>>()
     };
-    let columns: Vec<Vec<f64>> = (0..table.factors.len()).map(unit).collect();
+    let several = table.factors.len() > 1;
+    let columns: Vec<Vec<f64>> = (0..table.factors.len()).filter(|_| several).map(unit).collect();
     let mut worst = (0.0, None);
     for b in 1..columns.len() {
         for a in 0..b {

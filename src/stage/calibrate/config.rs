@@ -282,7 +282,7 @@ impl Calibrate {
                     let complaint = |fault: &Error| Complaint::new(self.key_of(fault), fault.to_string());
                     found.extend(params.faults().iter().map(complaint));
                 }
-                Err(error) => found.push(Complaint { path: Vec::new(), message: error.message, hint: error.hint }),
+                Err(error) => found.push(Complaint { hint: error.hint, ..Complaint::new("", error.message) }),
             }
         }
         found

@@ -1,8 +1,8 @@
 //! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
 
-use super::super::{Complaint, Context, StageError};
+use super::super::{Complaint, Context, Parameter, StageError};
 use crate::dem::test::loading::{Loading, Rule, TestKind};
-use crate::dem::test::material::{BondKind, Bonded, Bonding, Material, Unbonded};
+use crate::dem::test::material::{BondKind, Bonded, Bonding, Material, MaterialError, Unbonded};
 use crate::dem::test::rig::Machine;
 use crate::dem::{Convention, Masses};
 use crate::unit::{Angle, Dimension, Pressure, Velocity};
@@ -194,29 +194,43 @@ impl Simulate {
             faults.push(Complaint::new("material", message).hint(format!("known: {}", known.join(", "))));
             return faults;
         };
-        for (path, dimension) in MICROPARAMETERS {
-            match values.get(path) {
-                None => {
-                    let message = format!("[material.{}] lacks `{path}`", self.material);
-                    faults.push(Complaint::new("material", message).hint("every contact group needs its values"));
+        faults.extend(self.material_faults(values));
+        // What it lacks was told already.
+        let mut base: BTreeMap<String, f64> = MICROPARAMETERS.map(|(path, _)| (path.to_owned(), 1.0)).into();
+        base.extend(values.iter().map(|(path, parameter)| (path.clone(), parameter.value)));
+        let outside = assembled(&base, self.bond.bonding()).map_or_else(|_| Vec::new(), |material| material.faults());
+        faults.extend(outside.into_iter().map(|MaterialError { group, name, expected, .. }| {
+            let complaint = Complaint::new(&format!("{group}.{name}"), format!("`{group}.{name}` must be {expected}"));
+            if group == "bond" { complaint } else { complaint.in_material(&self.material) }
+        }));
+        faults
+    }
+
+    /// Microparameters that are missing, of another kind, or unknown.
+    fn material_faults(&self, values: &BTreeMap<String, Parameter>) -> Vec<Complaint> {
+        let known = || MICROPARAMETERS.iter().map(|(path, _)| *path);
+        let mut faults = Vec::new();
+        for (path, wanted) in MICROPARAMETERS {
+            let complaint = match values.get(path) {
+                None => Complaint::new(path, format!("[material.{}] lacks `{path}`", self.material))
+                    .hint("every contact group needs its values"),
+                Some(found) if found.dimension != wanted => {
+                    let message = match (wanted == Dimension::NONE, found.dimension == Dimension::NONE) {
+                        (true, _) => format!("`{path}` is a pure number and has no unit"),
+                        (_, true) => format!("`{path}` needs a unit, found the number {}", found.value),
+                        (false, false) => format!("`{path}` is a stress and cannot have this unit"),
+                    };
+                    let form = if wanted == STRESS { "\"16 GPa\"" } else { "2.5" };
+                    Complaint::new(path, message).hint(format!("write for example {form}"))
                 }
-                Some(value) if value.dimension != dimension => {
-                    let message = format!("[material.{}]: `{path}` has another unit than it needs", self.material);
-                    let hint = if dimension == STRESS { "write for example \"16 GPa\"" } else { "it is a pure number" };
-                    faults.push(Complaint::new("material", message).hint(hint));
-                }
-                Some(_) => {}
-            }
+                Some(_) => continue,
+            };
+            faults.push(complaint.in_material(&self.material));
         }
-        for path in values.keys().filter(|path| MICROPARAMETERS.iter().all(|known| known.0 != path.as_str())) {
-            let known: Vec<&str> = MICROPARAMETERS.iter().map(|known| known.0).collect();
-            let message = format!("[material.{}]: `{path}` is not a microparameter", self.material);
-            faults.push(Complaint::new("material", message).hint(format!("known: {}", known.join(", "))));
-        }
-        let complete = MICROPARAMETERS.iter().all(|known| values.contains_key(known.0));
-        if complete {
-            let base = values.iter().map(|(path, parameter)| (path.clone(), parameter.value)).collect();
-            faults.extend(material(&base, self.bond.bonding()).err().map(|e| Complaint::new("material", e.message)));
+        for path in values.keys().filter(|path| known().all(|known| known != path.as_str())) {
+            let complaint = Complaint::new(path, format!("`{path}` is not a microparameter"));
+            let hint = format!("known: {}", known().collect::<Vec<_>>().join(", "));
+            faults.push(complaint.in_material(&self.material).hint(hint));
         }
         faults
     }
@@ -253,6 +267,16 @@ impl Simulate {
 /// # Errors
 /// A value is missing or outside the domain of its law.
 pub(super) fn material(values: &BTreeMap<String, f64>, bonding: Bonding) -> Result<Material, StageError> {
+    let material = assembled(values, bonding)?;
+    let faults = material.faults();
+    if faults.is_empty() {
+        return Ok(material);
+    }
+    Err(StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
+}
+
+/// The material of parameters by path, whatever their values.
+fn assembled(values: &BTreeMap<String, f64>, bonding: Bonding) -> Result<Material, StageError> {
     let get =
         |path: &str| values.get(path).copied().ok_or_else(|| StageError::new(format!("the material lacks `{path}`")));
     let bonded = |group: &str| -> Result<Bonded, StageError> {
@@ -269,10 +293,5 @@ pub(super) fn material(values: &BTreeMap<String, f64>, bonding: Bonding) -> Resu
         stiffness_ratio: get("aggregate.kn_ks")?,
         friction: get("aggregate.mu")?,
     };
-    let material = Material { mortar: bonded("mortar")?, aggregate, interface: bonded("interface")?, bonding };
-    let faults = material.faults();
-    if faults.is_empty() {
-        return Ok(material);
-    }
-    Err(StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
+    Ok(Material { mortar: bonded("mortar")?, aggregate, interface: bonded("interface")?, bonding })
 }

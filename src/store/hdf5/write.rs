@@ -20,15 +20,16 @@ const CHUNK: usize = 1 << 20;
 /// # Errors
 /// [`Hdf5Error::Unstorable`] for a text with a NUL character, an array whose shape does not fit its values, groups
 /// nested too deeply.
-pub(in crate::store) fn encode(artifact: &Artifact, task_text: &str) -> Result<Vec<u8>, Hdf5Error> {
+pub(in crate::store) fn encode(artifact: &Artifact, task_text: impl Into<String>) -> Result<Vec<u8>, Hdf5Error> {
+    let task_text = task_text.into();
     let mut file = FileBuilder::new();
-    check_text(task_text, "task")?;
+    check_text(&task_text, "task")?;
     check_text(&artifact.kind, "kind")?;
     // The task text may be long, so the root has a heap of its own anyway.
     file.set_attr("kind", AttrValue::VarLenString(artifact.kind.clone()));
     file.set_attr("version", AttrValue::I64(i64::from(artifact.version)));
     file.set_attr("layout", AttrValue::I64(LAYOUT));
-    file.set_attr("task", AttrValue::VarLenString(task_text.to_owned()));
+    file.set_attr("task", AttrValue::VarLenString(task_text));
     put_group(&mut file, &artifact.root, "", 0)?;
     Ok(file.finish()?)
 }
