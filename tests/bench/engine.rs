@@ -1,17 +1,26 @@
 //! Time of a bonded contact and step in a whole uniaxial test: walls, contact search, measurement and cracks included.
 //!
-//! `cargo bench --bench engine -- [2d|3d] [PARTICLES] [full]`: makes a dense random packing with the engine itself, bonds
+//! `cargo bench --bench engine -- [2d|3d] [PARTICLES] [books] [full]`: makes a dense random packing with the engine itself, bonds
 //! it, and compresses it between two platens. Every figure is the best and the median of several stretches of the test,
-//! because other work on the machine only ever adds time. `full` runs one test past its peak instead.
+//! because other work on the machine only ever adds time. `full` runs one test past its peak instead; `books` keeps the
+//! books of energy, as the stages do.
+//!
+//! Specimens of all sizes go through the same strains: the platens' speed follows the height, and no stretch has more steps
+//! than that of the usual size. Otherwise a small one would be past its peak, with more contacts than bonds.
 
 use flow::dem::simd::Width;
 use flow::dem::space::Tuple;
 use flow::dem::*;
 use flow::math::random::Stream;
+use rustix::time::{ClockId, clock_gettime};
 use std::time::Instant;
 
 const MORTAR: Group = Group(0);
 const PLATEN: Group = Group(1);
+
+/// The usual sizes.
+const PLANE: usize = 22_000;
+const SOLID: usize = 70_000;
 
 /// Linear contacts, parallel bonds between balls, smooth platens.
 fn table(friction: f64) -> ContactTable {
@@ -107,10 +116,10 @@ fn specimen<S: Space>(count: usize, speed: f64) -> (Engine<S>, Vector<S>) {
     (engine, size)
 }
 
-/// Time of the wall, or of this thread alone where the system tells it: other work on the machine does not count then.
+/// Time of the wall, or of this thread alone: other work on the machine does not count then.
 struct Clock {
     wall: Instant,
-    own: Option<f64>,
+    own: f64,
 }
 
 impl Clock {
@@ -119,16 +128,13 @@ impl Clock {
     }
 
     /// Seconds that this thread ran.
-    fn own() -> Option<f64> {
-        let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-        Some(text.split(' ').next()?.parse::<f64>().ok()? * 1e-9)
+    fn own() -> f64 {
+        let time = clock_gettime(ClockId::ThreadCPUTime);
+        time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
     }
 
     fn elapsed(&self, alone: bool) -> f64 {
-        match (alone, self.own, Self::own()) {
-            (true, Some(start), Some(end)) => end - start,
-            _ => self.wall.elapsed().as_secs_f64(),
-        }
+        if alone { Self::own() - self.own } else { self.wall.elapsed().as_secs_f64() }
     }
 }
 
@@ -159,9 +165,13 @@ fn memory() -> Option<f64> {
     Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024.0)
 }
 
-fn rates<S: Space>(count: usize) {
-    let (mut engine, _) = specimen::<S>(count, 0.02);
-    let steps = (20_000_000 / engine.bond_count().max(1)).clamp(50, 5000) as u64;
+fn rates<S: Space>(count: usize, usual: usize, books: bool) {
+    let speed = 0.02 * (count as f64 / usual as f64).powf(1.0 / S::DIMENSION as f64);
+    let (mut engine, _) = specimen::<S>(count, speed);
+    if books {
+        engine.keep_books();
+    }
+    let steps = (20_000_000 / engine.bond_count().max(1)).clamp(50, 400) as u64;
     for threads in [1, 2] {
         engine.set_threads(threads);
         for width in [Width::One, Width::Four, Width::Eight].into_iter().filter(|w| w.available()) {
@@ -212,12 +222,13 @@ fn main() {
     let solid = words.iter().any(|w| w == "3d");
     let number = words.iter().find_map(|w| w.parse().ok());
     let whole = words.iter().any(|w| w == "full");
+    let books = words.iter().any(|w| w == "books");
     let threads = if words.iter().any(|w| w == "one") { 1 } else { 2 };
     let masses = if words.iter().any(|w| w == "equal") { Masses::EqualStep } else { Masses::Real };
     match (solid, whole) {
-        (false, false) => rates::<D2>(number.unwrap_or(22_000)),
-        (true, false) => rates::<D3>(number.unwrap_or(70_000)),
-        (false, true) => full::<D2>(number.unwrap_or(22_000), threads, masses),
-        (true, true) => full::<D3>(number.unwrap_or(70_000), threads, masses),
+        (false, false) => rates::<D2>(number.unwrap_or(PLANE), PLANE, books),
+        (true, false) => rates::<D3>(number.unwrap_or(SOLID), SOLID, books),
+        (false, true) => full::<D2>(number.unwrap_or(PLANE), threads, masses),
+        (true, true) => full::<D3>(number.unwrap_or(SOLID), threads, masses),
     }
 }

@@ -21,10 +21,13 @@ fn families() -> Vec<Family> {
     vec![
         crate::impact::family(),
         crate::friction::family(),
+        crate::rest::family(),
+        crate::stiffness::family(),
         crate::incremental::family(),
         crate::bond::family(),
         crate::beam::family(),
         crate::lattice::family(),
+        crate::disc::family(),
         crate::packing::family(),
         crate::step::family(),
         crate::clump::family(),

@@ -5,10 +5,10 @@ use crate::dem::boundary::Image;
 use crate::dem::law::{
     BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Viscous,
 };
-use crate::dem::simd::{Lane, Quad, Row, WIDEST, prefetch};
+use crate::dem::simd::{Lane, Quad, Row, WIDEST, prefetch, prefetch_rows};
 use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
 
-/// Blocks between the one at work and the one whose second ends are asked for.
+/// Blocks between the one at work and the one whose memory and second ends are asked for.
 const AHEAD: usize = 2;
 
 /// The side of a wall that balls see, now.
@@ -131,7 +131,13 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
 ) {
     let viscous = constants.dashpot != [0.0; 2];
     let dt = L::splat(task.dt);
-    for (b, (ends, rows)) in chunk.ends.iter().zip(chunk.rows.chunks_exact_mut(K::ROWS)).enumerate() {
+    let mut after = &mut chunk.rows[..];
+    for (b, ends) in chunk.ends.iter().enumerate() {
+        let (rows, rest) = after.split_at_mut(K::ROWS);
+        after = rest;
+        if let Some(next) = after.get((AHEAD - 1) * K::ROWS..AHEAD * K::ROWS) {
+            prefetch_rows(next);
+        }
         if let Some(next) = chunk.ends.get(b + AHEAD) {
             for &j in &next[1] {
                 prefetch(task.records, S::RECORD, j);

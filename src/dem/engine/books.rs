@@ -6,7 +6,7 @@ use crate::dem::measure::{Energy, stored};
 use crate::dem::space::Space;
 
 impl<S: Space> Engine<S> {
-    /// Begins to keep the books of energy (a few per cent of the time of a run); see [`crate::dem::measure::energy`].
+    /// Begins to keep the books of energy, which takes time in every step (`cargo bench --bench engine -- books`); see [`crate::dem::measure::energy`].
     ///
     /// Changes between runs (radii, tables, bonds, prescribed velocities) are not booked: begin anew after one.
     pub fn keep_books(&mut self) {

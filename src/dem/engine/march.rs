@@ -264,6 +264,7 @@ fn accelerated(velocity: Quad, load: Quad, inverse: Quad, damping: f64, dt: f64)
 }
 
 /// Work of local damping, and of whatever holds the prescribed components, with the mean of the old and new velocity.
+#[inline(always)]
 fn book(spent: &mut [f64; 2], load: Quad, inverse: Quad, [before, after]: [Quad; 2], damping: f64, dt: f64) {
     for k in 0..4 {
         let way = 0.5 * (before.0[k] + after.0[k]) * dt;

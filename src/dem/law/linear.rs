@@ -40,7 +40,7 @@ pub(crate) fn spring<S: Space, L: Lane>(
     let shear = S::limited(trial, limit);
     store_shear::<S, L>(rows, SHEAR, at, shear);
     if ledger.open() {
-        ledger.charge(SLIP, at, slip_energy::<S, L>(old, trial, shear, ks));
+        charge_slip::<S, L>(old, trial, shear, ks, ledger, at);
     }
     let Some(viscous) = viscous else { return (compression, shear) };
     let touching = overlap.above(zero);
@@ -68,6 +68,23 @@ pub(crate) fn followed<L: Lane>(reference: L, gap: L) -> L {
 pub(crate) fn slip_energy<S: Space, L: Lane>(old: S::Shear<L>, trial: S::Shear<L>, new: S::Shear<L>, ks: L) -> L {
     let slip = trial.minus(new);
     L::splat(0.5) * old.plus(new).dot(slip) / ks.max(L::splat(f64::MIN_POSITIVE))
+}
+
+/// Books the friction work where there is any: most contacts stick in most steps.
+#[inline(always)]
+fn charge_slip<S: Space, L: Lane>(
+    old: S::Shear<L>,
+    trial: S::Shear<L>,
+    new: S::Shear<L>,
+    ks: L,
+    ledger: &mut Ledger<'_>,
+    at: usize,
+) {
+    let work = old.plus(new).dot(trial.minus(new));
+    let none = L::splat(f64::from_bits(1)).above(work.abs());
+    if L::bits(none) != L::ALL {
+        ledger.charge(SLIP, at, slip_energy::<S, L>(old, trial, new, ks));
+    }
 }
 
 impl<S: Space> Law<S> for LinearLaw {

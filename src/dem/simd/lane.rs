@@ -65,6 +65,8 @@ pub trait Lane:
     type Mask: Copy;
     /// Contacts in one lane value; divides [`WIDEST`].
     const WIDTH: usize;
+    /// One bit per contact, all set.
+    const ALL: u8 = (u16::MAX >> (16 - Self::WIDTH)) as u8;
     /// The same number everywhere.
     fn splat(x: f64) -> Self;
     /// Contacts `at … at + WIDTH` of a row.

@@ -23,6 +23,6 @@ mod width;
 
 pub(crate) use exchange::{Board, Rows, Same, Update, exchange};
 pub use lane::{Lane, Quad, Row, WIDEST};
-pub(crate) use table::{Table, prefetch};
+pub(crate) use table::{Table, prefetch, prefetch_rows};
 pub use width::Width;
 pub(crate) use width::{Kernel, dispatch};

@@ -1,6 +1,6 @@
 //! A table of rows that begins at a cache line.
 
-use super::Quad;
+use super::{Quad, Row};
 use std::ops::{Deref, DerefMut};
 
 /// Rows that begin at a multiple of 64 bytes, so that a record of two rows never lies across two cache lines.
@@ -29,6 +29,16 @@ pub(crate) fn prefetch(table: &[Quad], rows: usize, k: u32) {
             // SAFETY: a hint about an address inside the table; it reads nothing.
             unsafe { std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(quad.0.as_ptr().cast()) }
         }
+    }
+}
+
+/// Asks for the rows of a block ahead of their use.
+#[inline(always)]
+pub(crate) fn prefetch_rows(rows: &[Row]) {
+    #[cfg(target_arch = "x86_64")]
+    for row in rows {
+        // SAFETY: a hint about an address inside the slice; it reads nothing.
+        unsafe { std::arch::x86_64::_mm_prefetch::<{ std::arch::x86_64::_MM_HINT_T0 }>(row.0.as_ptr().cast()) }
     }
 }
 

@@ -103,8 +103,16 @@ impl Space for D3 {
 
     #[inline(always)]
     fn limited<L: Lane>(shear: [L; 3], limit: L) -> [L; 3] {
-        let length = shear.norm().max(L::splat(f64::MIN_POSITIVE));
-        shear.times((limit / length).min(L::splat(1.0)))
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let square = shear.dot(shear);
+        // Where nothing slips the factor is 1, and without a limit 0: no root and no division are needed.
+        let sticks = (limit * limit * L::splat(1.0 - 1e-9)).above(square);
+        let free = L::splat(f64::from_bits(1)).above(limit);
+        if L::bits(L::or(sticks, free)) == L::ALL {
+            return shear.times(L::select(sticks, one, zero));
+        }
+        let length = square.sqrt().max(L::splat(f64::MIN_POSITIVE));
+        shear.times((limit / length).min(one))
     }
 
     #[inline(always)]
@@ -204,5 +212,25 @@ impl Space for D3 {
         // Columns of the inverse are the cross products of the rows over the determinant.
         let columns = [cross(b, c), cross(c, a), cross(a, b)].map(|v: [f64; 3]| v.times(1.0 / determinant));
         positive.then(|| std::array::from_fn(|k| [columns[0][k], columns[1][k], columns[2][k]]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Stream;
+
+    #[test]
+    fn a_limit_has_the_bits_of_its_formula() {
+        let mut stream = Stream::new(8, "shear", 0);
+        for _ in 0..20_000 {
+            let shear: [f64; 3] = std::array::from_fn(|_| stream.normal());
+            let length = shear.norm();
+            for share in [0.0, 0.5, 1.0 - 1e-9, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 1.0 + 1e-9, 2.0] {
+                let limit = share * length;
+                let plain = shear.times((limit / length.max(f64::MIN_POSITIVE)).min(1.0));
+                assert_eq!(D3::limited(shear, limit).map(f64::to_bits), plain.map(f64::to_bits), "{shear:?} {share}");
+            }
+        }
     }
 }
