@@ -10,6 +10,8 @@ use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
 
 /// Blocks between the one at work and the one whose memory and second ends are asked for.
 const AHEAD: usize = 2;
+/// Rows of a block from which on its memory is worth asking for; shorter ones the machine foresees by itself.
+const LONG: usize = 12;
 
 /// The side of a wall that balls see, now.
 #[derive(Clone, Copy, Debug)]
@@ -135,7 +137,9 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
     for (b, ends) in chunk.ends.iter().enumerate() {
         let (rows, rest) = after.split_at_mut(K::ROWS);
         after = rest;
-        if let Some(next) = after.get((AHEAD - 1) * K::ROWS..AHEAD * K::ROWS) {
+        if K::ROWS >= LONG
+            && let Some(next) = after.get((AHEAD - 1) * K::ROWS..AHEAD * K::ROWS)
+        {
             prefetch_rows(next);
         }
         if let Some(next) = chunk.ends.get(b + AHEAD) {

@@ -131,7 +131,8 @@ impl<S: Space> Law<S> for ParallelBondLaw {
             twist: old.twist + ks * gyration * L::splat(2.0) * touch.twist,
         };
         let capacity = [L::load(&rows[Rows::<S>::TENSION], at), L::load(&rows[Rows::<S>::COHESION], at)];
-        let breaks = if cement.surely_holds(constants, radius, capacity) {
+        // In the plane there are no roots to save.
+        let breaks = if S::SHEAR > 1 && cement.surely_holds(constants, radius, capacity) {
             None
         } else {
             let [tension, sheared] = cement.exceeds(constants, radius, capacity);
