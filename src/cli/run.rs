@@ -9,7 +9,7 @@ use crate::plan::Workflow;
 use crate::report::duration;
 use crate::run::{Past, Report, Settings, StageStatus, TaskState, Watch, record, run};
 use crate::store::Store;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -26,12 +26,22 @@ pub(super) struct Run {
     /// Tasks at once; the number of cores when not given.
     #[arg(long, short, value_name = "N", value_parser = workers)]
     jobs: Option<usize>,
+    /// What runs the tasks.
+    #[arg(long, value_enum, value_name = "NAME", default_value = "threads")]
+    executor: Executor,
     /// Go on with what does not depend on a failed task.
     #[arg(long)]
     keep_going: bool,
     /// Print one JSON document at the end.
     #[arg(long)]
     json: bool,
+}
+
+/// What can run tasks.
+#[derive(Clone, Copy, ValueEnum)]
+enum Executor {
+    /// Threads of this process.
+    Threads,
 }
 
 impl Run {
@@ -51,7 +61,9 @@ impl Run {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
         };
-        let report = run(&workflow, &store, &settings, &*watch, &stop);
+        let report = match self.executor {
+            Executor::Threads => run(&workflow, &store, &settings, &*watch, &stop),
+        };
         drop(watch);
         for damage in store.take_damages() {
             eprintln!("warning: {damage}");

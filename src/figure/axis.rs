@@ -308,7 +308,16 @@ mod tests {
         assert_eq!(significant(0.012345, 3), "0.0123");
     }
 
+    /// Found by chance: a range of which the round numbers gave one tick.
+    #[test]
+    fn a_range_between_round_numbers_has_two_ticks() {
+        let low = -980_840.928_315_904_1;
+        let axis = Axis::between("x", Scale::Linear, low, low + 935_353.384_523_406_4, 3);
+        assert!((2..=7).contains(&axis.ticks.len()), "{:?}", axis.ticks);
+    }
+
     proptest::proptest! {
+        #![proptest_config(proptest::test_runner::Config { failure_persistence: None, ..Default::default() })]
         #[test]
         fn ticks_lie_inside_and_are_few(low in -1e6..1e6f64, length in 1e-6..1e6f64, want in 3usize..9) {
             let axis = Axis::between("x", Scale::Linear, low, low + length, want);

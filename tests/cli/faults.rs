@@ -226,6 +226,7 @@ fn slips_on_the_command_line_are_told_with_what_is_there() {
         (&["diff", "#7", "w.toml"], 2, "no recorded run #7"),
         (&["diff", "7", "w.toml"], 2, "the recorded run 7 is written '#7'"),
         (&["run", "w.toml", "--jobs", "0"], 2, "a whole number of 1 or more"),
+        (&["run", "w.toml", "--executor", "slurm"], 2, "[possible values: threads]"),
     ];
     for (arguments, code, wanted) in cases {
         let found = complaint(&space, arguments, *code);
