@@ -4,6 +4,7 @@ use super::Exit;
 use super::common::{Campaign, provenance, system};
 use super::progress::Silent;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
+use crate::math::elementary::log10;
 use crate::plan::Workflow;
 use crate::run::{Report, Settings, StageStatus, run};
 use crate::store::{ObjectId, Store};
@@ -180,7 +181,7 @@ fn short(values: &Values) -> Vec<String> {
         0.0 => "0".to_owned(),
         size if !(1e-4..1e7).contains(&size) => format!("{v:.5e}"),
         size => {
-            let decimals = (6 - size.log10().floor() as i32).max(0) as usize;
+            let decimals = (6 - log10(size).floor() as i32).max(0) as usize;
             let text = format!("{v:.decimals$}");
             if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
         }

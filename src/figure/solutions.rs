@@ -1,12 +1,11 @@
 //! Sets of parameters as lines over parallel axes, one axis per factor from its lower to its upper bound.
 //!
-//! Each line is a solution; its colour is its misfit (good ones dark and drawn last), or, for several targets, the
-//! target's. The best of each target is heavy.
+//! Each line is a solution. For one target its colour is its misfit (good ones dark and drawn last); several targets
+//! stand one below the other on the same axes, each in its own colour. The best of each target is heavy.
 
 use super::axis::{Axis, Scale, extent, fixed, significant};
 use super::column::Column;
 use super::contour::Bands;
-use super::legend::{self, Entry, Swatch};
 use super::palette::{self, INK, SOFT};
 use super::panel::draw_marker;
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
@@ -35,31 +34,36 @@ pub struct Solutions {
     pub sets: Vec<SolutionSet>,
 }
 
+/// Free height between the panels of two targets.
+const BETWEEN: f64 = 3.0;
+
 impl Figure for Solutions {
     fn scene(&self, style: &Style) -> Scene {
         let size = style.size();
-        let several = !self.graded();
-        let mut scene = Scene::new(style.width, (0.42 * style.width).max(52.0));
+        let (head, foot) = (3.6 * size + 1.5, 2.2 * size);
+        let count = self.sets.len().max(1);
+        let panel = self.panel_height(style);
+        let height = head + count as f64 * panel + (count - 1) as f64 * BETWEEN + foot;
+        let mut scene = Scene::new(style.width, height);
         scene.title = "Calibrated parameter sets".into();
         scene.description = self.describe();
-        let entries = if self.sets.len() > 1 { self.entries() } else { Vec::new() };
-        let top = legend::height(&entries, style.width - 10.0, style);
-        legend::draw(&mut scene, &entries, Rect::new(4.0, 0.8, style.width - 8.0, 0.0), style);
-        let misfits = || self.sets.iter().flat_map(|s| s.misfit.iter().copied());
-        let (low, high) = extent(misfits());
+        let (low, high) = extent(self.sets.iter().flat_map(|s| s.misfit.iter().copied()));
         let bands = Bands::of(low, high, &Quantity::new("Misfit", "f", ""));
-        let bar_width = if several { 0.0 } else { bands.width(style) + 3.0 };
-        let area = Rect {
-            left: 9.0,
-            right: style.width - 9.0 - bar_width,
-            top: top + 3.6 * size + if several { 2.0 } else { 1.0 },
-            bottom: scene.height - 2.2 * size,
-        };
-        self.draw_lines(&mut scene, area, style, (low, high));
-        self.draw_axes(&mut scene, area, style);
-        if !several {
-            let bar = Rect::new(style.width - 0.8 - bands.width(style), area.top, 3.0, area.height());
-            bands.draw_smooth_bar(&mut scene, bar, style);
+        let bar_width = if self.graded() { bands.width(style) + 3.0 } else { 0.0 };
+        let left = if count > 1 { 9.0 + 1.5 * size } else { 9.0 };
+        for (i, set) in self.sets.iter().enumerate() {
+            let top = head + i as f64 * (panel + BETWEEN);
+            let area = Rect { left, right: style.width - 9.0 - bar_width, top, bottom: top + panel };
+            self.draw_lines(&mut scene, area, style, (i, set), (low, high));
+            self.draw_axes(&mut scene, area, style, [i == 0, i + 1 == count]);
+            if count > 1 {
+                let at = [0.6 + 0.75 * size, 0.5 * (area.top + area.bottom)];
+                scene.text(Line::new(&set.name, size), at, Anchor::Middle, 90.0, INK);
+            }
+            if self.graded() {
+                let bar = Rect::new(style.width - 0.8 - bands.width(style), area.top, 3.0, area.height());
+                bands.draw_smooth_bar(&mut scene, bar, style);
+            }
         }
         scene
     }
@@ -95,9 +99,14 @@ impl Solutions {
         self.sets.iter().map(tell).collect::<Vec<_>>().join(" ")
     }
 
-    fn entries(&self) -> Vec<Entry> {
-        let line = |i| Swatch::Line(heavy(i), Some(palette::marker(i)));
-        self.sets.iter().enumerate().map(|(i, s)| Entry::new(s.name.clone(), line(i))).collect()
+    /// One high panel, or a low one for each target, high enough for its name.
+    fn panel_height(&self, style: &Style) -> f64 {
+        let size = style.size();
+        if self.sets.len() < 2 {
+            return (0.42 * style.width).max(52.0) - 5.8 * size - 1.5;
+        }
+        let names = self.sets.iter().map(|set| Line::new(&set.name, size).width);
+        names.fold((0.12 * style.width).max(18.0), f64::max)
     }
 
     fn place_x(&self, k: usize, area: Rect) -> f64 {
@@ -111,30 +120,33 @@ impl Solutions {
         row.iter().zip(&self.bounds).enumerate().map(at).collect()
     }
 
-    fn draw_lines(&self, scene: &mut Scene, area: Rect, style: &Style, (low, high): (f64, f64)) {
-        let several = !self.graded();
-        for (i, set) in self.sets.iter().enumerate() {
-            for (k, row) in set.rows.iter().enumerate().rev() {
-                let misfit = set.misfit.get(k).copied().unwrap_or(low);
-                let t = if high > low { (misfit - low) / (high - low) } else { 0.0 };
-                let color = if several { palette::category(i) } else { style.map.at(t) };
-                let stroke = Stroke::new(color, 0.2).with_opacity(if several { 0.25 } else { 0.8 });
-                scene.stroke(Path::polyline(&self.points(row, area)), stroke);
-            }
+    fn draw_lines(
+        &self,
+        scene: &mut Scene,
+        area: Rect,
+        style: &Style,
+        (i, set): (usize, &SolutionSet),
+        (low, high): (f64, f64),
+    ) {
+        for (k, row) in set.rows.iter().enumerate().rev() {
+            let misfit = set.misfit.get(k).copied().unwrap_or(low);
+            let t = if high > low { (misfit - low) / (high - low) } else { 0.0 };
+            let (color, opacity) =
+                if self.graded() { (style.map.at(t), 0.8) } else { (palette::category(i), 0.45) };
+            let stroke = Stroke::new(color, 0.2).with_opacity(opacity);
+            scene.stroke(Path::polyline(&self.points(row, area)), stroke);
         }
-        for (i, set) in self.sets.iter().enumerate() {
-            let Some(best) = set.rows.first() else { continue };
-            let points = self.points(best, area);
-            let stroke = if self.graded() { Stroke::new(INK, 0.6) } else { heavy(i) };
-            let color = stroke.color;
-            scene.stroke(Path::polyline(&points), stroke);
-            for p in points {
-                draw_marker(scene, palette::marker(i), p, 1.9, color);
-            }
+        let Some(best) = set.rows.first() else { return };
+        let points = self.points(best, area);
+        let color = if self.graded() { INK } else { palette::category(i) };
+        scene.stroke(Path::polyline(&points), Stroke::new(color, 0.6));
+        for p in points {
+            draw_marker(scene, palette::marker(i), p, 1.9, color);
         }
     }
 
-    fn draw_axes(&self, scene: &mut Scene, area: Rect, style: &Style) {
+    /// The axes; their names and upper bounds above the first panel, their lower bounds below the last.
+    fn draw_axes(&self, scene: &mut Scene, area: Rect, style: &Style, [first, last]: [bool; 2]) {
         let size = style.size();
         for (k, (factor, &[low, high])) in self.factors.iter().zip(&self.bounds).enumerate() {
             let x = self.place_x(k, area);
@@ -146,17 +158,18 @@ impl Solutions {
             }
             scene.stroke(path, Stroke::new(SOFT, 0.25));
             let end = |v: f64| significant_short(v);
-            scene.text(Line::new(&end(low), 0.9 * size), [x, area.bottom + 1.25 * size], Anchor::Middle, 0.0, SOFT);
+            if last {
+                scene.text(Line::new(&end(low), 0.9 * size), [x, area.bottom + 1.25 * size], Anchor::Middle, 0.0, SOFT);
+            }
+            if !first {
+                continue;
+            }
             scene.text(Line::new(&end(high), 0.9 * size), [x, area.top - 0.6 * size], Anchor::Middle, 0.0, SOFT);
             scene.text(Line::new(&factor.sign(), size), [x, area.top - 2.9 * size], Anchor::Middle, 0.0, INK);
             let unit = if factor.unit.is_empty() { "–".into() } else { super::text::unit_markup(&factor.unit) };
             scene.text(Line::new(&unit, 0.9 * size), [x, area.top - 1.75 * size], Anchor::Middle, 0.0, SOFT);
         }
     }
-}
-
-fn heavy(i: usize) -> Stroke {
-    Stroke::new(palette::category(i), 0.55).dashed(palette::dash(i))
 }
 
 /// A bound as short as it can be told.

@@ -69,7 +69,7 @@ impl Reach {
 const SAME: f64 = 1e-6;
 /// Step of the finite differences, in ranges.
 const DIFFERENCE: f64 = 1e-6;
-/// Singular values below this part of the largest count as zero.
+/// Pivots below this part of the largest count as zero.
 const RANK: f64 = 1e-6;
 
 /// Explores the solutions around a minimiser `best` (unit box).
@@ -191,10 +191,11 @@ impl Level<'_> {
     }
 }
 
+/// By elimination with full pivoting, whose pivots fall off as the singular values do.
 fn rank(rows: &[Vec<f64>], columns: usize) -> usize {
-    let values = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]).singular_values();
-    let largest = values.iter().fold(0.0_f64, |m, &v| m.max(v));
-    values.iter().filter(|&&v| v > RANK * largest).count()
+    let pivots = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]).full_piv_lu().u().diagonal().abs();
+    let largest = pivots.iter().fold(0.0_f64, |m, &v| m.max(v));
+    pivots.iter().filter(|&&v| v > RANK * largest).count()
 }
 
 /// Least and greatest value of every response: random places, the best of them refined by descent.
@@ -264,6 +265,17 @@ mod tests {
         assert!(set.sample.iter().all(|u| (u[0] * u[1] - 0.25).abs() < 1e-6));
         let corner = explore(&plane(0.25), &product, &[0.5, 0.5], Some(&[1.0, 0.0]), 0, 1).expect("solutions");
         assert!((corner.chosen[0] - 1.0).abs() < 1e-6 && (corner.chosen[1] - 0.25).abs() < 1e-6, "{:?}", corner.chosen);
+    }
+
+    /// Proportional rows count once, as do those that differ by rounding.
+    #[test]
+    fn the_rank_is_that_of_the_independent_rows() {
+        let (a, b) = (vec![1.0, 2.0, 3.0], vec![-4.0, 0.5, 1.0]);
+        let sum: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 0.1 * a + 0.7 * b).collect();
+        assert_eq!(rank(&[a.clone(), b.clone(), sum.clone()], 3), 2);
+        assert_eq!(rank(&[a.clone(), a.iter().map(|a| -3.0 * a).collect()], 3), 1);
+        assert_eq!(rank(&[vec![0.0; 3]], 3), 0);
+        assert_eq!(rank(&[a, b, vec![0.0, 0.0, 1e-3]], 3), 3);
     }
 
     #[test]

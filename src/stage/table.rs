@@ -14,6 +14,7 @@
 
 mod beside;
 mod list;
+mod units;
 
 use super::figure::{Names, stored};
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -111,6 +112,9 @@ struct Params {
     /// Names of the stages when several are stacked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     stages: Vec<String>,
+    /// Units of responses that stand in rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    units: Option<BTreeMap<String, String>>,
 }
 
 impl Stage for Table {
@@ -174,6 +178,8 @@ impl Stage for Table {
             }
         };
         let stages = self.of.list();
+        let rowwise = units::ROWWISE.iter().all(|name| columns.iter().any(|column| column == name));
+        let units = || known.context.responses.iter().map(|(name, r)| (name.clone(), r.unit.clone())).collect();
         let params = Params {
             table: self.table.clone(),
             columns: self.columns.clone(),
@@ -187,6 +193,7 @@ impl Stage for Table {
             symbols: columns.iter().filter_map(|c| Some((c.clone(), self.symbol(c, known.context)?))).collect(),
             stages: if stages.len() > 1 && given.is_none() { stages } else { Vec::new() },
             given,
+            units: rowwise.then(units),
         };
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
         // A list is in the parameters: what it was made from may change without another list.
@@ -273,6 +280,9 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     } else if let Some((_, other)) = job.inputs.iter().find(|(name, _)| name == "compare") {
         let other = find(other, params.table.as_deref()).or_else(|_| find(other, None))?;
         columns = beside(columns, other, &params.by)?;
+    }
+    if let Some(units) = &params.units {
+        units::readable(&mut columns, units);
     }
     if !params.stages.is_empty() {
         columns.insert(0, Column::words("stage", names));

@@ -11,6 +11,7 @@
 use flow::dem::simd::Width;
 use flow::dem::space::Tuple;
 use flow::dem::*;
+use flow::math::elementary::pow;
 use flow::math::random::Stream;
 use rustix::time::{ClockId, clock_gettime};
 use std::time::Instant;
@@ -47,9 +48,9 @@ fn cloud<S: Space>(count: usize, porosity: f64, spread: f64) -> (Model<S>, Vecto
     let radii: Vec<f64> =
         (0..count).map(|_| 0.5e-3 * stream.uniform_in(2.0 / (1.0 + spread), 2.0 * spread / (1.0 + spread))).collect();
     let solid: f64 = radii.iter().map(|&r| S::volume(r)).sum();
-    let edge = (solid / (1.0 - porosity) / 2.0).powf(1.0 / S::DIMENSION as f64);
+    let edge = pow(solid / (1.0 - porosity) / 2.0, 1.0 / S::DIMENSION as f64);
     let size = Vector::<S>::build(|k| if k == 1 { 2.0 * edge } else { edge });
-    let per = (count as f64 / 2.0).powf(1.0 / S::DIMENSION as f64).ceil();
+    let per = pow(count as f64 / 2.0, 1.0 / S::DIMENSION as f64).ceil();
     let cells: Vec<usize> = (0..S::DIMENSION).map(|k| if k == 1 { 2 * per as usize } else { per as usize }).collect();
     let total: usize = cells.iter().product();
     let mut homes: Vec<usize> = (0..total).collect();

@@ -2,7 +2,7 @@
 //!
 //!     cargo bench --bench gallery -- FOLDER [NAME…]
 
-#![allow(clippy::approx_constant)] // sample data, not mathematics
+#![allow(clippy::approx_constant, clippy::disallowed_methods)] // sample data, not mathematics
 
 #[path = "../figures/samples/mod.rs"]
 mod samples;

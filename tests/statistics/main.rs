@@ -45,5 +45,5 @@ fn sample(factors: &Table, y: &Value) -> Sample {
 /// Decimal digits that agree: −log₁₀ of the relative error, at most 16.
 fn digits(found: f64, wanted: f64) -> f64 {
     let error = if wanted == 0.0 { found.abs() } else { ((found - wanted) / wanted).abs() };
-    if error == 0.0 { 16.0 } else { (-error.log10()).min(16.0) }
+    if error == 0.0 { 16.0 } else { (-flow::math::elementary::log10(error)).min(16.0) }
 }

@@ -295,7 +295,7 @@ mod tests {
         let mut answer = |ends: &[End<S, f64>; 2]| {
             let touch = pair_touch(&ends[0], &ends[1], 1.0);
             let (load, _) = ParallelBondLaw::respond(&constants, &touch, None, &mut rows, 0, &mut Ledger(None));
-            [load.normal, load.shear.norm(), load.bend.norm().hypot(load.twist)]
+            [load.normal, load.shear.norm(), (load.bend.norm().powi(2) + load.twist.powi(2)).sqrt()]
         };
         let vector = |x: [f64; 3]| Vector::<S>::build(|k| x[k]);
         let spin = |w: [f64; 3]| S::Spin::<f64>::build(|k| if S::DIMENSION == 2 { w[2] } else { w[k] });

@@ -263,7 +263,8 @@ impl Kind for Figure {
     const ABOUT: &'static str = "a picture of the results of other stages";
     /// 2: numbers at points of designs stand on a ground of paper; "1 crack"; force chains are those above the mean.
     /// 3: surfaces say where their axes lie. 4: empty columns in the legend of contributions; normal plots.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 4, run: draw }];
+    /// 5: several targets of a solution set one below the other; circles of PNG files without the system's cosines.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 5, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

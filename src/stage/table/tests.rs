@@ -135,3 +135,25 @@ fn settings_without_effect_on_a_list_are_told() {
     assert_eq!(said("list = 'aggregate'\nof = 'a'"), "the list needs the bounds of the classes, increasing");
     assert_eq!(said("of = 'a'\npublished = 'x.csv'"), "`by` is needed to match the rows of the two tables");
 }
+
+#[test]
+fn responses_in_rows_are_told_in_the_units_of_the_workflow() {
+    let words = |w: [&str; 4]| w.map(String::from).to_vec();
+    let of = |values: [f64; 4]| {
+        let table = Data::default()
+            .texts_column("response", "", words(["UCS", "E", "nu", "sigma_ci"]))
+            .reals_column("value", "", "", values.to_vec())
+            .texts_column("unit", "", words(["Pa", "Pa", "", "Pa"]));
+        Arc::new(Artifact::new("run", 1, Group::new().with("responses", Node::Table(table))))
+    };
+    let params = json!({ "by": ["response"], "digits": 4, "units": { "UCS": "MPa", "E": "GPa", "nu": "" } });
+    let theirs = of([32.23e6, 28.37e9, 0.197, f64::NAN]);
+    let made = run(params, &[("of", of([25e6, 30e9, 0.2, 13.07e6])), ("compare", theirs)]).unwrap();
+    let rows: Vec<String> = text(&made, "csv").lines().map(str::to_owned).collect();
+    assert!(rows[1].starts_with("UCS,25,32.23,-22.4"), "{rows:?}");
+    assert!(rows[2].starts_with("E,30,28.37,5.7"), "{rows:?}");
+    assert!(rows[3].starts_with("nu,0.2,0.197,1.5"), "{rows:?}");
+    let ends: Vec<&str> = rows[1..].iter().map(|row| row.rsplit(',').next().unwrap()).collect();
+    assert_eq!(ends, ["MPa", "GPa", "", "MPa"]);
+    assert!(rows[4].starts_with("sigma_ci,13.07,"), "{rows:?}");
+}

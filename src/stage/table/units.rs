@@ -1,0 +1,58 @@
+//! Responses told row by row (`response,value,unit`, in SI units) in the units that people read them in.
+//!
+//! A response of the workflow gets the unit of its `[response.NAME]`; another one in pascal the prefix that leaves one
+//! to three digits before the point.
+
+use crate::figure::column::{Column, Values};
+use crate::unit::Unit;
+use std::collections::BTreeMap;
+
+/// The columns of a table that tells responses row by row.
+pub(super) const ROWWISE: [&str; 3] = ["response", "value", "unit"];
+
+/// Scales every number of the columns named after `value` to the wanted unit of its row, and names that unit.
+pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>) {
+    let words = |name: &str| {
+        columns.iter().find(|c| c.key == name).and_then(|c| match &c.values {
+            Values::Words(words) => Some(words.clone()),
+            Values::Reals(_) | Values::Whole(_) => None,
+        })
+    };
+    let (Some(names), Some(units)) = (words("response"), words("unit")) else { return };
+    let Some(values) = columns.iter().find_map(|c| match &c.values {
+        Values::Reals(values) if c.key == "value" => Some(values.clone()),
+        _ => None,
+    }) else {
+        return;
+    };
+    let rows = names.iter().zip(&units).zip(&values);
+    let shown: Vec<(String, f64)> = rows.map(|((name, unit), &value)| one(wanted.get(name), unit, value)).collect();
+    for column in columns {
+        match &mut column.values {
+            Values::Words(words) if column.key == "unit" => {
+                words.iter_mut().zip(&shown).for_each(|(word, (unit, _))| word.clone_from(unit));
+            }
+            Values::Reals(values) if column.key == "value" || column.key == "value published" => {
+                values.iter_mut().zip(&shown).for_each(|(value, (_, factor))| *value /= factor);
+            }
+            Values::Reals(_) | Values::Whole(_) | Values::Words(_) => {}
+        }
+    }
+}
+
+/// The unit to show a value in, and what one of it is in the value's own unit.
+fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, f64) {
+    let as_it_is = || (unit.to_owned(), 1.0);
+    let Some(wanted) = wanted else {
+        return match value.abs() {
+            size if unit == "Pa" && (1e3..1e6).contains(&size) => ("kPa".into(), 1e3),
+            size if unit == "Pa" && (1e6..1e9).contains(&size) => ("MPa".into(), 1e6),
+            size if unit == "Pa" && size >= 1e9 => ("GPa".into(), 1e9),
+            _ => as_it_is(),
+        };
+    };
+    match (Unit::parse(unit), Unit::parse(wanted)) {
+        (Ok(from), Ok(to)) if from.dimension == to.dimension => (wanted.clone(), to.factor / from.factor),
+        _ => as_it_is(),
+    }
+}
