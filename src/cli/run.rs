@@ -11,6 +11,8 @@ use crate::run::{Past, Report, Settings, StageStatus, TaskState, Watch, record, 
 use crate::store::Store;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -109,20 +111,31 @@ impl Run {
     }
 }
 
-/// A flag that Ctrl-C or a termination request sets; a second Ctrl-C ends the process at once.
+/// A flag that Ctrl-C, a termination request or the end of the terminal sets; a second one ends the process at once.
 pub(super) fn interruption() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
-    let handler = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(Exit::Interrupted as i32);
-        }
-        eprintln!("stopping: what is finished is kept; once more to stop at once");
-    });
-    if let Err(e) = handler {
-        eprintln!("warning: Ctrl-C will not stop cleanly: {e}");
+    let wanted: &[i32] = if hangup_is_ignored() { &[SIGINT, SIGTERM] } else { &[SIGINT, SIGTERM, SIGHUP] };
+    match Signals::new(wanted) {
+        Ok(mut signals) => drop(std::thread::spawn(move || {
+            for _ in signals.forever() {
+                if flag.swap(true, Ordering::Relaxed) {
+                    std::process::exit(Exit::Interrupted as i32);
+                }
+                eprintln!("stopping: what is finished is kept; once more to stop at once");
+            }
+        })),
+        Err(e) => eprintln!("warning: Ctrl-C will not stop cleanly: {e}"),
     }
     stop
+}
+
+/// Whether `nohup` (or the like) started this process: then the end of the terminal must not end the campaign.
+fn hangup_is_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask & (1 << (SIGHUP - 1)) != 0
 }
 
 pub(super) fn expected(workflow: &Workflow, store: &Store) -> HashMap<String, f64> {

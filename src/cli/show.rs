@@ -6,7 +6,7 @@ use super::progress::Silent;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::math::elementary::log10;
 use crate::plan::Workflow;
-use crate::run::{Report, Settings, StageStatus, run};
+use crate::run::{Report, Settings, StageReport, StageStatus, run};
 use crate::store::{ObjectId, Store};
 use clap::Args;
 use serde_json::{Value, json};
@@ -17,48 +17,86 @@ use std::sync::atomic::AtomicBool;
 pub(super) struct Show {
     #[command(flatten)]
     campaign: Campaign,
-    /// The stage, or one run of it: `orthogonal` or `orthogonal[12]` (rows are counted from 1).
+    /// The stage, or one run of it: `orthogonal` or `orthogonal[12]` (rows are counted from 1); all stages and the names
+    /// of their tables when not given.
     #[arg(value_name = "STAGE[ROW]")]
-    what: String,
+    what: Option<String>,
     /// One table of it; all when not given.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", requires = "what")]
     table: Option<String>,
     /// As CSV, with units in the first line.
-    #[arg(long, conflicts_with_all = ["json", "path"])]
+    #[arg(long, conflicts_with_all = ["json", "path"], requires = "what")]
     csv: bool,
     /// As JSON: all values, or the one table.
     #[arg(long, conflicts_with = "path")]
     json: bool,
     /// Only the path of its HDF5 file.
-    #[arg(long)]
+    #[arg(long, requires = "what")]
     path: bool,
 }
 
 impl Show {
     pub(super) fn go(self) -> Exit {
-        self.print().unwrap_or_else(|exit| exit)
+        match &self.what {
+            Some(what) => self.print(what),
+            None => self.list(),
+        }
+        .unwrap_or_else(|exit| exit)
     }
 
-    fn print(&self) -> Result<Exit, Exit> {
-        let (stage, row) = parts(&self.what)?;
+    /// Every stage with its tables.
+    fn list(&self) -> Result<Exit, Exit> {
+        let workflow = self.campaign.load(&[])?;
+        let store = self.campaign.open()?;
+        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
+        let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
+        let tables_of = |status: &StageStatus| match status {
+            StageStatus::Done(content) => {
+                let artifact = store.get(content).map_err(|e| system(&e))?;
+                Ok(artifact.tables().into_iter().map(|(name, _)| name).collect())
+            }
+            StageStatus::Open | StageStatus::Failed(_) | StageStatus::Skipped(_) => Ok(Vec::new()),
+        };
+        let tables: Vec<Vec<String>> =
+            report.stages.iter().map(|stage| tables_of(&stage.status)).collect::<Result<_, Exit>>()?;
+        let stages = report.stages.iter().zip(&tables);
+        if self.json {
+            let one = |(stage, tables): (&StageReport, &Vec<String>)| json!({ "name": stage.name, "kind": stage.kind, "state": stage.status.word(), "tables": tables });
+            out!("{}", stages.map(one).collect::<Value>());
+            return Ok(Exit::Done);
+        }
+        let width = report.stages.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);
+        for (stage, tables) in stages {
+            let what = match &stage.status {
+                StageStatus::Done(_) if tables.is_empty() => "no table".to_owned(),
+                StageStatus::Done(_) => tables.join(", "),
+                status => format!("no result yet ({})", status.word()),
+            };
+            out!("{:width$}  {:16}  {what}", stage.name, stage.kind);
+        }
+        Ok(Exit::Done)
+    }
+
+    fn print(&self, what: &str) -> Result<Exit, Exit> {
+        let (stage, row) = parts(what)?;
         let workflow = self.campaign.load(std::slice::from_ref(&stage))?;
         let store = self.campaign.open()?;
         // Single rows are known only when every task is looked up.
         let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: vec![stage.clone()], memos: false };
         let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
         let Some(object) = object(&workflow, &report, &stage, row) else {
-            eprintln!("error: {}", self.missing(&workflow, &report, &stage, row));
+            eprintln!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
             return Err(Exit::BadInput);
         };
         if self.path {
             out!("{}", store.path(&object).display());
             return Ok(Exit::Done);
         }
-        self.values(&store, &object)
+        self.values(what, &store, &object)
     }
 
     /// Why there is nothing to show.
-    fn missing(&self, workflow: &Workflow, report: &Report, stage: &str, row: Option<usize>) -> String {
+    fn missing(&self, what: &str, workflow: &Workflow, report: &Report, (stage, row): (&str, Option<usize>)) -> String {
         let place = workflow.position(stage);
         let rows: Vec<Option<usize>> =
             report.tasks().filter(|task| Some(task.stage) == place).map(|task| task.row).collect();
@@ -70,14 +108,14 @@ impl Show {
             (Some(row), Some(last)) if row > *last => format!("`{stage}` has {} rows, no row {}", last + 1, row + 1),
             _ => {
                 let first = self.campaign.command("run", &[stage]);
-                format!("`{}` has no result yet; run it first: {first}", self.what)
+                format!("`{what}` has no result yet; run it first: {first}")
             }
         }
     }
 
-    fn values(&self, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
+    fn values(&self, what: &str, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
         let artifact = store.get(&object.content).map_err(|e| system(&e))?;
-        let tables = self.chosen(&artifact)?;
+        let tables = self.chosen(what, &artifact)?;
         if self.json {
             let value = match &self.table {
                 Some(_) => tables.first().map_or(Value::Null, |(_, table)| table_json(table)),
@@ -100,18 +138,18 @@ impl Show {
     }
 
     /// The tables to show, in order.
-    fn chosen<'a>(&self, artifact: &'a Artifact) -> Result<Vec<(String, &'a Table)>, Exit> {
+    fn chosen<'a>(&self, what: &str, artifact: &'a Artifact) -> Result<Vec<(String, &'a Table)>, Exit> {
         let mut tables = artifact.tables();
         let known = tables.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(", ");
         if let Some(wanted) = &self.table {
             tables.retain(|(name, _)| name == wanted);
             if tables.is_empty() {
-                eprintln!("error: `{}` has no table `{wanted}`; it has {known}", self.what);
+                eprintln!("error: `{what}` has no table `{wanted}`; it has {known}");
                 return Err(Exit::BadInput);
             }
         }
         if self.csv && tables.len() > 1 {
-            eprintln!("error: `{}` has several tables; choose one with --table: {known}", self.what);
+            eprintln!("error: `{what}` has several tables; choose one with --table: {known}");
             return Err(Exit::BadInput);
         }
         Ok(tables)

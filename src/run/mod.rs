@@ -32,7 +32,9 @@ use crate::stage::{Failure, Progress, StageError};
 use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
 use stages::Stages;
+use std::any::Any;
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -171,6 +173,13 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
         };
         run.go(&inbox)
     })
+}
+
+/// A broken invariant of this program, as the failure of the task that met it.
+fn panicked(panic: &(dyn Any + Send)) -> Failure {
+    let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+    let text = format!("the program met a fault of its own: {}", said.unwrap_or("a panic without words"));
+    StageError::new(text).hint("please report it with the workflow and what was printed above").into()
 }
 
 /// What a worker sends back.
@@ -329,7 +338,9 @@ impl Loop<'_> {
         self.pool.give(move || {
             watch.event(Event::Started { stage, row });
             let say = |progress: Progress| watch.event(Event::Said { stage, row, progress: &progress });
-            let result = order.execute(store, &say, stop);
+            // What panics is our own fault, but no reason to leave the loop waiting or to end the other tasks.
+            let result = catch_unwind(AssertUnwindSafe(|| order.execute(store, &say, stop)));
+            let result = result.unwrap_or_else(|panic| Err(panicked(&*panic)));
             // The loop may be gone only when it panicked; then nobody waits for this answer.
             let _ = answers.send(Answer { node, result });
         });
@@ -370,5 +381,18 @@ impl Loop<'_> {
             count: self.board.count(stage),
             failure: failure.as_deref(),
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_in_a_task_becomes_its_failure_with_what_was_said() {
+        for panic in [catch_unwind(|| panic!("BUG: {}", 7)), catch_unwind(|| panic!("BUG: 7"))] {
+            let Failure::Failed(error) = panicked(&*panic.unwrap_err()) else { panic!("not a failure") };
+            assert!(error.message.ends_with("BUG: 7") && error.hint.is_some(), "{error:?}");
+        }
     }
 }

@@ -6,6 +6,7 @@
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Artifact, Table, Values};
+use crate::dem::Watch;
 use crate::dem::genesis::clump::{Clump, ClumpMass};
 use crate::dem::genesis::gradation::{Gradation, GradationError};
 use crate::dem::genesis::packing::{Packing, PackingError};
@@ -288,7 +289,12 @@ fn make(job: &Job) -> Result<Artifact, Failure> {
     let faults = |faults: Vec<crate::dem::genesis::specimen::SpecimenError>| {
         StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
     };
-    let (made, quality) = recipe.make(seed).map_err(faults)?;
+    let watch = || if job.stopped() { Watch::Stop } else { Watch::Continue };
+    let made = recipe.make(seed, &watch);
+    if job.stopped() {
+        return Err(Failure::Stopped);
+    }
+    let (made, quality) = made.map_err(faults)?;
     Ok(store(&made, &quality).to_artifact())
 }
 
@@ -407,7 +413,7 @@ mod tests {
              density = '2650 kg/m^3'",
         )
         .unwrap();
-        let (made, quality) = config.recipe().unwrap().make(1).unwrap();
+        let (made, quality) = config.recipe().unwrap().make(1, &|| Watch::Continue).unwrap();
         assert!(!made.clumps.is_empty());
         let artifact = store(&made, &quality).to_artifact();
         assert_eq!(load(&artifact).unwrap(), made);

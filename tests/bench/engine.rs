@@ -167,7 +167,7 @@ fn memory() -> Option<f64> {
 }
 
 fn rates<S: Space>(count: usize, usual: usize, books: bool) {
-    let speed = 0.02 * (count as f64 / usual as f64).powf(1.0 / S::DIMENSION as f64);
+    let speed = 0.02 * pow(count as f64 / usual as f64, 1.0 / S::DIMENSION as f64);
     let (mut engine, _) = specimen::<S>(count, speed);
     if books {
         engine.keep_books();

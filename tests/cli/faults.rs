@@ -232,8 +232,16 @@ fn slips_on_the_command_line_are_told_with_what_is_there() {
         let found = complaint(&space, arguments, *code);
         assert!(found.contains(wanted), "{arguments:?}: {found}");
     }
+    assert!(space.stdout(&["show", "w.toml"]).lines().all(|line| line.contains("no result yet (open)")));
     space.run(&[]);
     assert!(complaint(&space, &["show", "w.toml", "rows[4]"], 2).contains("`rows` has 3 rows"));
+    let list = space.stdout(&["show", "w.toml"]);
+    let words: Vec<Vec<&str>> = list.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(
+        words,
+        [vec!["grid", "design", "coded,", "design,", "report"], vec!["rows", "formula", "runs"]],
+        "{list}"
+    );
     let whole = complaint(&space, &["show", "w.toml", "grid[1]"], 2);
     assert!(whole.contains("`grid` is one result and has no rows; see flow show w.toml grid"), "{whole}");
 }

@@ -11,3 +11,4 @@ mod readme;
 mod report;
 mod reruns;
 mod space;
+mod stop;

@@ -18,6 +18,7 @@ use super::cloud::{ball_count, scale_to_porosity, scatter, uniform_radii};
 use super::fabric::{Fabric, HELD, contact_counts};
 use super::region::{Point, Region};
 use super::relax::Heap;
+use crate::dem::Watch;
 use crate::math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -95,6 +96,9 @@ pub enum PackingError {
         /// Largest overlap over the smaller radius.
         overlap: f64,
     },
+    /// Stopped by the watcher before its end.
+    #[error("packing: stopped before its end")]
+    Stopped,
     /// No equilibrium.
     #[error(
         "packing: no equilibrium in {iterations} iterations (unbalanced force {unbalanced:.1e} of a contact force)"
@@ -141,11 +145,16 @@ impl Packing {
         faults
     }
 
-    /// Packs `region`; the same stream gives the same packing.
+    /// Packs `region`; the same stream gives the same packing. `watch` is asked in every iteration.
     ///
     /// # Errors
-    /// The first of: a fault of the settings, no equilibrium, a porosity out of reach.
-    pub fn pack(&self, region: &Region, stream: &mut Stream) -> Result<Packed, PackingError> {
+    /// The first of: a fault of the settings, stopped by `watch`, no equilibrium, a porosity out of reach.
+    pub fn pack(
+        &self,
+        region: &Region,
+        stream: &mut Stream,
+        watch: &dyn Fn() -> Watch,
+    ) -> Result<Packed, PackingError> {
         if let Some(fault) = self.faults(region).into_iter().next() {
             return Err(fault);
         }
@@ -155,7 +164,7 @@ impl Packing {
         let radius_factor = scale_to_porosity(&mut radii, area, self.porosity);
         let centres = scatter(&radii, region, stream);
         let mut heap = renumbered(Heap { region: *region, centres, radii });
-        let first = heap.relax(REST, MOST_ITERATIONS);
+        let first = heap.relax(REST, MOST_ITERATIONS, watch);
         let mut packed = Packed {
             heap,
             radius_factor,
@@ -164,13 +173,16 @@ impl Packing {
             iterations: first.iterations,
             unbalanced: first.unbalanced,
         };
-        self.hold_floaters(&mut packed);
+        self.hold_floaters(&mut packed, watch);
+        if watch() == Watch::Stop {
+            return Err(PackingError::Stopped);
+        }
         packed.heap = renumbered(packed.heap);
         self.judge(packed)
     }
 
     /// Enlarges floaters until few enough are left; a round that finds no rest is undone and ends it.
-    fn hold_floaters(&self, packed: &mut Packed) {
+    fn hold_floaters(&self, packed: &mut Packed, watch: &dyn Fn() -> Watch) {
         let count = packed.heap.radii.len();
         let mut growth = vec![1.0_f64; count];
         while packed.floater_rounds < MOST_ROUNDS && packed.unbalanced < REST {
@@ -186,7 +198,7 @@ impl Packing {
             }
             let area = next.heap.region.area();
             next.radius_factor *= scale_to_porosity(&mut next.heap.radii, area, self.porosity);
-            let rest = next.heap.relax(REST, MOST_ITERATIONS);
+            let rest = next.heap.relax(REST, MOST_ITERATIONS, watch);
             packed.iterations += rest.iterations;
             if rest.unbalanced >= REST {
                 break;
@@ -238,11 +250,12 @@ mod tests {
     use super::super::cloud::ball_area;
     use super::*;
 
+    const GO_ON: &dyn Fn() -> Watch = &|| Watch::Continue;
     const SMALL: Packing = Packing { porosity: 0.12, mean_radius: 2e-3, ratio: 2.5, floaters: 0.0 };
     const SPECIMEN: Region = Region::Rectangle { width: 0.1, height: 0.2 };
 
     fn pack(seed: u64) -> Packed {
-        SMALL.pack(&SPECIMEN, &mut Stream::new(seed, "packing", 0)).unwrap()
+        SMALL.pack(&SPECIMEN, &mut Stream::new(seed, "packing", 0), GO_ON).unwrap()
     }
 
     /// Isostatic frictionless discs have coordination 4; the study with another code had 4.55 at this porosity.
@@ -264,10 +277,25 @@ mod tests {
         assert_ne!(pack(1).heap.centres, pack(2).heap.centres);
     }
 
+    /// Stopped in its first iteration, in a later one, and after the last: never a packing that is another one.
+    #[test]
+    fn a_packing_that_is_stopped_is_none() {
+        for after in [0, 100] {
+            let asked = std::cell::Cell::new(0);
+            let watch = || {
+                asked.set(asked.get() + 1);
+                if asked.get() > after { Watch::Stop } else { Watch::Continue }
+            };
+            let error = SMALL.pack(&SPECIMEN, &mut Stream::new(1, "packing", 0), &watch).unwrap_err();
+            assert_eq!(error, PackingError::Stopped);
+            assert!(asked.get() < after + 10, "{}", asked.get());
+        }
+    }
+
     #[test]
     fn a_disc_is_packed_by_the_same_code() {
         let region = Region::Disc { diameter: 0.1 };
-        let packed = SMALL.pack(&region, &mut Stream::new(1, "packing", 0)).unwrap();
+        let packed = SMALL.pack(&region, &mut Stream::new(1, "packing", 0), GO_ON).unwrap();
         assert!(packed.heap.centres.iter().all(|&c| region.depth(c) > 0.0));
         assert_eq!(packed.heap.centres.len(), ball_count(region.area(), 0.12, 2e-3));
     }
@@ -275,10 +303,10 @@ mod tests {
     #[test]
     fn a_porosity_out_of_reach_says_on_which_side() {
         let loose = Packing { porosity: 0.25, ..SMALL };
-        let error = loose.pack(&SPECIMEN, &mut Stream::new(1, "packing", 0)).unwrap_err();
+        let error = loose.pack(&SPECIMEN, &mut Stream::new(1, "packing", 0), GO_ON).unwrap_err();
         assert!(matches!(error, PackingError::Loose { porosity: 0.25, .. }), "{error}");
         let dense = Packing { porosity: 0.001, mean_radius: 3e-3, ratio: 10.0, ..SMALL };
-        let error = dense.pack(&SPECIMEN, &mut Stream::new(1, "packing", 0)).unwrap_err();
+        let error = dense.pack(&SPECIMEN, &mut Stream::new(1, "packing", 0), GO_ON).unwrap_err();
         assert!(matches!(error, PackingError::Dense { .. }), "{error}");
     }
 

@@ -18,6 +18,7 @@
 
 use super::cloud::Bins;
 use super::region::{Point, Region, norm};
+use crate::dem::Watch;
 
 /// Discs in a vessel (m).
 #[derive(Clone, Debug)]
@@ -107,8 +108,8 @@ impl Heap {
     }
 
     /// Moves the centres to a minimum of the overlap energy: until the mean unbalanced force is below `limit` times the
-    /// mean contact force, or no ball overlaps anything, or `most` iterations are spent.
-    pub fn relax(&mut self, limit: f64, most: usize) -> Rest {
+    /// mean contact force, or no ball overlaps anything, or `most` iterations are spent, or `watch` says stop.
+    pub fn relax(&mut self, limit: f64, most: usize, watch: &dyn Fn() -> Watch) -> Rest {
         let smallest = self.radii.iter().copied().fold(f64::INFINITY, f64::min);
         let (margin, longest) = (0.5 * smallest, 0.1 * smallest);
         let mut fire = Fire::new(self.radii.len());
@@ -118,7 +119,7 @@ impl Heap {
         let mut unbalanced = f64::INFINITY;
         for iterations in 0..most {
             unbalanced = self.forces(&pairs, &mut force);
-            if unbalanced < limit {
+            if unbalanced < limit || watch() == Watch::Stop {
                 return Rest { iterations, unbalanced };
             }
             fire.step(&mut self.centres, &force, longest);
@@ -212,7 +213,7 @@ mod tests {
         let region = Region::Rectangle { width: 5.0, height: 100.0 };
         let centres = vec![[-1.2, 0.0], [0.3, 0.0], [1.7, 0.0]];
         let mut heap = Heap { region, centres, radii: vec![1.0; 3] };
-        let rest = heap.relax(1e-10, 10_000);
+        let rest = heap.relax(1e-10, 10_000, &|| Watch::Continue);
         assert!(rest.unbalanced < 1e-10, "{rest:?}");
         let expected = [-2.5 + 5.0 / 6.0, 0.0, 2.5 - 5.0 / 6.0];
         for (centre, expected) in heap.centres.iter().zip(expected) {
@@ -224,7 +225,7 @@ mod tests {
     fn separate_discs_stay_where_they_are() {
         let region = Region::Rectangle { width: 10.0, height: 10.0 };
         let mut heap = Heap { region, centres: vec![[-2.0, 0.0], [2.0, 0.0]], radii: vec![1.0; 2] };
-        assert_eq!(heap.relax(1e-3, 100), Rest { iterations: 0, unbalanced: 0.0 });
+        assert_eq!(heap.relax(1e-3, 100, &|| Watch::Continue), Rest { iterations: 0, unbalanced: 0.0 });
         assert_eq!(heap.centres, [[-2.0, 0.0], [2.0, 0.0]]);
     }
 

@@ -19,6 +19,7 @@ use super::placement::{DoesNotFit, Placement, place};
 use super::polygon::{Polygon, PolygonError, PolygonRecipe};
 use super::region::{Point, Region};
 use super::relax::Heap;
+use crate::dem::Watch;
 use crate::math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -188,11 +189,12 @@ impl Recipe {
         faults
     }
 
-    /// Makes the specimen, with the report on it; another seed gives another packing and another aggregate.
+    /// Makes the specimen, with the report on it; another seed gives another packing and another aggregate. The packing
+    /// asks `watch` again and again whether to go on.
     ///
     /// # Errors
     /// All faults of the recipe, or the one reason why aggregate or packing came to nothing.
-    pub fn make(&self, seed: u64) -> Result<(Specimen, Quality), Vec<SpecimenError>> {
+    pub fn make(&self, seed: u64, watch: &dyn Fn() -> Watch) -> Result<(Specimen, Quality), Vec<SpecimenError>> {
         let faults = self.faults();
         if !faults.is_empty() {
             return Err(faults);
@@ -200,7 +202,7 @@ impl Recipe {
         let (polygons, circles) = self.place_aggregate(seed)?;
         let packed = self
             .packing
-            .pack(&self.region, &mut Stream::new(seed, "packing", 0))
+            .pack(&self.region, &mut Stream::new(seed, "packing", 0), watch)
             .map_err(|error| vec![error.into()])?;
         let clumps = self.aggregate.as_ref().map_or_else(Vec::new, |aggregate| {
             cut(&polygons, &packed.heap.centres, &packed.heap.radii, aggregate.density, aggregate.mass)
@@ -339,7 +341,7 @@ mod tests {
 
     #[test]
     fn a_specimen_reports_its_own_numbers() {
-        let (specimen, quality) = recipe().make(1).unwrap();
+        let (specimen, quality) = recipe().make(1, &|| Watch::Continue).unwrap();
         assert_eq!(quality.balls, 2188);
         assert!((quality.porosity - 0.12).abs() < 1e-12);
         assert!((quality.circle_fraction - 0.2887).abs() < 1e-4, "{}", quality.circle_fraction);
@@ -355,7 +357,8 @@ mod tests {
     #[test]
     fn the_aggregate_does_not_change_the_packing() {
         let plain = Recipe { aggregate: None, ..recipe() };
-        let ((with, _), (without, quality)) = (recipe().make(3).unwrap(), plain.make(3).unwrap());
+        let ((with, _), (without, quality)) =
+            (recipe().make(3, &|| Watch::Continue).unwrap(), plain.make(3, &|| Watch::Continue).unwrap());
         assert_eq!(with.centres, without.centres);
         assert!(without.clumps.is_empty() && quality.polygon_fraction == 0.0 && quality.pebble_fraction == 0.0);
         assert_eq!(quality.contacts[1..], [0, 0]);
@@ -370,6 +373,6 @@ mod tests {
             aggregate.polygons.min_vertices = 1;
             aggregate.gradation = Gradation::Walraven { content: 2.0, max_size: 0.015 };
         }
-        assert_eq!(bad.make(1).unwrap_err().len(), 4);
+        assert_eq!(bad.make(1, &|| Watch::Continue).unwrap_err().len(), 4);
     }
 }

@@ -35,7 +35,7 @@ fn hexagon(columns: usize, rows: usize) -> Specimen {
 
 fn random(region: Region, mean_radius: f64) -> Specimen {
     let packing = Packing { porosity: 0.12, mean_radius, ratio: 2.5, floaters: 0.0 };
-    Recipe { region, packing, density: 2000.0, aggregate: None }.make(1).unwrap().0
+    Recipe { region, packing, density: 2000.0, aggregate: None }.make(1, &|| Watch::Continue).unwrap().0
 }
 
 fn small() -> Specimen {
