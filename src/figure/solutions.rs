@@ -131,8 +131,7 @@ impl Solutions {
         for (k, row) in set.rows.iter().enumerate().rev() {
             let misfit = set.misfit.get(k).copied().unwrap_or(low);
             let t = if high > low { (misfit - low) / (high - low) } else { 0.0 };
-            let (color, opacity) =
-                if self.graded() { (style.map.at(t), 0.8) } else { (palette::category(i), 0.45) };
+            let (color, opacity) = if self.graded() { (style.map.at(t), 0.8) } else { (palette::category(i), 0.45) };
             let stroke = Stroke::new(color, 0.2).with_opacity(opacity);
             scene.stroke(Path::polyline(&self.points(row, area)), stroke);
         }
