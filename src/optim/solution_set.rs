@@ -193,7 +193,8 @@ impl Level<'_> {
 
 /// By elimination with full pivoting, whose pivots fall off as the singular values do.
 fn rank(rows: &[Vec<f64>], columns: usize) -> usize {
-    let pivots = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]).full_piv_lu().u().diagonal().abs();
+    let upper = DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j]).full_piv_lu().u();
+    let pivots: Vec<f64> = (0..upper.nrows().min(upper.ncols())).map(|k| upper[(k, k)].abs()).collect();
     let largest = pivots.iter().fold(0.0_f64, |m, &v| m.max(v));
     pivots.iter().filter(|&&v| v > RANK * largest).count()
 }
