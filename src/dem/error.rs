@@ -29,7 +29,7 @@ pub enum Fault {
         /// What is allowed.
         wanted: &'static str,
     },
-    /// A pebble does not exist or belongs to two clumps.
+    /// A pebble does not exist, belongs to two clumps, or cannot do what is asked of a ball.
     #[error("clump {clump}: pebble {pebble} {problem}")]
     Pebble {
         /// Place in the caller's list.
@@ -50,6 +50,22 @@ pub enum Fault {
         value: f64,
         /// What is allowed.
         wanted: &'static str,
+    },
+    /// A call names a particle or wall that is not there.
+    #[error("{what} {place} does not exist: there are {count}, counted from 0")]
+    Missing {
+        /// `particle` or `wall`.
+        what: &'static str,
+        /// The place asked for.
+        place: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A call names a wall that was taken away.
+    #[error("wall {wall} was taken away")]
+    Removed {
+        /// Place in the caller's list.
+        wall: usize,
     },
     /// A number of the contact table is out of range.
     #[error("contact of groups {} and {}: {quantity} is {value}, wanted {wanted}", a.0, b.0)]
@@ -91,6 +107,16 @@ pub enum Fault {
         /// The other.
         b: usize,
         /// Overlap over the smaller radius.
+        overlap: f64,
+    },
+    /// A particle starts too deep in a wall.
+    #[error("particle {particle} starts with an overlap of {overlap:.3} of its radius in wall {wall}")]
+    InWall {
+        /// Place in the caller's list.
+        wall: usize,
+        /// Place in the caller's list.
+        particle: usize,
+        /// Overlap over the radius.
         overlap: f64,
     },
 }

@@ -13,7 +13,8 @@
 //!    `every` steps. A [`Failure`] (escape, instability, not finite) is data. [`Engine::calm`] zeroes velocities,
 //!    [`Engine::scale_radii`] grows balls at constant density (stiffnesses follow), [`Engine::set_contacts`] exchanges the
 //!    table (say, friction 0 while packing), [`Engine::add_wall`], [`Engine::remove_wall`], [`Engine::move_wall`] change
-//!    the vessel, [`Engine::set_motion`] and [`Engine::fix`] prescribe velocities (grips), [`Engine::set_damping`].
+//!    the vessel, [`Engine::set_motion`] and [`Engine::fix`] prescribe velocities (grips), [`Engine::set_damping`]. Each
+//!    checks what it is given; what it refuses, by the same [`Faults`], changes nothing.
 //! 4. Bond it: [`Engine::absorb_overlaps`] makes every overlap (walls too) the state of rest,
 //!    [`Engine::install_bonds`]`(gap, seed)` bonds what is near enough. Then load it by walls or grips.
 //! 5. Read it: `position`, `velocity`, `spin`, `radius`, `group`, `clump`, `wall_point`, `wall_force`, `steps`, `time`,

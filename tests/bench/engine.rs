@@ -97,13 +97,14 @@ fn specimen<S: Space>(count: usize, speed: f64) -> (Engine<S>, Vector<S>) {
     engine.calm();
     engine.set_contacts(&table(0.5)).expect("a sound table");
     engine.absorb_overlaps();
-    engine.install_bonds(1e-9, 1);
+    engine.install_bonds(1e-9, 1).expect("a small gap");
     for k in (0..S::DIMENSION).filter(|&k| k != 1) {
-        engine.remove_wall(2 * k);
-        engine.remove_wall(2 * k + 1);
+        engine.remove_wall(2 * k).expect("a wall");
+        engine.remove_wall(2 * k + 1).expect("a wall");
     }
     for (wall, up) in [(2, 1.0), (3, -1.0)] {
-        engine.move_wall(wall, Motion::Velocity(Vector::<S>::build(|k| if k == 1 { up * speed } else { 0.0 })));
+        let closing = Vector::<S>::build(|k| if k == 1 { up * speed } else { 0.0 });
+        engine.move_wall(wall, Motion::Velocity(closing)).expect("a finite speed");
     }
     let around = measure::coordination(&engine);
     println!(

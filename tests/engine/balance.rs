@@ -72,7 +72,7 @@ pub(crate) fn thrown<S: Space>(law: Interaction, frame: impl Fn(Vector<S>) -> Ve
     }
     let settings = Settings { damping: 0.0, fixed_step: Some(1e-4), ..Settings::default() };
     let mut engine = Engine::new(&model::<S>(particles, vec![], law, settings)).unwrap();
-    engine.install_bonds(0.02, 1);
+    engine.install_bonds(0.02, 1).unwrap();
     engine
 }
 
@@ -126,9 +126,8 @@ fn cycle<S: Space>(law: Interaction) -> f64 {
     ];
     let settings = Settings { damping: 0.0, fixed_step: Some(1e-4), ..Settings::default() };
     let mut engine = Engine::new(&model::<S>(balls, vec![], law, settings)).unwrap();
-    engine.install_bonds(1e-9, 1);
-    engine.fix(0, true, true);
-    engine.fix(1, true, true);
+    engine.install_bonds(1e-9, 1).unwrap();
+    engine.fix(&[0, 1], true, true).unwrap();
     let legs = 4000;
     let way = 5e-3 / f64::from(legs) / 1e-4;
     let path = [([-way, 0.0], way), ([0.0, way], 0.0), ([way, 0.0], -way), ([0.0, -way], 0.0)];
@@ -142,7 +141,7 @@ fn cycle<S: Space>(law: Interaction) -> f64 {
     let mut before = load(&engine);
     for ([x, y], spin) in path {
         let velocity = along::<S>(0, x).plus(along::<S>(1, y));
-        engine.set_motion(1, velocity, about::<S>(spin));
+        engine.set_motion(1, velocity, about::<S>(spin)).unwrap();
         for _ in 0..legs {
             engine.advance(1).unwrap();
             let after = load(&engine);

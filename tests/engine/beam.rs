@@ -42,9 +42,9 @@ fn tip<S: Space>(force: Vector<S>, moment: Spin<S>) -> (Vector<S>, Spin<S>) {
     let balls = (0..=BONDS).map(|n| Particle::ball(place(n), LENGTH / 2.0, 2000.0, GRAIN)).collect();
     let settings = Settings { damping: 0.5, ..Settings::default() };
     let mut engine = Engine::new(&model::<S>(balls, vec![], soft, settings)).unwrap();
-    assert_eq!(engine.install_bonds(1e-9, 0), BONDS);
-    engine.fix(0, true, true);
-    engine.apply(BONDS, force, moment);
+    assert_eq!(engine.install_bonds(1e-9, 0).unwrap(), BONDS);
+    engine.fix(&[0], true, true).unwrap();
+    engine.apply(BONDS, force, moment).unwrap();
     let mut turned = Spin::<S>::zero();
     for _ in 0..30_000 {
         engine.advance(1).unwrap();

@@ -5,7 +5,7 @@ use flow::dem::simd::Width;
 use flow::dem::*;
 
 /// blake3 of everything a run leaves.
-fn digest<S: Space>(engine: &Engine<S>) -> String {
+pub(crate) fn digest<S: Space>(engine: &Engine<S>) -> String {
     use flow::dem::space::Tuple;
     let mut hash = blake3::Hasher::new();
     let mut put = |x: f64| {
@@ -40,7 +40,7 @@ fn digest<S: Space>(engine: &Engine<S>) -> String {
 /// A compression test past its peak; pieces of `every` steps must not matter either.
 fn compressed<S: Space>(model: &Model<S>, steps: u64, every: u64, threads: usize, width: Width) -> Engine<S> {
     let mut engine = Engine::new(model).unwrap();
-    engine.install_bonds(1e-5, 7);
+    engine.install_bonds(1e-5, 7).unwrap();
     engine.absorb_overlaps();
     engine.set_threads(threads);
     engine.set_width(width);

@@ -56,9 +56,8 @@ fn pair<S: Space>(linear: Linear, bond: Bond) -> Engine<S> {
     let balls = at.iter().zip(RADII).map(|(&x, r)| Particle::ball(x, r, 2000.0, GRAIN)).collect();
     let settings = Settings { damping: 0.0, fixed_step: Some(1.0), ..Settings::default() };
     let mut engine = Engine::new(&model::<S>(balls, vec![], Interaction { linear, bond }, settings)).unwrap();
-    assert_eq!(engine.install_bonds(1e-12, 1), 1);
-    engine.fix(0, true, true);
-    engine.fix(1, true, true);
+    assert_eq!(engine.install_bonds(1e-12, 1).unwrap(), 1);
+    engine.fix(&[0, 1], true, true).unwrap();
     engine
 }
 
@@ -74,7 +73,7 @@ struct Broke {
 
 /// Moves the second ball on, with the spin about the bond's axis or across it, until the bond breaks.
 fn until_broken<S: Space>(engine: &mut Engine<S>, velocity: Vector<S>, spin: Spin<S>) -> Broke {
-    engine.set_motion(1, velocity, spin);
+    engine.set_motion(1, velocity, spin).unwrap();
     let mut last = Broke { steps: 0.0, mode: Mode::Tension, normal: 0.0, shear: 0.0, bend: 0.0, twist: 0.0 };
     let start = engine.steps();
     for _ in 0..20_000 {
@@ -129,13 +128,13 @@ fn cemented<S: Space>(cases: &mut Vec<Case>) {
     // Bending turns both balls against each other, or the bond would shear.
     let mut engine = pair::<S>(soft(), cement(0.0));
     let share = RADII[1] / (RADII[0] + RADII[1]);
-    engine.set_motion(0, Vector::<S>::zero(), about::<S>(-share * angle / STEPS));
+    engine.set_motion(0, Vector::<S>::zero(), about::<S>(-share * angle / STEPS)).unwrap();
     let broke = until_broken(&mut engine, Vector::<S>::zero(), about::<S>((1.0 - share) * angle / STEPS));
     assert_eq!(broke.mode, Mode::Tension);
     push("bending, moment, N·m", "σ_c I/(β R̄), PC04", SIGMA * inertia / (BETA * R), broke.bend);
     push("bending, angle, rad", "σ_c/(β k̄_n R̄)", angle, broke.steps * angle / STEPS);
     let mut engine = pair::<S>(soft(), cement(0.0));
-    engine.set_motion(0, Vector::<S>::zero(), about::<S>(-share * angle / STEPS));
+    engine.set_motion(0, Vector::<S>::zero(), about::<S>(-share * angle / STEPS)).unwrap();
     let opening = 0.5 * SIGMA / KN;
     let broke = until_broken(&mut engine, along::<S>(0, opening / STEPS), about::<S>((1.0 - share) * angle / STEPS));
     push(
@@ -147,7 +146,7 @@ fn cemented<S: Space>(cases: &mut Vec<Case>) {
     push("tension and bending, share of the way", "1/(1/2 + 1)", 2.0 / 3.0, broke.steps / STEPS);
     let mut engine = pair::<S>(soft(), cement(0.5));
     let pressure = 0.4 * TAU;
-    engine.set_motion(1, along::<S>(0, -pressure / KN / 100.0), still);
+    engine.set_motion(1, along::<S>(0, -pressure / KN / 100.0), still).unwrap();
     engine.advance(100).unwrap();
     let way = (TAU + 0.5 * pressure) / KS;
     let broke = until_broken(&mut engine, along::<S>(1, way / STEPS), still);
@@ -180,7 +179,7 @@ fn point<S: Space>(cases: &mut Vec<Case>) {
     cases.push(Case::new(format!("{name}: contact bond in tension, N"), "σ_t A, PFC", pull, broke.normal, NEAR));
     let mut engine = make();
     let press = 0.2 * drag;
-    engine.set_motion(1, along::<S>(0, -press / KN / 100.0), Spin::<S>::zero());
+    engine.set_motion(1, along::<S>(0, -press / KN / 100.0), Spin::<S>::zero()).unwrap();
     engine.advance(100).unwrap();
     let broke = until_broken(&mut engine, along::<S>(1, drag / KS / STEPS), Spin::<S>::zero());
     assert_eq!(broke.mode, Mode::Shear);

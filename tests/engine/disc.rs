@@ -7,6 +7,7 @@
 
 use crate::block::*;
 use crate::case::{Case, Family, Near};
+use flow::dem::space::Tuple;
 use flow::dem::*;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -51,7 +52,7 @@ fn measured(rows: i32) -> [f64; 2] {
     for row in -rows / 2..=rows / 2 {
         for column in -rows..=rows {
             let x = [f64::from(column) + if row % 2 == 0 { 0.0 } else { 0.5 }, f64::from(row) * rise];
-            if x[0].hypot(x[1]) < 0.5 * diameter + 1e-6 {
+            if x.norm() < 0.5 * diameter + 1e-6 {
                 balls.push(Particle::<D2>::ball(x, 0.5, 2000.0, GRAIN));
             }
         }
@@ -68,9 +69,9 @@ fn measured(rows: i32) -> [f64; 2] {
     let law = Interaction { linear: Linear::direct(1e-6, 1e-6, 0.0), bond: Bond::Parallel(bond) };
     let last = balls.len() - 1;
     let mut engine = Engine::new(&model::<D2>(balls, vec![], law, Settings::default())).unwrap();
-    engine.install_bonds(1e-6, 0);
-    engine.apply(0, [0.0, LOAD], [0.0]);
-    engine.apply(last, [0.0, -LOAD], [0.0]);
+    engine.install_bonds(1e-6, 0).unwrap();
+    engine.apply(0, [0.0, LOAD], [0.0]).unwrap();
+    engine.apply(last, [0.0, -LOAD], [0.0]).unwrap();
     engine.advance(4000).unwrap();
     let unit = 2.0 * LOAD / (PI * diameter);
     let region = measure::Region::<D2>::Ball { centre: [0.0; 2], radius: MEASURED * diameter };
@@ -83,7 +84,7 @@ fn mean_field() -> [f64; 2] {
     let grid = 100;
     let inner: Vec<[f64; 2]> = (0..grid * grid)
         .map(|k| [k % grid, k / grid].map(|c| MEASURED * (2.0 * (f64::from(c) + 0.5) / f64::from(grid) - 1.0)))
-        .filter(|x| x[0].hypot(x[1]) <= MEASURED)
+        .filter(|x| x.norm() <= MEASURED)
         .collect();
     let sum = inner.iter().map(|&x| exact(x, 1.0)).fold([0.0; 2], |sum, stress| [0, 1].map(|k| sum[k] + stress[k]));
     sum.map(|x| x / inner.len() as f64)

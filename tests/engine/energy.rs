@@ -44,7 +44,7 @@ fn crushed<S: Space>(mut model: Model<S>, bond: Bond, steps: u64) -> f64 {
     }
     model.settings.damping = 0.3;
     let mut engine = Engine::new(&model).unwrap();
-    engine.install_bonds(1e-5, 7);
+    engine.install_bonds(1e-5, 7).unwrap();
     engine.absorb_overlaps();
     engine.keep_books();
     engine.advance(steps).unwrap();
@@ -62,7 +62,7 @@ fn bouncing() -> f64 {
     let law = Interaction::unbonded(Linear::direct(1e7, 1e7, 0.5));
     let ball = Particle::ball([0.0, 0.6], 0.5, 2000.0, GRAIN);
     let mut engine = Engine::<D2>::new(&model(vec![ball], vec![floor()], law, settings)).unwrap();
-    engine.set_motion(0, [0.1, 0.0], [0.0]);
+    engine.set_motion(0, [0.1, 0.0], [0.0]).unwrap();
     engine.keep_books();
     let mut worst: f64 = 0.0;
     for _ in 0..40 {
@@ -78,7 +78,7 @@ fn the_books_do_not_depend_on_threads() {
     let model = block::<D2>(20, 28, 2.0);
     let run = |threads| {
         let mut engine = Engine::new(&model).unwrap();
-        engine.install_bonds(1e-5, 7);
+        engine.install_bonds(1e-5, 7).unwrap();
         engine.keep_books();
         engine.set_threads(threads);
         engine.advance(1000).unwrap();

@@ -89,6 +89,18 @@ fn each_bad_number_is_named_alone() {
         (|m| m.settings.gravity[1] = f64::NAN, "gravity is NaN,"),
         (|m| m.settings.safety = 0.0, "safety factor of the time step is 0,"),
         (|m| m.settings.fixed_step = Some(-1e-6), "time step is -0.000001,"),
+        (|m| m.settings.bounds = Some([[0.0, f64::NAN], [1.0, 1.0]]), "lower bound is NaN,"),
+        (|m| m.settings.bounds = Some([[0.0, 2.0], [1.0, 1.0]]), "lower bound is 2, wanted a number below the upper"),
+        (|m| m.settings.bounds = Some([[0.0, 0.0], [1.0, f64::NAN]]), "upper bound is NaN,"),
+        (|m| m.settings.overlap_limit = f64::NAN, "overlap limit is NaN,"),
+        (|m| m.walls[0].point[1] += 1e-3, "particle 0 starts with an overlap of 2.0"),
+        (
+            |m| {
+                m.walls[1].motion =
+                    Motion::Servo(Servo { pressure: 1.0, area: -1.0, relaxation: 0.5, speed_limit: 1.0 })
+            },
+            "wall 1: servo area is -1,",
+        ),
         (|m| m.particles.clear(), "clump 0: pebble"),
         (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::direct(0.0, 1.0, 0.5))), "groups 0 and 0: kn is 0,"),
         (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::direct(1.0, -1.0, 0.5))), "groups 0 and 0: ks is -1,"),
@@ -147,7 +159,7 @@ fn runs_that_fail_say_why() {
     let mut model = block::<D2>(6, 6, 1.0);
     model.settings.bounds = Some([[-0.1, -0.1], [0.1, 0.1]]);
     let mut engine = Engine::new(&model).unwrap();
-    engine.set_motion(0, [-100.0, 0.0], [0.0]);
+    engine.set_motion(0, [-100.0, 0.0], [0.0]).unwrap();
     let failure = engine.advance(100_000).unwrap_err();
     assert!(matches!(failure, Failure::Escape { particle: 0, .. }), "{failure}");
     let mut model = block::<D2>(6, 6, 1.0);

@@ -113,7 +113,7 @@ fn space<S: Space>(c: f64, cases: &mut Vec<Case>) {
     cases.push(Case::new(format!("{name}: its spin, rad/s²"), "c μ g cos θ/R", expected, -turned, near));
     let _ = cos;
     let (start, mut engine) = (1.0, ball::<S>(0.0));
-    engine.set_motion(0, along::<S>(0, start), Spin::<S>::zero());
+    engine.set_motion(0, along::<S>(0, start), Spin::<S>::zero()).unwrap();
     let slip = |e: &Engine<S>| e.velocity(0).at(0) + turning::<S>(e.spin(0)) * 0.1;
     while slip(&engine) > 1e-4 * start {
         engine.advance(1).unwrap();

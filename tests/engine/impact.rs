@@ -37,7 +37,7 @@ fn dropped<S: Space>(law: Interaction, damping: f64, drift: f64) -> (Engine<S>, 
     let settings = Settings { damping, safety: 0.01, ..Settings::default() };
     let ball = Particle::ball(along::<S>(1, 0.5), 0.5, 2000.0, GRAIN);
     let mut engine = Engine::new(&model::<S>(vec![ball], vec![floor()], law, settings)).unwrap();
-    engine.set_motion(0, along::<S>(0, drift).plus(along::<S>(1, -SPEED)), Spin::<S>::zero());
+    engine.set_motion(0, along::<S>(0, drift).plus(along::<S>(1, -SPEED)), Spin::<S>::zero()).unwrap();
     let mut deepest: f64 = 0.0;
     for _ in 0..100_000 {
         engine.advance(1).unwrap();
@@ -121,7 +121,7 @@ fn two_balls<S: Space>(cases: &mut Vec<Case>) {
     ];
     let settings = Settings { damping: 0.0, safety: 0.01, ..Settings::default() };
     let mut engine = Engine::new(&model::<S>(balls, vec![], linear(Dashpot::default(), 0.0), settings)).unwrap();
-    engine.set_motion(0, along::<S>(0, SPEED), Spin::<S>::zero());
+    engine.set_motion(0, along::<S>(0, SPEED), Spin::<S>::zero()).unwrap();
     let (m1, m2) = (engine.mass(0), engine.mass(1));
     let gap = |e: &Engine<S>| e.position(1).minus(e.position(0)).norm() - 0.8;
     engine.advance(2).unwrap();

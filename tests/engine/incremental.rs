@@ -39,13 +39,12 @@ fn forces<S: Space>(normal_force: NormalForce, cases: &mut Vec<Case>) {
     let settings = Settings { damping: 0.0, fixed_step: Some(1e-3), ..Settings::default() };
     let mut engine = Engine::new(&model::<S>(balls, vec![], law(KN), settings)).unwrap();
     engine.absorb_overlaps();
-    engine.fix(0, true, true);
-    engine.fix(1, true, true);
+    engine.fix(&[0, 1], true, true).unwrap();
     let force = |e: &Engine<S>| e.contacts().map(|c| c.force().norm()).sum::<f64>();
     let press = |e: &mut Engine<S>, way: f64| {
-        e.set_motion(1, along::<S>(0, -way / 0.1), Spin::<S>::zero());
+        e.set_motion(1, along::<S>(0, -way / 0.1), Spin::<S>::zero()).unwrap();
         e.advance(100).unwrap();
-        e.set_motion(1, Vector::<S>::zero(), Spin::<S>::zero());
+        e.set_motion(1, Vector::<S>::zero(), Spin::<S>::zero()).unwrap();
         e.advance(1).unwrap();
         force(e)
     };

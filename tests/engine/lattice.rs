@@ -117,7 +117,7 @@ fn crystal<S: Space>(lattice: &Lattice, l: f64, law: Interaction) -> Engine<S> {
     let cell = Cell { low: Vector::<S>::zero(), edges, rate: [[0.0; 3]; 3] };
     let settings = Settings { damping: 0.0, cell: Some(cell), ..Settings::default() };
     let mut engine = Engine::new(&model::<S>(balls, vec![], law, settings)).unwrap();
-    engine.install_bonds(1e-6, 1);
+    engine.install_bonds(1e-6, 1).unwrap();
     engine
 }
 

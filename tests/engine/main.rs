@@ -13,6 +13,7 @@ mod bits;
 mod block;
 mod bond;
 mod case;
+mod changes;
 mod clump;
 mod disc;
 mod energy;

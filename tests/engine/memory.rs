@@ -25,23 +25,23 @@ fn resting() -> Engine<D2> {
 #[test]
 fn a_reference_gap_outlives_a_loss_of_contact() {
     let mut engine = resting();
-    engine.fix(0, true, true);
+    engine.fix(&[0], true, true).unwrap();
     engine.advance(10).unwrap();
     assert_eq!(engine.wall_force(0), [0.0, 0.0]);
     // The first ball rises by a third of its radius, far beyond the margin, and comes back.
     let steps = (0.15 / engine.time_step()).round() as u64;
     for up in [1.0, -1.0] {
-        engine.set_motion(0, [0.0, up], [0.0]);
+        engine.set_motion(0, [0.0, up], [0.0]).unwrap();
         engine.advance(steps).unwrap();
     }
-    engine.set_motion(0, [0.0, 0.0], [0.0]);
+    engine.set_motion(0, [0.0, 0.0], [0.0]).unwrap();
     engine.advance(1).unwrap();
     assert!(engine.contacts().all(|c| c.reference < -0.009), "a reference gap was lost");
     assert!(engine.wall_force(0)[1].abs() < 1.0, "{:?}", engine.wall_force(0));
     // Pressed in further, only the new overlap counts.
-    engine.set_motion(0, [0.0, -1.0], [0.0]);
+    engine.set_motion(0, [0.0, -1.0], [0.0]).unwrap();
     engine.advance(10).unwrap();
-    engine.set_motion(0, [0.0, 0.0], [0.0]);
+    engine.set_motion(0, [0.0, 0.0], [0.0]).unwrap();
     engine.advance(1).unwrap();
     let pressed = 0.49 - engine.position(0)[1];
     assert!((engine.wall_force(0)[1] / (-1e7 * pressed) - 1.0).abs() < 1e-6);
@@ -51,7 +51,7 @@ fn a_reference_gap_outlives_a_loss_of_contact() {
 fn renewing_the_list_changes_no_bit() {
     let run = |threads: &[usize]| {
         let mut engine = Engine::new(&block::<D2>(20, 20, 1.0)).unwrap();
-        engine.install_bonds(1e-5, 7);
+        engine.install_bonds(1e-5, 7).unwrap();
         for &threads in threads {
             // Dealing the contacts out anew is what a renewal does to their state.
             engine.set_threads(threads);
@@ -68,7 +68,7 @@ fn equal_steps_keep_the_mass_and_lengthen_the_step() {
     let mut step = |masses| {
         model.settings.masses = masses;
         let mut engine = Engine::new(&model).unwrap();
-        engine.install_bonds(1e-5, 7);
+        engine.install_bonds(1e-5, 7).unwrap();
         let total: f64 = (0..engine.particle_count()).map(|p| engine.moving_mass(p)[0]).sum();
         (engine.time_step(), total)
     };

@@ -73,7 +73,7 @@ fn elastic(balls: &[Particle<D2>], edge: f64, ratio: f64) -> ([f64; 2], usize) {
     let strained = |axis: usize| {
         let model = model::<D2>(balls.to_vec(), vec![], law(ratio), settings(edge, 1.0));
         let mut engine = Engine::new(&model).unwrap();
-        let bonds = engine.install_bonds(0.0, 1);
+        let bonds = engine.install_bonds(0.0, 1).unwrap();
         let mut rate = [[0.0; 3]; 3];
         rate[axis][axis] = 1e-6 / (2000.0 * engine.time_step());
         engine.strain_cell(rate).unwrap();

@@ -31,7 +31,7 @@ fn cases() -> Vec<Case> {
     let mut model = block::<D2>(20, 20, 0.0);
     model.walls[1].motion = Motion::Servo(Servo { pressure: 1e6, area: 0.02, relaxation: 0.5, speed_limit: 0.5 });
     let mut engine = Engine::new(&model).unwrap();
-    engine.install_bonds(1e-5, 7);
+    engine.install_bonds(1e-5, 7).unwrap();
     engine.absorb_overlaps();
     engine.advance(6000).unwrap();
     let near = Near::Relative(1e-2);

@@ -88,7 +88,7 @@ fn crushed<S: Space>((columns, rows): (usize, usize), factors: Factors, steps: u
         model.contacts = std::mem::take(&mut model.contacts).with(a, b, law);
     }
     let mut engine = Engine::new(&model).unwrap();
-    engine.install_bonds(1e-5 * length, 7);
+    engine.install_bonds(1e-5 * length, 7).unwrap();
     engine.absorb_overlaps();
     let mut largest = 0.0_f64;
     let watch = |engine: &Engine<S>| {

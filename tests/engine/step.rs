@@ -70,16 +70,16 @@ fn growth<S: Space>(columns: usize, rows: usize, factor: f64) -> f64 {
     }
     let step = {
         let mut engine = Engine::new(&model).unwrap();
-        engine.install_bonds(1e-5, 7);
+        engine.install_bonds(1e-5, 7).unwrap();
         engine.time_step()
     };
     model.settings.fixed_step = Some(step / 0.8 * factor);
     let mut engine = Engine::new(&model).unwrap();
-    engine.install_bonds(1e-5, 7);
+    engine.install_bonds(1e-5, 7).unwrap();
     engine.absorb_overlaps();
     for p in 0..engine.particle_count() {
         let x = engine.position(p);
-        engine.set_motion(p, x.times(-1.0), Spin::<S>::zero());
+        engine.set_motion(p, x.times(-1.0), Spin::<S>::zero()).unwrap();
     }
     let total = |e: &Engine<S>| {
         let energy = measure::energy(e);

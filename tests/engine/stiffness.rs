@@ -90,12 +90,11 @@ fn cemented(multiplier: f64) -> Interaction {
 /// the same angle (N·m).
 fn moved<S: Space>(multiplier: f64, gap: f64, way: f64) -> [f64; 2] {
     let mut engine = pair::<S>(cemented(multiplier), RADII[1], gap);
-    engine.install_bonds(1e-4, 0);
-    engine.fix(0, true, true);
-    engine.fix(1, true, true);
+    engine.install_bonds(1e-4, 0).unwrap();
+    engine.fix(&[0, 1], true, true).unwrap();
     let steps = 1000;
     let rate = way / (steps as f64 * engine.time_step());
-    engine.set_motion(1, along::<S>(0, -rate), about::<S>(rate));
+    engine.set_motion(1, along::<S>(0, -rate), about::<S>(rate)).unwrap();
     // The forces of a step are those of the positions at its start, after the displacement that led there.
     engine.advance(steps + 1).unwrap();
     let contact = engine.contacts().find(|c| matches!(c.other, Other::Particle(_))).unwrap();

@@ -55,7 +55,7 @@ fn pair<S: Space>() -> Engine<S> {
     let particles = vec![ball(-0.5), ball(0.5)];
     let model = Model { particles, clumps: vec![], walls: vec![], contacts, settings };
     let mut engine = Engine::new(&model).unwrap();
-    engine.install_bonds(1e-9, 1);
+    engine.install_bonds(1e-9, 1).unwrap();
     engine
 }
 
@@ -76,7 +76,7 @@ fn turned<S: Space>(cases: &mut Vec<Case>, name: &str, axis: [f64; 3]) {
     let aside = if S::DIMENSION == 2 { 0.0 } else { 5e-5 };
     let spin =
         if S::DIMENSION == 2 { about::<S>(5e-5 / STEP) } else { Spin::<S>::build(|k| [3e-5, 4e-5, 5e-5][k] / STEP) };
-    engine.set_motion(1, vector([1e-5, 1e-4, aside]).times(1.0 / STEP), spin);
+    engine.set_motion(1, vector([1e-5, 1e-4, aside]).times(1.0 / STEP), spin).unwrap();
     engine.advance(1).unwrap();
     engine.calm();
     engine.advance(1).unwrap();
@@ -95,7 +95,7 @@ fn turned<S: Space>(cases: &mut Vec<Case>, name: &str, axis: [f64; 3]) {
                 (Vector::<S>::zero(), Spin::<S>::zero())
             };
             let push = next.minus(engine.velocity(p)).times(MASS / STEP);
-            engine.apply(p, push, spin.minus(engine.spin(p)).times(MASS / STEP));
+            engine.apply(p, push, spin.minus(engine.spin(p)).times(MASS / STEP)).unwrap();
         }
         engine.advance(1).unwrap();
     }

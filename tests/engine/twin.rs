@@ -29,7 +29,7 @@ fn thrown<S: Space>() -> Engine<S> {
     let contacts = ContactTable::new().with(GRAIN, GRAIN, law);
     let model = Model { particles, clumps: vec![], walls: vec![], contacts, settings };
     let mut engine = Engine::new(&model).unwrap();
-    engine.install_bonds(0.0, 1);
+    engine.install_bonds(0.0, 1).unwrap();
     engine.advance(1500).unwrap();
     engine
 }

@@ -1,4 +1,5 @@
-//! What a caller may read. Particles are named by their places in the caller's list.
+//! What a caller may read. Particles, clumps and walls are named by their places in the caller's list; reading a place that
+//! there is not panics, as it does on a slice.
 
 use super::{Engine, Settings};
 use crate::dem::body::{self, Rigid};
@@ -152,7 +153,7 @@ impl<S: Space> Engine<S> {
         self.walls[w].face.velocity
     }
 
-    /// Force of the balls on wall `w`, N, at the positions of the last step.
+    /// Force of the balls on wall `w`, N, at the positions of the last step; 0 where there is no such wall.
     pub fn wall_force(&self, w: usize) -> Vector<S> {
         let mut sum = Vector::<S>::zero();
         for (section, _) in self.stretches().filter(|(s, _)| s.wall() == Some(w as u32)) {

@@ -2,6 +2,7 @@
 
 use super::Engine;
 use crate::dem::contact::Key;
+use crate::dem::error::Faults;
 use crate::dem::interaction::Bond;
 use crate::dem::law::{Memory, REFERENCE, Rows, SHEAR};
 use crate::dem::space::Space;
@@ -13,7 +14,11 @@ impl<S: Space> Engine<S> {
     /// The bond starts without force. A negative gap becomes the reference gap (a contact bond takes any gap), and the
     /// spring's shear force is dropped with its overlap. Strengths are drawn per contact from N(mean, deviation),
     /// negative ones again, from the stream "bond strength" of `seed`, contacts in the caller's order.
-    pub fn install_bonds(&mut self, gap: f64, seed: u64) -> usize {
+    ///
+    /// # Errors
+    /// A gap that is not finite or above the largest radius.
+    pub fn install_bonds(&mut self, gap: f64, seed: u64) -> Result<usize, Faults> {
+        self.admit_gap(gap)?;
         // Bonded bodies move little: begin with a narrow list.
         self.margin = (0.02 * self.smallest_radius).max(1.01 * gap);
         self.relist();
@@ -39,7 +44,7 @@ impl<S: Space> Engine<S> {
             }
         });
         self.choose_masses();
-        chosen.len()
+        Ok(chosen.len())
     }
 
     /// Strengths of the chosen contacts, drawn in the caller's order; each stands at the number of its contact.

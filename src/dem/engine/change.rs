@@ -1,4 +1,6 @@
 //! What a caller may change between runs. Particles are named by their places in the caller's list.
+//!
+//! A call that is refused has changed nothing; calls that return nothing cannot be wrong.
 
 use super::Engine;
 use super::build::{classes, moving};
@@ -27,9 +29,12 @@ impl<S: Space> Engine<S> {
         }
     }
 
-    /// Sets velocity and spin of a ball (or of the clump it belongs to).
-    pub fn set_motion(&mut self, particle: usize, velocity: Vector<S>, spin: Spin<S>) {
-        let p = self.place[particle] as usize;
+    /// Sets velocity (m/s) and spin (rad/s) of a ball, or of the clump it belongs to.
+    ///
+    /// # Errors
+    /// No such particle, or a number that is not finite.
+    pub fn set_motion(&mut self, particle: usize, velocity: Vector<S>, spin: Spin<S>) -> Result<(), Faults> {
+        let p = self.admit(particle, ("velocity", velocity), ("spin", spin))?;
         match self.clumps.get_mut(self.bodies[p] as usize) {
             Some(clump) => {
                 clump.set_motion(velocity, spin);
@@ -40,39 +45,56 @@ impl<S: Space> Engine<S> {
                 set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, velocity, spin);
             }
         }
+        Ok(())
     }
 
-    /// Takes a ball's velocity (and spin) out of the equations of motion: they stay as set by
+    /// Takes the velocity (and spin) of some balls out of the equations of motion, or gives them back: they stay as set by
     /// [`set_motion`](Self::set_motion).
-    pub fn fix(&mut self, particle: usize, velocity: bool, spin: bool) {
-        self.fixed[self.place[particle] as usize] = [velocity, spin];
+    ///
+    /// # Errors
+    /// Every particle that does not exist or is a pebble of a clump.
+    pub fn fix(&mut self, particles: &[usize], velocity: bool, spin: bool) -> Result<(), Faults> {
+        for p in self.admit_fixing(particles)? {
+            self.fixed[p] = [velocity, spin];
+        }
         self.set_inverse_masses();
         self.derive_step();
+        Ok(())
     }
 
-    /// Puts a constant force (and moment) on a ball, or at the centre of the clump it belongs to, instead of an earlier one.
-    pub fn apply(&mut self, particle: usize, force: Vector<S>, moment: Spin<S>) {
-        let p = self.place[particle] as usize;
+    /// Puts a constant force (N) and moment (N·m) on a ball, or at the centre of the clump it belongs to, instead of an
+    /// earlier one.
+    ///
+    /// # Errors
+    /// No such particle, or a number that is not finite.
+    pub fn apply(&mut self, particle: usize, force: Vector<S>, moment: Spin<S>) -> Result<(), Faults> {
+        let p = self.admit(particle, ("force", force), ("moment", moment))?;
         let body = self.clumps.get(self.bodies[p] as usize).map_or(p, |clump| clump.pebbles.start);
         self.applied.insert(body, (force, moment));
         self.set_inverse_masses();
+        Ok(())
     }
 
-    /// Multiplies the radius of some balls; mass and inertia follow at constant density. Stiffnesses are derived anew.
-    pub fn scale_radii(&mut self, factors: &[(usize, f64)]) {
-        for &(particle, factor) in factors {
-            let p = self.place[particle] as usize;
+    /// Multiplies the radius of some balls; mass and inertia follow at constant density. Stiffnesses of the springs (and
+    /// the masses of [`Masses::EqualStep`](super::Masses)) are derived anew; bonds keep theirs.
+    ///
+    /// # Errors
+    /// Every particle that does not exist or is a pebble of a clump, every factor that is not above 0 or makes a radius or
+    /// mass that is no number above 0; a periodic cell with an edge below six times the largest radius.
+    pub fn scale_radii(&mut self, factors: &[(usize, f64)]) -> Result<(), Faults> {
+        let places = self.admit_scaling(factors)?;
+        for (p, &(_, factor)) in places.into_iter().zip(factors) {
             let volume = S::volume(self.radii[p]);
             self.radii[p] *= factor;
             let growth = S::volume(self.radii[p]) / volume;
             self.masses[p] *= growth;
             self.inertias[p] *= growth * factor * factor;
-            self.moving[p] = [self.masses[p], self.inertias[p]];
             self.records[p * S::RECORD].0[3] = self.radii[p];
         }
         self.smallest_radius = self.radii.iter().copied().fold(f64::INFINITY, f64::min);
-        self.set_inverse_masses();
-        self.renew();
+        self.relist();
+        self.choose_masses();
+        Ok(())
     }
 
     /// Replaces the contact table. Contacts keep their reference gaps and forces; bonds stay with the values of their
@@ -131,9 +153,9 @@ impl<S: Space> Engine<S> {
     /// Adds a wall; its place.
     ///
     /// # Errors
-    /// All faults of the wall.
+    /// All faults of the wall, and every ball that is deeper in it than a start may be.
     pub fn add_wall(&mut self, wall: &Wall<S>) -> Result<usize, Faults> {
-        super::validate::check_wall(self.walls.len(), wall, self.cell.is_some())?;
+        self.admit_new_wall(wall)?;
         self.walls.push(moving(wall));
         if let Err(faults) = super::validate::check_table(&self.table, &self.meetings()) {
             self.walls.pop();
@@ -144,19 +166,29 @@ impl<S: Space> Engine<S> {
     }
 
     /// Takes a wall away. The places of the others stay.
-    pub fn remove_wall(&mut self, w: usize) {
+    ///
+    /// # Errors
+    /// No such wall, or one that was taken away.
+    pub fn remove_wall(&mut self, w: usize) -> Result<(), Faults> {
+        self.admit_wall(w)?;
         self.walls[w].present = false;
         self.walls[w].motion = Motion::Velocity(Vector::<S>::zero());
         self.walls[w].face.velocity = Vector::<S>::zero();
         self.renew();
+        Ok(())
     }
 
     /// Changes how a wall moves.
-    pub fn move_wall(&mut self, w: usize, motion: Motion<S>) {
+    ///
+    /// # Errors
+    /// No such wall, one that was taken away, or all faults of the motion.
+    pub fn move_wall(&mut self, w: usize, motion: Motion<S>) -> Result<(), Faults> {
+        self.admit_motion(w, &motion)?;
         self.walls[w].motion = motion;
         if let Motion::Velocity(v) = motion {
             self.walls[w].face.velocity = v;
         }
+        Ok(())
     }
 
     /// Which masses move the balls from now on, for the present contacts.
@@ -166,11 +198,16 @@ impl<S: Space> Engine<S> {
     }
 
     /// Local damping from now on.
-    pub fn set_damping(&mut self, alpha: f64) {
+    ///
+    /// # Errors
+    /// A number outside [0, 1).
+    pub fn set_damping(&mut self, alpha: f64) -> Result<(), Faults> {
+        super::validate::check_damping(alpha)?;
         self.settings.damping = alpha;
+        Ok(())
     }
 
-    /// Threads of a run from now on, at least one. Results do not depend on it.
+    /// Threads of a run from now on: at least one, at most one for every 64 particles. Results do not depend on it.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
         self.rewrite(&[], |_, _, _| ());
@@ -181,7 +218,8 @@ impl<S: Space> Engine<S> {
         self.threads
     }
 
-    /// Contacts computed at a time; the machine's best by default. Results do not depend on it.
+    /// Contacts computed at a time; the machine's best by default, the narrowest where the machine lacks the one asked for.
+    /// Results do not depend on it.
     pub fn set_width(&mut self, width: Width) {
         self.width = width;
     }

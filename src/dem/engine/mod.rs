@@ -8,6 +8,7 @@ mod change;
 mod domain;
 mod list;
 mod march;
+mod refuse;
 mod run;
 mod timestep;
 mod validate;

@@ -15,7 +15,7 @@ const STRIDE: f64 = 2.0;
 const CHECK: u64 = 1000;
 
 impl<S: Space> Engine<S> {
-    /// Makes `steps` steps; every `every` steps (and at the end) `watch` looks at the engine and may stop it.
+    /// Makes `steps` steps; every `every` steps (at least one, and at the end) `watch` looks at the engine and may stop it.
     ///
     /// # Errors
     /// Why the run failed.
@@ -37,7 +37,7 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// Why the run failed.
     pub fn advance(&mut self, steps: u64) -> Result<(), Failure> {
-        let end = self.step + steps;
+        let end = self.step.saturating_add(steps);
         while self.step < end {
             if self.stale {
                 self.check()?;

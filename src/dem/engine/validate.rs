@@ -10,16 +10,16 @@ use crate::dem::particle::Group;
 use crate::dem::space::{Space, Tuple, Vector};
 use std::collections::BTreeMap;
 
-const POSITIVE: &str = "a number above 0";
+pub(super) const POSITIVE: &str = "a number above 0";
 const NOT_NEGATIVE: &str = "0 or more";
-const FINITE: &str = "a finite number";
+pub(super) const FINITE: &str = "a finite number";
 const WALLS_IN_CELL: &str = "number of walls in a periodic cell";
 
-fn ok(faults: Vec<Fault>) -> Result<(), Faults> {
+pub(super) fn ok(faults: Vec<Fault>) -> Result<(), Faults> {
     if faults.is_empty() { Ok(()) } else { Err(Faults(faults)) }
 }
 
-fn positive(x: f64) -> bool {
+pub(super) fn positive(x: f64) -> bool {
     x > 0.0 && x.is_finite()
 }
 
@@ -38,6 +38,10 @@ pub(super) fn check<S: Space>(model: &Model<S>) -> Result<(), Faults> {
     faults.extend(table_faults(&model.contacts, &meetings));
     if faults.is_empty() {
         overlaps(model, &clump_of, &mut faults);
+        for (w, wall) in model.walls.iter().enumerate() {
+            let balls = model.particles.iter().map(|p| (p.position, p.radius));
+            faults.extend(wall_overlaps(w, wall, balls, model.settings.overlap_limit));
+        }
     }
     ok(faults)
 }
@@ -75,10 +79,7 @@ fn cell<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) {
         if !low.is_finite() {
             faults.push(Fault::Setting { quantity: "corner of the cell", value: low, wanted: FINITE });
         }
-        if !(edge >= 6.0 * largest && edge.is_finite()) {
-            let wanted = "at least six times the largest radius";
-            faults.push(Fault::Setting { quantity: "edge of the cell", value: edge, wanted });
-        }
+        faults.extend(cell_edge(edge, largest));
         let outside = |x: f64| !(x >= low && x <= low + edge);
         for (particle, p) in model.particles.iter().enumerate().filter(|(_, p)| outside(p.position.at(k))) {
             let value = p.position.at(k);
@@ -90,6 +91,13 @@ fn cell<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) {
         let value = model.walls.len() as f64;
         faults.push(Fault::Setting { quantity: WALLS_IN_CELL, value, wanted: "none" });
     }
+}
+
+/// An edge on which a pair could meet twice.
+pub(super) fn cell_edge(edge: f64, largest: f64) -> Option<Fault> {
+    let wanted = "at least six times the largest radius";
+    let good = edge >= 6.0 * largest && edge.is_finite();
+    (!good).then_some(Fault::Setting { quantity: "edge of the cell", value: edge, wanted })
 }
 
 /// Pairs of groups that can meet: of different bodies, and of particles with walls.
@@ -186,7 +194,19 @@ fn wall_faults<S: Space>(wall: usize, w: &Wall<S>) -> Vec<Fault> {
     let length = w.normal.norm();
     check("point", w.point.norm(), w.point.norm().is_finite(), FINITE);
     check("length of the normal", length, positive(length), POSITIVE);
-    match w.motion {
+    faults.extend(motion_faults(wall, &w.motion));
+    faults
+}
+
+/// Faults of how a wall moves.
+pub(super) fn motion_faults<S: Space>(wall: usize, motion: &Motion<S>) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut check = |quantity, value: f64, good: bool, wanted| {
+        if !good {
+            faults.push(Fault::Wall { wall, quantity, value, wanted });
+        }
+    };
+    match motion {
         Motion::Velocity(v) => check("velocity", v.norm(), v.norm().is_finite(), FINITE),
         Motion::Servo(s) => {
             check("servo pressure", s.pressure, s.pressure.is_finite(), FINITE);
@@ -198,19 +218,33 @@ fn wall_faults<S: Space>(wall: usize, w: &Wall<S>) -> Vec<Fault> {
     faults
 }
 
+/// Checks local damping.
+pub(super) fn check_damping(alpha: f64) -> Result<(), Faults> {
+    ok(damping_fault(alpha).into_iter().collect())
+}
+
+fn damping_fault(alpha: f64) -> Option<Fault> {
+    let good = (0.0..1.0).contains(&alpha);
+    (!good).then_some(Fault::Setting { quantity: "damping", value: alpha, wanted: "in [0, 1)" })
+}
+
 fn settings<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) {
     let s = &model.settings;
+    faults.extend(damping_fault(s.damping));
     let mut check = |quantity, value: f64, good: bool, wanted| {
         if !good {
             faults.push(Fault::Setting { quantity, value, wanted });
         }
     };
-    check("damping", s.damping, (0.0..1.0).contains(&s.damping), "in [0, 1)");
     check("gravity", s.gravity.norm(), s.gravity.norm().is_finite(), FINITE);
     check("safety factor of the time step", s.safety, s.safety > 0.0 && s.safety <= 1.0, "in (0, 1]");
     check("overlap limit", s.overlap_limit, s.overlap_limit >= 0.0, NOT_NEGATIVE);
     if let Some(dt) = s.fixed_step {
         check("time step", dt, positive(dt), POSITIVE);
+    }
+    for (low, high) in s.bounds.iter().flat_map(|[low, high]| (0..S::DIMENSION).map(|k| (low.at(k), high.at(k)))) {
+        check("lower bound", low, !low.is_nan() && !(low >= high), "a number below the upper bound");
+        check("upper bound", high, !high.is_nan(), "a number");
     }
 }
 
@@ -302,4 +336,17 @@ fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
             faults.push(Fault::Overlap { a, b, overlap });
         }
     });
+}
+
+/// Balls, by place and radius, that start too deep in a wall.
+pub(super) fn wall_overlaps<S: Space>(
+    wall: usize,
+    face: &Wall<S>,
+    balls: impl Iterator<Item = (Vector<S>, f64)>,
+    limit: f64,
+) -> Vec<Fault> {
+    let normal = face.normal.times(1.0 / face.normal.norm());
+    let depth = |(x, radius): (Vector<S>, f64)| 1.0 - x.minus(face.point).dot(normal) / radius;
+    let deep = balls.map(depth).enumerate().filter(|&(_, overlap)| overlap > limit);
+    deep.map(|(particle, overlap)| Fault::InWall { wall, particle, overlap }).collect()
 }

@@ -12,7 +12,7 @@ use super::rig::Machine;
 use super::snapshot::{Ladder, Snapshot, State};
 use crate::dem::genesis::specimen::Specimen;
 use crate::dem::measure::{Energy, energy, links};
-use crate::dem::{D2, Engine, Failure, Faults, Watch};
+use crate::dem::{D2, Engine, Failure, Fault, Faults, Watch};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of test.
@@ -48,11 +48,28 @@ impl Loading {
         Self { kind, speed: 0.02, platen_friction: 0.0, machine: Machine::default(), rule: Rule::default() }
     }
 
+    /// What is wrong with speed, sampling and stopping; the engine checks the rest.
+    fn faults(&self) -> Vec<Fault> {
+        let rule = &self.rule;
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let share = |x: f64| x > 0.0 && x <= 1.0;
+        let rules = [
+            ("speed of the test", self.speed, positive(self.speed), "a number above 0"),
+            ("strain between samples", rule.sample_strain, positive(rule.sample_strain), "a number above 0"),
+            ("share of the peak at the end", rule.stop_fraction, share(rule.stop_fraction), "in (0, 1]"),
+            ("seating stress", rule.seating_stress, rule.seating_stress >= 0.0, "0 or more"),
+            ("strain limit", rule.strain_limit, positive(rule.strain_limit), "a number above 0"),
+        ];
+        let snapshots = rule.snapshots.iter().map(|&x| ("share of the peak of a snapshot", x, share(x), "in (0, 1]"));
+        let bad = rules.into_iter().chain(snapshots).filter(|rule| !rule.2);
+        bad.map(|(quantity, value, _, wanted)| Fault::Setting { quantity, value, wanted }).collect()
+    }
+
     /// Mounts the specimen and runs the test to its end. `seed` draws bond strengths where they scatter; `watch` sees every
     /// sample and may interrupt.
     ///
     /// # Errors
-    /// The specimen's outline does not fit the test, or what the engine finds wrong.
+    /// All faults of the settings, an outline of the specimen that does not fit the test, or what the engine finds wrong.
     pub fn run(
         &self,
         specimen: &Specimen,
@@ -60,6 +77,10 @@ impl Loading {
         seed: u64,
         watch: &mut dyn FnMut(&Sample) -> Watch,
     ) -> Result<TestRecord, TestError> {
+        let faults = self.faults();
+        if !faults.is_empty() {
+            return Err(Faults(faults).into());
+        }
         match self.kind {
             TestKind::Uniaxial => super::uniaxial::run(self, specimen, material, seed, watch),
             TestKind::Brazilian => super::brazilian::run(self, specimen, material, seed, watch),
@@ -81,7 +102,7 @@ pub enum TestError {
         /// Settings that make it.
         remedy: &'static str,
     },
-    /// Faults that the engine finds.
+    /// Faults of the settings, or those that the engine finds.
     #[error(transparent)]
     Faults(#[from] Faults),
 }

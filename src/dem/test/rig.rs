@@ -56,7 +56,7 @@ pub fn mount(
         },
     };
     let mut engine = Engine::new(&model)?;
-    engine.install_bonds(material.bonding.gap * specimen.mean_radius(), seed);
+    engine.install_bonds(material.bonding.gap * specimen.mean_radius(), seed)?;
     engine.absorb_overlaps();
     Ok(engine)
 }
@@ -75,15 +75,19 @@ fn clump(clump: &crate::dem::genesis::clump::Clump) -> Clump<D2> {
 }
 
 /// Gives every body the velocity that `field` has at its centre, without spin: a start without a shock.
-pub fn set_velocities(engine: &mut Engine<D2>, field: impl Fn(Point) -> Point) {
+///
+/// # Errors
+/// A velocity that is not finite.
+pub fn set_velocities(engine: &mut Engine<D2>, field: impl Fn(Point) -> Point) -> Result<(), Faults> {
     for i in 0..engine.particle_count() {
         if engine.clump_of(i).is_none() {
             let velocity = field(engine.position(i));
-            engine.set_motion(i, velocity, [0.0]);
+            engine.set_motion(i, velocity, [0.0])?;
         }
     }
     for c in 0..engine.clump_count() {
         let clump = engine.clump(c);
-        engine.set_motion(clump.pebbles[0], field(clump.centre), [0.0]);
+        engine.set_motion(clump.pebbles[0], field(clump.centre), [0.0])?;
     }
+    Ok(())
 }

@@ -39,12 +39,11 @@ pub(super) fn run(
     let mut engine = mount(specimen, material, Vec::new(), 0.0, &test.machine, seed)?;
     let half = (0.5 - GRIP) * height;
     let rate = test.speed / half;
-    set_velocities(&mut engine, |x| [0.0, test.speed * (x[1] / half).clamp(-1.0, 1.0)]);
+    set_velocities(&mut engine, |x| [0.0, test.speed * (x[1] / half).clamp(-1.0, 1.0)])?;
     let grips = grips(specimen, half);
     let length = free_length(specimen, &grips);
-    for (i, _) in grips.iter().enumerate().filter(|(_, side)| **side != 0) {
-        engine.fix(i, true, true);
-    }
+    let gripped: Vec<usize> = (0..grips.len()).filter(|&i| grips[i] != 0).collect();
+    engine.fix(&gripped, true, true)?;
     let gauges = Gauges::new(height, &specimen.centres, &specimen.radii);
     let bonds = engine.bond_count();
     let marks = [-1, 1].map(|side| grips.iter().position(|&s| s == side));

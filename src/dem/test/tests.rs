@@ -7,7 +7,7 @@ use crate::dem::genesis::packing::Packing;
 use crate::dem::genesis::region::Region;
 use crate::dem::genesis::specimen::{Recipe, Specimen};
 use crate::dem::measure::{self, stress};
-use crate::dem::{D2, Watch};
+use crate::dem::{D2, Faults, Watch};
 
 fn material(modulus: f64, ratio: f64, strength: f64) -> Material {
     let bonded =
@@ -148,6 +148,29 @@ fn an_outline_that_does_not_fit_names_the_remedy() {
     let disc = random(Region::Disc { diameter: 0.05 }, 2e-3);
     let error = Loading::new(TestKind::Uniaxial).run(&disc, &material(20e9, 2.5, 20e6), 1, &mut |_| Watch::Continue);
     assert!(matches!(error.unwrap_err(), TestError::Outline { wanted: "rectangle", .. }));
+}
+
+/// Each would run for ever or not at all.
+#[test]
+fn settings_of_a_test_that_cannot_end_are_named() {
+    let mut test = loading(TestKind::Uniaxial, 0.0);
+    test.rule.sample_strain = f64::NAN;
+    test.rule.stop_fraction = 1.5;
+    test.rule.strain_limit = -1.0;
+    test.rule.snapshots = vec![0.5, 0.0];
+    let error = test.run(&small(), &material(20e9, 2.5, 20e6), 1, &mut |_| Watch::Continue).unwrap_err();
+    let TestError::Faults(Faults(faults)) = error else { panic!("{error}") };
+    let text: Vec<String> = faults.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        text,
+        [
+            "speed of the test is 0, wanted a number above 0",
+            "strain between samples is NaN, wanted a number above 0",
+            "share of the peak at the end is 1.5, wanted in (0, 1]",
+            "strain limit is -1, wanted a number above 0",
+            "share of the peak of a snapshot is 0, wanted in (0, 1]",
+        ]
+    );
 }
 
 /// Elastic disc under point loads: at the centre compression 3 along the load and tension 1 across it, in units of

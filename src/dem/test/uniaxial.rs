@@ -40,7 +40,7 @@ pub(super) fn run(
     };
     let mut engine = between_platens(test, specimen, material, seed)?;
     let rate = 2.0 * test.speed / height;
-    set_velocities(&mut engine, |x| [0.0, -rate * x[1]]);
+    set_velocities(&mut engine, |x| [0.0, -rate * x[1]])?;
     let gauges = Gauges::new(height, &specimen.centres, &specimen.radii);
     let bonds = engine.bond_count();
     let measure = |engine: &Engine<D2>| {
