@@ -177,16 +177,60 @@ fn point<S: Space>(cases: &mut Vec<Case>) {
     let broke = until_broken(&mut make(), along::<S>(0, pull / KN / STEPS), Spin::<S>::zero());
     assert_eq!(broke.mode, Mode::Tension);
     cases.push(Case::new(format!("{name}: contact bond in tension, N"), "σ_t A, PFC", pull, broke.normal, NEAR));
-    let mut engine = make();
-    let press = 0.2 * drag;
-    engine.set_motion(1, along::<S>(0, -press / KN / 100.0), Spin::<S>::zero()).unwrap();
-    engine.advance(100).unwrap();
-    let broke = until_broken(&mut engine, along::<S>(1, drag / KS / STEPS), Spin::<S>::zero());
+    let broke = until_broken(&mut make(), along::<S>(1, drag / KS / STEPS), Spin::<S>::zero());
     assert_eq!(broke.mode, Mode::Shear);
     cases.push(Case::new(format!("{name}: contact bond in shear, N"), "τ_s A, PFC", drag, broke.shear, NEAR));
-    engine.advance(1).unwrap();
+    for (shear_break, what) in [(ShearBreak::Keep, "kept"), (ShearBreak::Zero, "zeroed")] {
+        let bond = ContactBond { shear_break, ..bond };
+        let made = pair::<S>(Linear::direct(KN, KS, 0.5), Bond::Contact(bond));
+        after_shear_break(made, drag, &format!("{name}, shear force {what}"), shear_break, cases);
+    }
+}
+
+/// Normal (compression positive) and shear force of the one contact.
+fn carried<S: Space>(engine: &Engine<S>) -> [f64; 2] {
     let contact = engine.contacts().next().unwrap();
-    let kept = contact.force().minus(contact.normal.times(contact.force().dot(contact.normal))).norm();
-    let pressed = -contact.force().dot(contact.normal);
-    cases.push(Case::new(format!("{name}: friction after its break, N"), "μ F_n, PFC 3", 0.5 * pressed, kept, NEAR));
+    let normal = contact.force().dot(contact.normal);
+    [-normal, contact.force().minus(contact.normal.times(normal)).norm()]
+}
+
+/// A pressed pair sheared until its contact bond breaks, and beyond; one that is pulled and sheared.
+fn after_shear_break<S: Space>(
+    mut engine: Engine<S>,
+    drag: f64,
+    label: &str,
+    shear_break: ShearBreak,
+    cases: &mut Vec<Case>,
+) {
+    let mut push = |what: &str, source, expected, got, near| {
+        cases.push(Case::new(format!("{label}: {what}"), source, expected, got, near));
+    };
+    let (still, slide) = (Spin::<S>::zero(), along::<S>(1, drag / KS / STEPS));
+    let mut pulled = engine.clone();
+    engine.keep_books();
+    engine.set_motion(1, along::<S>(0, -0.2 * drag / KN / 100.0), still).unwrap();
+    engine.advance(100).unwrap();
+    let broke = until_broken(&mut engine, slide, still);
+    assert_eq!(broke.mode, Mode::Shear);
+    let [press, kept] = carried(&engine);
+    let (left, source) = match shear_break {
+        ShearBreak::Keep => (0.5 * press, "μ F_n, PFC 3"),
+        ShearBreak::Zero => (0.0, "0, PFC"),
+    };
+    push("after the break, N", source, left, kept, if left > 0.0 { NEAR } else { Near::Absolute(1e-6) });
+    push("dropped by it, N", "τ_s A less what is left", drag - left, broke.shear - kept, NEAR);
+    let spent = 0.5 * (drag * drag - left * left) / KS;
+    push("energy of the break, J", "(F² − F′²)/2k_s", spent, measure::energy(&engine).broken, Near::Relative(2e-3));
+    engine.advance(200).unwrap();
+    let [press, sheared] = carried(&engine);
+    let slid = left + 200.0 / STEPS * drag;
+    push("200 steps on, N", "min(F′ + k_s u, μ F_n)", slid.min(0.5 * press), sheared, NEAR);
+    engine.advance(2000).unwrap();
+    let [press, sheared] = carried(&engine);
+    push("2200 steps on, N", "μ F_n", 0.5 * press, sheared, NEAR);
+    pulled.set_motion(1, along::<S>(0, 0.2 * drag / KN / 100.0), still).unwrap();
+    pulled.advance(100).unwrap();
+    assert_eq!(until_broken(&mut pulled, slide, still).mode, Mode::Shear);
+    let [press, sheared] = carried(&pulled);
+    push("under tension, after the break, N", "0", 0.0, press.abs() + sheared, Near::Absolute(1e-6));
 }

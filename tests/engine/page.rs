@@ -25,17 +25,21 @@ fn families() -> Vec<Family> {
         crate::stiffness::family(),
         crate::incremental::family(),
         crate::bond::family(),
+        crate::strength::family(),
         crate::beam::family(),
         crate::lattice::family(),
         crate::disc::family(),
         crate::packing::family(),
         crate::step::family(),
+        crate::limit::family(),
         crate::clump::family(),
         crate::balance::family(),
         crate::invariance::family(),
         crate::turned::family(),
         crate::scaling::family(),
         crate::energy::family(),
+        crate::curve::family(),
+        crate::genesis::family(),
     ]
 }
 

@@ -8,13 +8,20 @@
 
 use crate::block::{GRAIN, PLATEN, STONE, block};
 use crate::case::{Case, Family, Near};
+use flow::dem::genesis::packing::Packing;
+use flow::dem::genesis::region::Region;
+use flow::dem::genesis::specimen::Recipe;
 use flow::dem::space::Tuple;
+use flow::dem::test::curve::Macro;
+use flow::dem::test::loading::{Loading, TestKind};
+use flow::dem::test::material::{Bonded, Bonding, Material, Unbonded};
 use flow::dem::*;
 use std::sync::LazyLock;
 
 pub(crate) fn family() -> Family {
     static CASES: LazyLock<Vec<Case>> = LazyLock::new(cases);
-    let about = "Largest force at a platen of a bonded block with a clump that is crushed past its peak, and its cracks: times what the scaling asks for.";
+    let about = "Largest force at a platen of a bonded block with a clump that is crushed past its peak, and its cracks: times what the \
+        scaling asks for. The uniaxial test: a random packing of 40 × 80 mm, mean radius 2 mm, at 0.05 m/s.";
     Family { title: "Scaling", about, cases: &CASES }
 }
 
@@ -27,7 +34,51 @@ fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     scaled::<D2>(&mut cases, (14, 16), 1200);
     scaled::<D3>(&mut cases, (5, 7), 500);
+    tested(&mut cases);
     cases
+}
+
+/// A uniaxial test of a random mortar, as the campaigns run it.
+fn uniaxial(factor: f64, speed: f64) -> Macro {
+    let region = Region::Rectangle { width: 0.04, height: 0.08 };
+    let packing = Packing { porosity: 0.12, mean_radius: 2e-3, ratio: 2.5, floaters: 0.0 };
+    let recipe = Recipe { region, packing, density: 2000.0, aggregate: None };
+    let (specimen, _) = recipe.make(1, &|| Watch::Continue).unwrap();
+    let mortar = Bonded {
+        modulus: 20e9 * factor,
+        stiffness_ratio: 2.5,
+        tensile_strength: 20e6 * factor,
+        shear_strength: 20e6 * factor,
+        friction: 0.5,
+    };
+    let aggregate = Unbonded { modulus: mortar.modulus, stiffness_ratio: 2.5, friction: 0.5 };
+    let material = Material { mortar, aggregate, interface: mortar, bonding: Bonding::default() };
+    let test = Loading { speed, ..Loading::new(TestKind::Uniaxial) };
+    test.run(&specimen, &material, 1, &mut |_| Watch::Continue).unwrap().values
+}
+
+/// Strength and E follow strengths and moduli, strains and ν do not; exactly where the speed follows the wave speed, and
+/// nearly where it stays, as long as the test is slow.
+fn tested(cases: &mut Vec<Case>) {
+    let plain = uniaxial(1.0, 0.05);
+    let runs = [
+        ("moduli and strengths × 4, speed × 2", uniaxial(4.0, 0.1), 4.0, [Near::Exact; 4]),
+        (
+            "moduli and strengths × 1/2, same speed",
+            uniaxial(0.5, 0.05),
+            0.5,
+            [0.02, 5e-3, 0.02, 0.05].map(Near::Relative),
+        ),
+    ];
+    for (name, own, factor, near) in runs {
+        let mut case = |what: &str, source, expected, got, near| {
+            cases.push(Case::new(format!("uniaxial test, {name}: {what}"), source, expected, got, near));
+        };
+        case("strength, Pa", "∝ strengths", factor * plain.strength, own.strength, near[0]);
+        case("E, Pa", "∝ moduli", factor * plain.modulus_tangent, own.modulus_tangent, near[1]);
+        case("ν", "the same", plain.poisson_secant, own.poisson_secant, near[2]);
+        case("strain at the peak", "the same", plain.peak_strain, own.peak_strain, near[3]);
+    }
 }
 
 /// What is multiplied, and the speed with it.

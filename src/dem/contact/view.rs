@@ -38,6 +38,8 @@ pub struct Contact<S: Space> {
     pub stiffness: [f64; 2],
     /// Normal and shear stiffness of the bond, N/m; 0 without a parallel bond.
     pub bond_stiffness: [f64; 2],
+    /// Tensile and shear force at which its bond breaks when nothing else loads it, N; 0 where unbonded.
+    pub capacity: [f64; 2],
     /// I/A of the bond's section, m².
     pub gyration: f64,
     /// Force of the linear spring, N.

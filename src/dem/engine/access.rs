@@ -226,6 +226,7 @@ impl<S: Space> Engine<S> {
             active: bonded || overlap > 0.0,
             stiffness: [value(KN), value(KN) * constants.shear_share],
             bond_stiffness: [value(Rows::<S>::BOND), value(Rows::<S>::BOND) * constants.bond_share],
+            capacity: if bonded { [Rows::<S>::TENSION, Rows::<S>::COHESION].map(value) } else { [0.0; 2] },
             gyration: S::GYRATION * bond_radius * bond_radius,
             spring: S::force(&touch, &spring),
             cement: S::force(&touch, &cement),
