@@ -45,8 +45,8 @@ fn lattices_have_their_closed_forms() {
 }
 
 /// A lattice of balls of radius 0.5 at distance l: places in one repeat and the repeat's edges, over l.
-struct Lattice {
-    name: &'static str,
+pub(crate) struct Lattice {
+    pub(crate) name: &'static str,
     basis: Vec<[f64; 3]>,
     repeat: [f64; 3],
     count: [usize; 3],
@@ -54,7 +54,7 @@ struct Lattice {
     constants: [f64; 3],
 }
 
-fn lattices() -> Vec<Lattice> {
+pub(crate) fn lattices() -> Vec<Lattice> {
     let (r2, r3) = (2.0_f64.sqrt(), 3.0_f64.sqrt());
     let (a, b) = (2.0 / r3, r2);
     let square = Lattice {
@@ -102,7 +102,7 @@ fn hexagon() -> Lattice {
 }
 
 /// The lattice at distance `l` of the centres, with one law, undamped.
-fn crystal<S: Space>(lattice: &Lattice, l: f64, law: Interaction) -> Engine<S> {
+pub(crate) fn crystal<S: Space>(lattice: &Lattice, l: f64, law: Interaction) -> Engine<S> {
     let mut balls = Vec::new();
     let [nx, ny, nz] = lattice.count;
     for cell in 0..nx * ny * nz {

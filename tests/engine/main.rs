@@ -26,6 +26,7 @@ mod incremental;
 mod invariance;
 mod lattice;
 mod limit;
+mod measuring;
 mod memory;
 mod packing;
 mod page;

@@ -28,6 +28,7 @@ fn families() -> Vec<Family> {
         crate::strength::family(),
         crate::beam::family(),
         crate::lattice::family(),
+        crate::measuring::family(),
         crate::disc::family(),
         crate::packing::family(),
         crate::step::family(),

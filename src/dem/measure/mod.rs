@@ -4,6 +4,7 @@ mod balance;
 mod cracks;
 mod energy;
 mod fabric;
+mod strain;
 mod stress;
 
 pub use balance::unbalanced_ratio;
@@ -11,4 +12,5 @@ pub use cracks::{Crack, Mode};
 pub(crate) use energy::stored;
 pub use energy::{Energy, energy};
 pub use fabric::{Coordination, Link, coordination, fabric, links};
+pub use strain::{displacement_gradient, velocity_gradient};
 pub use stress::{Region, cell_stress, stress};
