@@ -3,8 +3,8 @@
 //!
 //! # How to use it
 //! 1. Describe a [`Model`]: `particles` (position, radius, velocity, spin, mass, inertia, [`Group`];
-//!    [`Particle::ball`] fills them in from a density), `clumps` (pebbles are particles too, named by their place; mass
-//!    and inertia of the union come from the caller), `walls` (infinite planes; normal into the specimen;
+//!    [`Particle::ball`] fills them in from a density), `clumps` (pebbles are particles too, named by their place;
+//!    [`Clump::of`] gives them mass and inertia of the union), `walls` (infinite planes; normal into the specimen;
 //!    [`Motion::Velocity`] or [`Motion::Servo`]), `contacts` (a [`ContactTable`] with one [`Interaction`] for each pair of
 //!    groups that can meet; walls have groups too), `settings` ([`Settings`]: damping 0.7, gravity, safety 0.8, masses).
 //! 2. [`Engine::new`] checks it and reports all [`Faults`] at once. Bodies are renumbered along a Morton curve inside;
@@ -77,6 +77,7 @@ mod particle;
 pub mod simd;
 pub mod space;
 pub mod test;
+mod union;
 
 pub use boundary::{Cell, Motion, Servo, Wall};
 pub use contact::{Contact, Other};

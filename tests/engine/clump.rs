@@ -1,7 +1,7 @@
-//! Rigid clumps: mass and inertia of a union of discs, and free rotation.
+//! Rigid clumps: mass and inertia of a union of discs or spheres, and free rotation.
 //!
 //! Two discs of radius R a distance d apart share a lens of area 2R² acos(d/2R) − (d/2) √(4R² − d²); the union's area is
-//! 2πR² less that. Discs far apart follow the parallel axis theorem. A free body keeps its angular momentum and energy;
+//! 2πR² less that; spheres share π (4R + d)(2R − d)²/12. Discs far apart follow the parallel axis theorem. A free body keeps its angular momentum and energy;
 //! a symmetric top's axis turns about the momentum with L/I₁.
 
 use crate::block::*;
@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 
 pub(crate) fn family() -> Family {
     static CASES: LazyLock<Vec<Case>> = LazyLock::new(cases);
-    let about = "Unit discs; three pebbles in free flight, 1000 or 25,000 steps of 1 ms. Spin and frame are half a step \
+    let about = "Unit discs and spheres, density 1; three pebbles in free flight, 1000 or 25,000 steps of 1 ms. Spin and frame are half a step \
         apart, hence an error of the order of the step.";
     Family { title: "Clumps", about, cases: &CASES }
 }
@@ -27,6 +27,7 @@ fn clumps_have_their_closed_forms() {
 
 fn cases() -> Vec<Case> {
     let mut cases = unions();
+    solids(&mut cases);
     plane(&mut cases);
     tumbling(&mut cases);
     precessing(&mut cases);
@@ -51,6 +52,72 @@ fn unions() -> Vec<Case> {
         ),
         Case::new("2D: inertia of a disc that covers another, m⁴", "πR⁴/2", PI / 2.0, covered.polar, near),
     ]
+}
+
+/// A clump of unit spheres (discs) of density 1 at these places.
+fn clump_of<S: Space>(places: &[[f64; 3]], radii: &[f64]) -> Clump<S> {
+    let ball = |(x, &r): (&[f64; 3], &f64)| Particle::ball(Vector::<S>::build(|k| x[k]), r, 1.0, STONE);
+    let balls: Vec<Particle<S>> = places.iter().zip(radii).map(ball).collect();
+    Clump::of(&balls, &(0..places.len()).collect::<Vec<usize>>(), 1.0).unwrap()
+}
+
+/// Moments of inertia of two unit spheres a distance 2h apart about their axis and across it: each is a sphere cut off at
+/// h from its centre, a stack of discs of radius √(1 − t²), t from −h to 1.
+fn snowman(h: f64) -> [f64; 2] {
+    let square = |t: f64| t - 2.0 * t.powi(3) / 3.0 + t.powi(5) / 5.0;
+    let arm = |t: f64| h * h * t + h * t * t + (1.0 - h * h) * t.powi(3) / 3.0 - h * t.powi(4) / 2.0 - t.powi(5) / 5.0;
+    let [disc, apart] = [square(1.0) - square(-h), arm(1.0) - arm(-h)];
+    [PI * disc, 2.0 * PI * (0.25 * disc + apart)]
+}
+
+fn solids(cases: &mut Vec<Case>) {
+    let near = Near::Relative(1e-6);
+    let d = 1.0;
+    let along = [1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0];
+    let two = clump_of::<D3>(&[[4.0, 5.0, 6.0], [4.0 + d / 3.0, 5.0 + 2.0 * d / 3.0, 6.0 + 2.0 * d / 3.0]], &[1.0; 2]);
+    let lens = PI * (4.0 + d) * (2.0 - d) * (2.0 - d) / 12.0;
+    let [axial, across] = snowman(0.5 * d);
+    let whole = 8.0 * PI / 3.0 - lens;
+    let mut push = |what: &str, source, expected, got, near| {
+        cases.push(Case::new(format!("3D: {what}"), source, expected, got, near));
+    };
+    push("volume of two spheres that overlap, m³", "8πR³/3 − lens", whole, two.mass, near);
+    push("centre of the two, x, m", "d/6", 4.0 + d / 6.0, two.centre[0], near);
+    let turned = two.inertia.map(|row| row.dot(along));
+    push("inertia about their axis, m⁵", "π ∫ (1 − t²)² dt", axial, turned.dot(along), near);
+    let trace = two.inertia[0][0] + two.inertia[1][1] + two.inertia[2][2];
+    push("inertia across it, m⁵", "2π ∫ (1 − t²)²/4 + (1 − t²)(t + d/2)² dt", across, 0.5 * (trace - axial), near);
+    push("its product xy, m⁵", "(I₁ − I₂) n_x n_y", (axial - across) * along[0] * along[1], two.inertia[0][1], near);
+    let apart = clump_of::<D3>(&[[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0]], &[1.0; 2]);
+    let mass = 4.0 * PI / 3.0;
+    let exact = 2.0 * mass * (0.4 + 4.0);
+    push("inertia of two spheres apart, m⁵", "2 (2/5 m R² + m a²)", exact, apart.inertia[1][1], near);
+    let covered = clump_of::<D3>(&[[0.0; 3], [0.1, 0.2, 0.0], [0.0; 3]], &[1.0, 0.5, 1.0]);
+    push("inertia of a sphere that covers others, m⁵", "2/5 m R²", 0.4 * mass, covered.inertia[0][0], near);
+    // Three in one another have no short closed form; slices along other directions must find the same body.
+    let three = [[0.0; 3], [0.9, 0.1, 0.0], [0.3, 0.8, 0.4]];
+    let radii = [1.0, 0.8, 0.6];
+    let (sin, cos) = sin_cos(0.7);
+    let turn = |x: &[f64; 3]| [cos * x[0] - sin * x[2], x[1], sin * x[0] + cos * x[2]];
+    let (plain, turned) = (clump_of::<D3>(&three, &radii), clump_of::<D3>(&three.each_ref().map(turn), &radii));
+    let cube = |c: &Clump<D3>| c.inertia.iter().flatten().map(|x| x * x).sum::<f64>();
+    push("volume of three spheres, turned, m³", "the same", plain.mass, turned.mass, near);
+    push("square of their inertia, turned, m¹⁰", "the same", cube(&plain), cube(&turned), near);
+    let flat = clump_of::<D2>(&[[3.0, 0.0, 0.0], [4.0, 0.0, 0.0]], &[1.0; 2]);
+    let lens = 2.0 * acos(0.5) - 0.5 * 3.0_f64.sqrt();
+    cases.push(Case::new("2D: mass of a clump of two discs", "ρ (2πR² − lens)", 2.0 * PI - lens, flat.mass, near));
+}
+
+#[test]
+fn a_clump_of_nothing_sound_is_refused() {
+    let mut balls = vec![Particle::<D3>::ball([0.0; 3], 1.0, 1.0, STONE); 3];
+    balls[1].radius = f64::NAN;
+    let text = Clump::of(&balls, &[0, 1, 7], -1.0).unwrap_err().to_string();
+    let expected = "clump 0: pebble 1 has a radius or position that is none; clump 0: pebble 7 does not exist; \
+        clump 0: density is -1, wanted a number above 0";
+    assert_eq!(text, expected);
+    let text = Clump::of(&balls, &[], 1.0).unwrap_err().to_string();
+    assert_eq!(text, "clump 0: number of pebbles is 0, wanted at least 1");
 }
 
 fn lone<S: Space>(inertia: [[f64; 3]; 3], velocity: Vector<S>, spin: Spin<S>) -> Engine<S> {
