@@ -34,9 +34,12 @@ pub struct Chains {
     pub least: f64,
 }
 
-/// Widths of lines on the page in mm.
+/// Number of widths of lines.
 const WIDTHS: usize = 14;
+/// Greatest width of a line on the page in mm.
 const WIDEST: f64 = 0.7;
+/// Greatest width of a line as a share of the mean length on the page, so that chains side by side stay apart.
+const SLENDER: f64 = 0.7;
 
 impl Figure for Chains {
     fn scene(&self, style: &Style) -> Scene {
@@ -50,6 +53,7 @@ impl Figure for Chains {
         scene.description =
             format!("{} contacts, mean normal force {} {unit}.", self.links.len(), significant(mean, 3));
         let frame = Frame::fit(self.low, self.high, Rect::new(0.8, 0.8, width, width * aspect));
+        let widest = self.widest(&frame);
         let first = scene.items.len();
         for (color, sign) in [(BLUE, 1.0), (VERMILION, -1.0)] {
             for class in 1..=WIDTHS {
@@ -60,7 +64,7 @@ impl Figure for Chains {
                     }
                 }
                 if !path.0.is_empty() {
-                    scene.stroke(path, Stroke::new(color, class_width(class)));
+                    scene.stroke(path, Stroke::new(color, class_width(class, widest)));
                 }
             }
         }
@@ -68,7 +72,7 @@ impl Figure for Chains {
         frame.draw_border(&mut scene);
         let tall = aspect > 1.2;
         let corner = if tall { [frame.area.right + 4.0, 1.2] } else { [1.6, frame.area.bottom + 1.5] };
-        legend::draw_stacked(&mut scene, &self.entries(mean, most), corner, style);
+        legend::draw_stacked(&mut scene, &self.entries([mean, most], widest), corner, style);
         let at = if tall { [corner[0], frame.area.bottom - 1.0] } else { [style.width * 0.55, corner[1] + 1.2] };
         frame.draw_scale(&mut scene, at, style);
         scene
@@ -96,7 +100,17 @@ impl Chains {
         (mean, most.max(f64::MIN_POSITIVE))
     }
 
-    fn entries(&self, mean: f64, most: f64) -> Vec<Entry> {
+    /// Width of the widest line in mm.
+    fn widest(&self, frame: &Frame) -> f64 {
+        let length = |l: &Link| {
+            let (a, b) = (frame.place(l.from), frame.place(l.to));
+            ((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1])).sqrt()
+        };
+        let mean = self.links.iter().map(length).sum::<f64>() / self.links.len().max(1) as f64;
+        if mean > 0.0 { WIDEST.min(SLENDER * mean) } else { WIDEST }
+    }
+
+    fn entries(&self, [mean, most]: [f64; 2], widest: f64) -> Vec<Entry> {
         let unit = &self.unit;
         let mut entries = Vec::new();
         for (color, sign, name) in [(BLUE, 1.0, "compression"), (VERMILION, -1.0, "tension")] {
@@ -105,7 +119,7 @@ impl Chains {
             }
         }
         for (word, force) in [("", most), ("", 0.5 * most), ("mean ", mean)] {
-            let stroke = Stroke::new(super::palette::INK, class_width(class_of(force / most)));
+            let stroke = Stroke::new(super::palette::INK, class_width(class_of(force / most), widest));
             entries.push(Entry::new(format!("{word}{} {unit}", significant(force, 2)), Swatch::Line(stroke, None)));
         }
         entries
@@ -116,6 +130,6 @@ fn class_of(share: f64) -> usize {
     ((share.min(1.0) * WIDTHS as f64).ceil() as usize).clamp(1, WIDTHS)
 }
 
-fn class_width(class: usize) -> f64 {
-    WIDEST * class as f64 / WIDTHS as f64
+fn class_width(class: usize, widest: f64) -> f64 {
+    widest * class as f64 / WIDTHS as f64
 }

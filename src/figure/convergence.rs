@@ -36,7 +36,7 @@ impl Figure for Convergence {
     fn scene(&self, style: &Style) -> Scene {
         let mut scene = Scene::new(style.width, 0.72 * style.width);
         scene.title = "Convergence of the calibration".into();
-        let last = |r: &Descent| format!("{} ends at {}.", r.name, r.best.last().copied().unwrap_or(f64::NAN));
+        let last = |r: &Descent| format!("{} ends at {:.1e}.", r.name, r.best.last().copied().unwrap_or(f64::NAN));
         scene.description = self.runs.iter().map(last).collect::<Vec<_>>().join(" ");
         let entries = self.entries();
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);

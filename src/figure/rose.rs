@@ -63,6 +63,8 @@ impl Figure for Rose {
             scene.fill(Path::rect(ground), super::scene::Fill { color: PAPER, opacity: 0.8 });
             scene.text_centred(line, at, Anchor::Middle, INK);
         }
+        let unit = Line::new(&format!("rings: cracks in {}°", fixed(180.0 / self.petals.max(1) as f64, 0)), 0.9 * size);
+        scene.text(unit, [2.0, style.width - 0.4 * size - 0.8], Anchor::Start, 0.0, SOFT);
         scene
     }
 

@@ -56,6 +56,7 @@ impl Figure for Solutions {
             let area = Rect { left, right: style.width - 9.0 - bar_width, top, bottom: top + panel };
             self.draw_lines(&mut scene, area, style, (i, set), (low, high));
             self.draw_axes(&mut scene, area, style, [i == 0, i + 1 == count]);
+            self.draw_best(&mut scene, area, (i, set));
             if count > 1 {
                 let at = [0.6 + 0.75 * size, 0.5 * (area.top + area.bottom)];
                 scene.text(Line::new(&set.name, size), at, Anchor::Middle, 90.0, INK);
@@ -92,8 +93,9 @@ impl Solutions {
     fn describe(&self) -> String {
         let tell = |s: &SolutionSet| {
             let best = s.rows.first().cloned().unwrap_or_default();
-            let pairs =
-                self.factors.iter().zip(best).map(|(f, v)| format!("{} {} {}", f.id(), significant(v, 3), f.unit));
+            let value =
+                |(f, v): (&Quantity, f64)| format!("{} {} {}", f.id(), significant(v, 3), f.unit).trim_end().to_owned();
+            let pairs = self.factors.iter().zip(best).map(value);
             format!("{}: {} solutions, best {}.", s.name, s.rows.len(), pairs.collect::<Vec<_>>().join(", "))
         };
         self.sets.iter().map(tell).collect::<Vec<_>>().join(" ")
@@ -135,6 +137,10 @@ impl Solutions {
             let stroke = Stroke::new(color, 0.2).with_opacity(opacity);
             scene.stroke(Path::polyline(&self.points(row, area)), stroke);
         }
+    }
+
+    /// The recommended set, above the axes.
+    fn draw_best(&self, scene: &mut Scene, area: Rect, (i, set): (usize, &SolutionSet)) {
         let Some(best) = set.rows.first() else { return };
         let points = self.points(best, area);
         let color = if self.graded() { INK } else { palette::category(i) };

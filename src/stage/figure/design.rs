@@ -4,7 +4,7 @@ use super::super::StageError;
 use super::source::{Rows, Source, Sources};
 use super::{Label, Params};
 use crate::figure::agreement::{Agreement, Cloud, Pair};
-use crate::figure::axis::significant;
+use crate::figure::axis::fixed;
 use crate::figure::bars::{Bar, RankedBars};
 use crate::figure::effects::{FactorMeans, MainEffects};
 use crate::figure::points::DesignPoints;
@@ -152,13 +152,15 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
     Ok(Agreement { x_word: "Published".into(), y_word: "Computed".into(), pairs, band: params.band.or(Some(0.1)) })
 }
 
-/// "n = 150, mean +1.2 %, s = 4.0 %" of the relative deviations.
+/// "median −4.4 %, quartiles −7.6, −1.6 %" of the relative deviations, which one misprint does not move.
 fn note_of(clouds: &[Cloud]) -> String {
     let all = |pick: fn(&Cloud) -> &Vec<f64>| clouds.iter().flat_map(pick).copied().collect::<Vec<_>>();
     let Some(found) = agreement_of(&all(|c| &c.x), &all(|c| &c.y)) else { return String::new() };
-    let (mean, spread) = (found.mean - 1.0, found.deviation.unwrap_or(0.0));
-    let sign = if mean > 0.0 { "+" } else { "" };
-    format!("mean {sign}{} %, $s$ = {} %", significant(100.0 * mean, 2), significant(100.0 * spread, 2))
+    let [lower, median, upper] = found.quartiles.map(|ratio| {
+        let percent = fixed(100.0 * (ratio - 1.0), 1);
+        if ratio > 1.0 && percent != "0.0" { format!("+{percent}") } else { percent }
+    });
+    format!("median {median} %, quartiles {lower}, {upper} %")
 }
 
 type Matched = (Vec<f64>, Vec<f64>, Vec<String>);
