@@ -13,7 +13,9 @@ pub(super) struct Completions {
 
 impl Completions {
     pub(super) fn go(self) -> Exit {
-        clap_complete::generate(self.shell, &mut Arguments::command(), "flow", &mut std::io::stdout());
+        let mut script = Vec::new();
+        clap_complete::generate(self.shell, &mut Arguments::command(), "flow", &mut script);
+        super::output::write(&String::from_utf8_lossy(&script));
         Exit::Done
     }
 }
