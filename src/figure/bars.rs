@@ -1,6 +1,6 @@
 //! Ranked horizontal bars: the ranges of a range analysis, or the standardized effects of a screening (Pareto).
 
-use super::axis::{Axis, fixed, significant};
+use super::axis::{Axis, fixed};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::palette::{self, INK, Marker, PAPER, SOFT};
@@ -115,7 +115,10 @@ impl RankedBars {
     fn describe(&self, order: &[usize]) -> String {
         let top = order.iter().take(4).map(|&i| {
             let bar = &self.bars[i];
-            format!("{} {} {}", bar.factor.id(), significant(bar.value, 3), self.quantity.unit)
+            // A factor without a key goes by its symbol, which a description tells in plain letters.
+            let name =
+                if bar.factor.key.is_empty() { &Line::new(&bar.factor.name, 1.0).plain } else { &bar.factor.key };
+            format!("{name} {}", self.quantity.told(bar.value))
         });
         format!("Bars in descending order: {}.", top.collect::<Vec<_>>().join(", "))
     }

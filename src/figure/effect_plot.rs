@@ -9,6 +9,7 @@ use super::legend::{self, Entry, Swatch};
 use super::palette::{BLUE, INK, Marker, SOFT, VERMILION};
 use super::panel::{Panel, draw_marker};
 use super::scene::{Path, Rect, Scene, Stroke};
+use super::text::Line;
 use super::{Figure, Quantity, Style, scatter};
 
 /// What the effects are plotted against.
@@ -55,7 +56,8 @@ impl Figure for EffectPlot {
     fn scene(&self, style: &Style) -> Scene {
         let mut scene = Scene::new(style.width, 0.8 * style.width);
         scene.title = format!("{} plot of the effects on {}", self.word(), self.response.words());
-        let active: Vec<&str> = self.effects.iter().filter(|e| e.active).map(|e| e.name.as_str()).collect();
+        let plain = |e: &Effect| Line::new(&e.name, 1.0).plain;
+        let active: Vec<String> = self.effects.iter().filter(|e| e.active).map(plain).collect();
         scene.description = format!("{} effects; active: {}.", self.effects.len(), active.join(", "));
         let entries = self.entries();
         let [x, y] = self.axes();

@@ -112,6 +112,11 @@ impl Quantity {
         if self.key.is_empty() { &self.name } else { &self.key }
     }
 
+    /// A value of it as a description tells it: "12.3 MPa", or "0.203".
+    pub fn told(&self, value: f64) -> String {
+        format!("{} {}", axis::significant(value, 3), self.unit).trim_end().to_owned()
+    }
+
     /// Name, symbol and unit as an axis title.
     pub fn title(&self) -> String {
         text::quantity(&self.name, &self.symbol, &self.unit)

@@ -93,8 +93,7 @@ impl Solutions {
     fn describe(&self) -> String {
         let tell = |s: &SolutionSet| {
             let best = s.rows.first().cloned().unwrap_or_default();
-            let value =
-                |(f, v): (&Quantity, f64)| format!("{} {} {}", f.id(), significant(v, 3), f.unit).trim_end().to_owned();
+            let value = |(f, v): (&Quantity, f64)| format!("{} {}", f.id(), f.told(v));
             let pairs = self.factors.iter().zip(best).map(value);
             format!("{}: {} solutions, best {}.", s.name, s.rows.len(), pairs.collect::<Vec<_>>().join(", "))
         };

@@ -16,6 +16,9 @@ fn no_label_is_clipped_or_covered() {
         let scene = figure.scene(&style);
         assert_eq!(scene.faults(), Vec::<String>::new(), "{name}");
         assert!(!scene.title.is_empty() && scene.description.len() > 20, "{name}: {}", scene.description);
+        let words = [&scene.title, &scene.description];
+        let plain = |text: &String| !text.contains(['$', '\\']) && !text.contains(" ,") && !text.contains(" .");
+        assert!(words.into_iter().all(plain), "{name}: {} {}", scene.title, scene.description);
         assert!(scene.width >= style.width && scene.width < 1.6 * style.width, "{name} is {} mm wide", scene.width);
     }
 }
