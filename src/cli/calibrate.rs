@@ -8,12 +8,12 @@ mod answer;
 
 use super::Exit;
 use super::common::{Campaign, system, workers};
-use super::progress::{Progress, Silent};
+use super::progress::Progress;
 use super::run::{expected, interruption};
 use crate::artifact::Artifact;
 use crate::exec::cores;
 use crate::plan::{Workflow, nearest};
-use crate::run::{Report, Settings, StageStatus, Watch, run};
+use crate::run::{Report, Settings, Silent, StageStatus, Watch, decide, run};
 use crate::stage::calibrate::Wanted;
 use crate::store::Store;
 use clap::Args;
@@ -150,8 +150,7 @@ impl Calibrate {
     /// Refuses to answer while something that the answer rests on is missing.
     fn finished(&self, asked: &Asked) -> Result<(), Exit> {
         let ours: Vec<String> = std::iter::once(asked.stage.clone()).chain(asked.checks.clone()).collect();
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: ours.clone(), memos: true };
-        let report = run(&asked.workflow, &asked.store, &settings, &Silent, &AtomicBool::new(false));
+        let report = decide(&asked.workflow, &asked.store, &ours, true);
         if let Some(why) = &report.broken {
             eprintln!("error: {why}");
             return Err(Exit::System);

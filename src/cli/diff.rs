@@ -4,16 +4,14 @@
 
 use super::Exit;
 use super::common::{Campaign, Common, provenance, system};
-use super::progress::Silent;
 use crate::artifact::{Artifact, ContentHash, Table, Values};
 use crate::report::quoted;
-use crate::run::{Settings, StageStatus, run};
+use crate::run::{StageStatus, decide};
 use crate::store::{self, Store};
 use clap::Args;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 /// Compare two campaigns: what was set otherwise, what came out otherwise.
 #[derive(Args)]
@@ -90,8 +88,7 @@ impl Diff {
         };
         let campaign = Campaign::of(PathBuf::from(file), profile, &self.common);
         let workflow = campaign.load(&[])?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
-        let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));
+        let report = decide(&workflow, store, &[], true);
         let mut sides = Sides::new();
         for (node, stage) in workflow.stages.iter().zip(&report.stages) {
             let object = match stage.status {

@@ -8,17 +8,15 @@ mod vtu;
 use super::Exit;
 use super::common::{Campaign, system};
 use super::output::replace;
-use super::progress::Silent;
 use super::show::{csv_text, object, parts};
 use crate::artifact::{Artifact, ContentHash, Node};
 use crate::dem::genesis::specimen::Specimen;
 use crate::plan::Workflow;
-use crate::run::{Report, Settings, run};
+use crate::run::{Report, decide};
 use crate::stage::specimen;
 use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.
 #[derive(Args)]
@@ -70,8 +68,7 @@ impl Export {
         let store = self.campaign.open()?;
         // Single rows are known only when every task is looked up.
         let memos = asked.iter().all(|(_, row)| row.is_none());
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: names, memos };
-        let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
+        let report = decide(&workflow, &store, &names, memos);
         let (chosen, missing) = choose(&workflow, &report, &asked);
         std::fs::create_dir_all(&self.folder).map_err(|e| system(&e))?;
         let mut written = 0;

@@ -5,9 +5,8 @@ use super::common::Campaign;
 use crate::figure::dag::{Dag, Stage};
 use crate::figure::{DOUBLE, Figure, Style, svg::svg};
 use crate::plan::{StageNode, Workflow};
-use crate::run::{Settings, StageStatus, run};
+use crate::run::{StageStatus, decide};
 use clap::{Args, ValueEnum};
-use std::sync::atomic::AtomicBool;
 
 /// Show the stages of a workflow, what they take from one another, and what is done of them.
 #[derive(Args)]
@@ -66,12 +65,11 @@ impl Graph {
 
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
         // Whoever only looks makes no store.
         let reports = match self.campaign.common.store.exists() {
             true => {
                 let store = self.campaign.open()?;
-                run(&workflow, &store, &settings, &super::progress::Silent, &AtomicBool::new(false)).stages
+                decide(&workflow, &store, &[], true).stages
             }
             false => Vec::new(),
         };

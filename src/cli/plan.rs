@@ -2,12 +2,10 @@
 
 use super::Exit;
 use super::common::Campaign;
-use super::progress::Silent;
 use crate::exec::cores;
 use crate::report::duration;
-use crate::run::{Past, Report, Settings, StageReport, StageStatus, TaskReport, TaskState, run};
+use crate::run::{Past, Report, StageReport, StageStatus, TaskReport, TaskState, decide};
 use clap::Args;
-use std::sync::atomic::AtomicBool;
 
 /// Show what `run` would do, and why, without doing it.
 #[derive(Args)]
@@ -40,8 +38,7 @@ impl Plan {
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&self.stages)?;
         let store = self.campaign.open()?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: self.stages.clone(), memos: true };
-        let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
+        let report = decide(&workflow, &store, &self.stages, true);
         let past = Past::of(&workflow, &store).map_err(|e| super::common::system(&e))?;
         let open: Vec<TaskReport> = report.tasks().filter(|task| task.state == TaskState::Open).collect();
         let of = |stage: &StageReport| -> Vec<&TaskReport> {

@@ -8,13 +8,6 @@ use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Says nothing.
-pub(super) struct Silent;
-
-impl Watch for Silent {
-    fn event(&self, _: Event<'_>) {}
-}
-
 /// Between two plain lines of one stage.
 const PAUSE: Duration = Duration::from_secs(5);
 

@@ -3,7 +3,6 @@
 use super::Exit;
 use super::common::{Campaign, system};
 use super::output;
-use super::progress::Silent;
 use super::store::bytes;
 use crate::report::{Asked, Paper, gather, page};
 use clap::Args;
@@ -34,7 +33,7 @@ impl Report {
             sets: self.campaign.sets.clone(),
             store: if named == "store" { String::new() } else { named },
         };
-        let paper = gather(&workflow, asked, &store, &Silent).map_err(|e| system(&e))?;
+        let paper = gather(&workflow, asked, &store).map_err(|e| system(&e))?;
         for damage in store.take_damages() {
             eprintln!("warning: {damage}");
         }

@@ -2,12 +2,12 @@
 
 use super::Exit;
 use super::common::{Campaign, system, workers};
-use super::progress::{Progress, Silent};
+use super::progress::Progress;
 use super::remarks::remarks;
 use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
-use crate::run::{Past, Report, Settings, StageStatus, TaskState, Watch, record, run};
+use crate::run::{Past, Report, Settings, Silent, StageStatus, TaskState, Watch, record, run};
 use crate::store::Store;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};

@@ -2,15 +2,13 @@
 
 use super::Exit;
 use super::common::{Campaign, provenance, system};
-use super::progress::Silent;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::math::elementary::log10;
 use crate::plan::Workflow;
-use crate::run::{Report, Settings, StageReport, StageStatus, run};
+use crate::run::{Report, StageReport, StageStatus, decide};
 use crate::store::{ObjectId, Store};
 use clap::Args;
 use serde_json::{Value, json};
-use std::sync::atomic::AtomicBool;
 
 /// Show a result as a table.
 #[derive(Args)]
@@ -48,8 +46,7 @@ impl Show {
     fn list(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
         let store = self.campaign.open()?;
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: true };
-        let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
+        let report = decide(&workflow, &store, &[], true);
         let tables_of = |status: &StageStatus| match status {
             StageStatus::Done(content) => {
                 let artifact = store.get(content).map_err(|e| system(&e))?;
@@ -61,7 +58,10 @@ impl Show {
             report.stages.iter().map(|stage| tables_of(&stage.status)).collect::<Result<_, Exit>>()?;
         let stages = report.stages.iter().zip(&tables);
         if self.json {
-            let one = |(stage, tables): (&StageReport, &Vec<String>)| json!({ "name": stage.name, "kind": stage.kind, "state": stage.status.word(), "tables": tables });
+            let one = |(stage, tables): (&StageReport, &Vec<String>)| {
+                let state = stage.status.word();
+                json!({ "name": stage.name, "kind": stage.kind, "state": state, "tables": tables })
+            };
             out!("{}", stages.map(one).collect::<Value>());
             return Ok(Exit::Done);
         }
@@ -82,8 +82,7 @@ impl Show {
         let workflow = self.campaign.load(std::slice::from_ref(&stage))?;
         let store = self.campaign.open()?;
         // Single rows are known only when every task is looked up.
-        let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: vec![stage.clone()], memos: false };
-        let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
+        let report = decide(&workflow, &store, std::slice::from_ref(&stage), false);
         let Some(object) = object(&workflow, &report, &stage, row) else {
             eprintln!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
             return Err(Exit::BadInput);

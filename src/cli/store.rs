@@ -2,15 +2,13 @@
 
 use super::Exit;
 use super::common::{Campaign, Common, system};
-use super::progress::Silent;
 use crate::artifact::Key;
 use crate::report::duration;
-use crate::run::{Settings, run};
+use crate::run::decide;
 use crate::store::{Amount, Store};
 use clap::{Args, Subcommand};
 use std::collections::HashSet;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 /// Look after the store.
 #[derive(Args)]
@@ -137,10 +135,9 @@ fn reach(path: &std::path::Path, common: &Common, store: &Store, keys: &mut Hash
     let campaign = |profile| Campaign::of(path.to_owned(), profile, common);
     let plain = campaign(None).load(&[])?;
     let profiles = plain.profiles.iter().cloned().map(Some);
-    let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: false };
     for profile in std::iter::once(None).chain(profiles) {
         let workflow = campaign(profile).load(&[])?;
-        let report = run(&workflow, store, &settings, &Silent, &AtomicBool::new(false));
+        let report = decide(&workflow, store, &[], false);
         keys.extend(report.objects().map(|object| object.key));
     }
     Ok(())

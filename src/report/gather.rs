@@ -3,11 +3,10 @@
 use super::paper::{Cost, Paper, Part, State};
 use crate::artifact::ContentHash;
 use crate::plan::{StageNode, Workflow};
-use crate::run::{Report, Settings, StageStatus, Watch, run};
+use crate::run::{Report, StageStatus, decide};
 use crate::stage::KINDS;
 use crate::store::{Campaign, Store, StoreError};
 use std::collections::HashSet;
-use std::sync::atomic::AtomicBool;
 
 /// What was asked for on the command line, besides the workflow.
 #[derive(Clone, Debug, Default)]
@@ -24,10 +23,9 @@ pub struct Asked {
 ///
 /// # Errors
 /// The store cannot be read.
-pub fn gather(workflow: &Workflow, asked: Asked, store: &Store, watch: &dyn Watch) -> Result<Paper, StoreError> {
+pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper, StoreError> {
     // Without memos every task is seen, whichever program ran it, so that the page depends on the results alone.
-    let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: Vec::new(), memos: false };
-    let report = run(workflow, store, &settings, watch, &AtomicBool::new(false));
+    let report = decide(workflow, store, &[], false);
     let costs = costs(workflow, &report, store)?;
     let mut parts = Vec::with_capacity(workflow.stages.len());
     for (node, cost) in workflow.stages.iter().zip(costs) {

@@ -104,6 +104,13 @@ pub trait Watch: Sync {
     fn event(&self, event: Event<'_>);
 }
 
+/// Says nothing.
+pub struct Silent;
+
+impl Watch for Silent {
+    fn event(&self, _: Event<'_>) {}
+}
+
 /// What became of a campaign.
 pub struct Report {
     /// Every wanted stage, in the order of the workflow.
@@ -180,6 +187,13 @@ fn panicked(panic: &(dyn Any + Send)) -> Failure {
     let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
     let text = format!("the program met a fault of its own: {}", said.unwrap_or("a panic without words"));
     StageError::new(text).hint("please report it with the workflow and what was printed above").into()
+}
+
+/// Decides what is done of `workflow` and what is left, by the decisions of [`run`], and starts nothing. `targets` are the
+/// stages that are wanted, all when empty; without `memos` every task is looked up.
+pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Report {
+    let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: targets.to_vec(), memos };
+    run(workflow, store, &settings, &Silent, &AtomicBool::new(false))
 }
 
 /// What a worker sends back.

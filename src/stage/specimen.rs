@@ -6,7 +6,6 @@
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Artifact, Table, Values};
-use crate::dem::Watch;
 use crate::dem::genesis::clump::{Clump, ClumpMass};
 use crate::dem::genesis::gradation::{Gradation, GradationError};
 use crate::dem::genesis::packing::{Packing, PackingError};
@@ -286,15 +285,11 @@ impl Kind for Specimen {
 fn make(job: &Job) -> Result<Artifact, Failure> {
     let recipe: Recipe = job.params()?;
     let seed = job.seed.ok_or_else(|| StageError::new("a specimen needs a seed"))?;
-    let faults = |faults: Vec<crate::dem::genesis::specimen::SpecimenError>| {
-        StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+    let failure = |faults: Vec<SpecimenError>| match faults[..] {
+        [SpecimenError::Packing(PackingError::Stopped)] => Failure::Stopped,
+        _ => StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")).into(),
     };
-    let watch = || if job.stopped() { Watch::Stop } else { Watch::Continue };
-    let made = recipe.make(seed, &watch);
-    if job.stopped() {
-        return Err(Failure::Stopped);
-    }
-    let (made, quality) = made.map_err(faults)?;
+    let (made, quality) = recipe.make(seed, &|| job.watch()).map_err(failure)?;
     Ok(store(&made, &quality).to_artifact())
 }
 
@@ -413,7 +408,7 @@ mod tests {
              density = '2650 kg/m^3'",
         )
         .unwrap();
-        let (made, quality) = config.recipe().unwrap().make(1, &|| Watch::Continue).unwrap();
+        let (made, quality) = config.recipe().unwrap().make(1, &|| crate::dem::Watch::Continue).unwrap();
         assert!(!made.clumps.is_empty());
         let artifact = store(&made, &quality).to_artifact();
         assert_eq!(load(&artifact).unwrap(), made);

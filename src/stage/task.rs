@@ -3,6 +3,7 @@
 use super::StageError;
 use super::ledger::KeptRuns;
 use crate::artifact::{Artifact, ContentHash};
+use crate::dem::Watch;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::borrow::Cow;
@@ -170,6 +171,11 @@ impl Job<'_> {
     /// Whether the run is being interrupted; long work asks now and then and returns [`Failure::Stopped`].
     pub fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
+    }
+
+    /// The same as the engine and the packing ask it.
+    pub fn watch(&self) -> Watch {
+        if self.stopped() { Watch::Stop } else { Watch::Continue }
     }
 }
 

@@ -22,7 +22,6 @@ use super::{
 };
 use crate::artifact::Artifact;
 use crate::artifact::specimen::Specimen as Stored;
-use crate::dem::Watch;
 use crate::dem::test::curve::Sample;
 use crate::dem::test::uniaxial;
 use crate::math::random::Stream;
@@ -107,7 +106,7 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
             let note = format!("ε {:.3} %, σ {:.1} MPa", sample.axial * 100.0, sample.stress / 1e6);
             (job.say)(Progress { fraction: None, note });
         }
-        if job.stopped() { Watch::Stop } else { Watch::Continue }
+        job.watch()
     };
     let seed = job.seed.unwrap_or_default();
     let record = params.test.run(&specimen, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
