@@ -3,7 +3,7 @@
 use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, Watch};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -31,6 +31,8 @@ struct Live {
     failed: usize,
     /// Where the stage itself says it stands; empty for stages that do not decide by outcomes.
     note: String,
+    /// What was warned of, without its numbers.
+    warned: HashSet<String>,
     bar: Option<ProgressBar>,
 }
 
@@ -67,8 +69,17 @@ impl<'a> Progress<'a> {
         let mut stages = self.stages();
         if !stages.contains_key(stage) {
             let now = Instant::now();
-            let (ended, failed, note, bar) = (0, 0, String::new(), self.bar(stage));
-            stages.insert(stage.to_owned(), Live { started: now, told: now, ended, failed, note, bar });
+            let (note, warned, bar) = (String::new(), HashSet::new(), self.bar(stage));
+            stages.insert(stage.to_owned(), Live { started: now, told: now, ended: 0, failed: 0, note, warned, bar });
+        }
+    }
+
+    /// A warning stays on the screen: of each kind the first of a stage, as rows differ in its numbers only.
+    fn warn(&self, stage: &str, row: Option<usize>, words: &str) {
+        let kind: String = words.chars().filter(|c| !c.is_ascii_digit()).collect();
+        let new = self.stages().get_mut(stage).is_some_and(|live| live.warned.insert(kind));
+        if new {
+            self.say(&format!("warning: {}: {words}", place(stage, row)));
         }
     }
 
@@ -135,6 +146,7 @@ impl Watch for Progress<'_> {
     fn event(&self, event: Event<'_>) {
         match event {
             Event::Started { stage, .. } => self.started(stage),
+            Event::Said { stage, row, progress } if progress.warning => self.warn(stage, row, &progress.note),
             Event::Said { stage, row, progress } => {
                 if let Some(bar) = self.stages().get(stage).and_then(|live| live.bar.as_ref()) {
                     let row = row.map_or_else(String::new, |row| format!("[{}] ", row + 1));
@@ -145,14 +157,18 @@ impl Watch for Progress<'_> {
             Event::Asked { stage, count, note } => self.asked(stage, count, note),
             Event::Ended { stage, row, count, failure } => {
                 if let Some(why) = failure {
-                    let row = row.map_or_else(String::new, |row| format!("[{}]", row + 1));
-                    self.say(&format!("error: {stage}{row}: {why}"));
+                    self.say(&format!("error: {}: {why}", place(stage, row)));
                 }
                 self.ended(stage, count);
             }
             Event::Stage { report } => self.closed(report),
         }
     }
+}
+
+/// A stage or one row of it, as `flow show` takes it.
+fn place(stage: &str, row: Option<usize>) -> String {
+    row.map_or_else(|| stage.to_owned(), |row| format!("{stage}[{}]", row + 1))
 }
 
 /// Rate, elapsed time and expected rest.

@@ -3,7 +3,7 @@
 //! Replicate k is another packing and another aggregate of the same recipe; its seed comes from the workflow's seed and
 //! k. What is computed and why: [`crate::dem::genesis`].
 
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Stage, StageError, Step, Task, Work};
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Artifact, Table, Values};
 use crate::dem::genesis::clump::{Clump, ClumpMass};
@@ -290,6 +290,7 @@ fn make(job: &Job) -> Result<Artifact, Failure> {
         _ => StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")).into(),
     };
     let (made, quality) = recipe.make(seed, &|| job.watch()).map_err(failure)?;
+    quality.warnings().iter().for_each(|warning| (job.say)(Progress::warning(warning)));
     Ok(store(&made, &quality).to_artifact())
 }
 

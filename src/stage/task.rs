@@ -186,6 +186,20 @@ pub struct Progress {
     pub fraction: Option<f64>,
     /// A few words, such as `ε 0.12 %, σ 23.1 MPa`.
     pub note: String,
+    /// Whether the words warn of what the task begins or has made, and must stay to be read.
+    pub warning: bool,
+}
+
+impl Progress {
+    /// A few words on where the task stands.
+    pub fn note(note: String) -> Self {
+        Self { note, ..Self::default() }
+    }
+
+    /// What a reader must know before the result is used; said as early as it is known.
+    pub fn warning(fault: &dyn std::fmt::Display) -> Self {
+        Self { note: fault.to_string(), warning: true, ..Self::default() }
+    }
 }
 
 /// Why a task has no artifact.

@@ -339,3 +339,36 @@ fn a_run_ends_with_what_a_reader_must_not_miss() {
     );
     assert!(!said(&space.flow(&["run", "w.toml"])).contains("note:"), "nothing ran, so nothing is new");
 }
+
+#[test]
+fn warnings_stay_on_the_screen_before_the_long_work_and_are_shown_with_the_result() {
+    let space = Space::new();
+    space.write("w.toml", include_str!("small.toml"));
+    let output = space.flow(&["run", "w.toml", "trial"]);
+    let found = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{found}");
+    let place = |part: &str| found.find(part).unwrap_or_else(|| panic!("no `{part}` in\n{found}"));
+    assert!(place("warning: specimen: only ") < place("specimen         done"));
+    assert!(
+        place("warning: trial: platen speed over wave speed is 3.2e-5, above 1e-5") < place("trial            done")
+    );
+    assert!(space.stdout(&["show", "w.toml", "trial"]).contains("warning: platen speed over wave speed is 3.2e-5"));
+    let coarse = ["--set", "stage.specimen.mean_radius=3 mm"];
+    let output = space.flow(&[&["run", "w.toml", "specimen"], &coarse[..]].concat());
+    let found = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(found.contains("warning: specimen: only 6."), "{found}");
+    assert!(found.contains("particles across the specimen; below 10 results are meaningless"), "{found}");
+    assert!(space.stdout(&[&["show", "w.toml", "specimen"], &coarse[..]].concat()).contains("warning: only 6."));
+}
+
+#[test]
+fn of_stages_that_nobody_asked_for_nothing_is_said() {
+    let space = Space::new();
+    space.write("w.toml", &CAMPAIGN.replace("echo 1", "exit 1"));
+    let more = "[stage.{}]\nkind = \"table\"\nof = \"first\"\n";
+    let text = std::fs::read_to_string(space.path("w.toml")).expect("the workflow");
+    space.write("w.toml", &(text + &more.replace("{}", "wanted") + &more.replace("{}", "other")));
+    let found = complaint(&space, &["run", "w.toml", "wanted"], 1);
+    assert!(found.contains("wanted           skipped, because `first` failed"), "{found}");
+    assert!(!found.contains("other"), "{found}");
+}

@@ -65,7 +65,7 @@ pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
             }
         });
         let note = format!("set {} of {}", set + 1, params.sets.len());
-        (job.say)(Progress { fraction: Some((set + 1) as f64 / params.sets.len() as f64), note });
+        (job.say)(Progress { fraction: Some((set + 1) as f64 / params.sets.len() as f64), ..Progress::note(note) });
     }
     Ok(record::artifact(&params, &solved))
 }
@@ -102,7 +102,7 @@ fn on_surfaces(
             }
         }
         search.tell(&answers);
-        (job.say)(Progress { fraction: None, note: format!("{count} evaluations, misfit {best:.2e}") });
+        (job.say)(Progress::note(format!("{count} evaluations, misfit {best:.2e}")));
     };
     let state = search.state();
     let found = state.best.clone().ok_or_else(|| StageError::new("the surfaces have no value anywhere"))?;

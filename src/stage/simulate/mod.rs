@@ -97,14 +97,14 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
     let specimen = super::specimen::load(job.input("specimen")?)?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
     for warning in uniaxial::warnings(&params.test, &specimen, &params.material).map_err(|faults| fail(&faults))? {
-        (job.say)(Progress { fraction: None, note: warning.to_string() });
+        (job.say)(Progress::warning(&warning));
     }
     let mut seen = 0;
     let mut watch = |sample: &Sample| {
         seen += 1;
         if seen % REPORT_EVERY == 0 {
             let note = format!("ε {:.3} %, σ {:.1} MPa", sample.axial * 100.0, sample.stress / 1e6);
-            (job.say)(Progress { fraction: None, note });
+            (job.say)(Progress::note(note));
         }
         job.watch()
     };
