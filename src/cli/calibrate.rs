@@ -243,6 +243,8 @@ fn wanted(workflow: &Workflow, targets: &[String]) -> Result<String, Vec<String>
                 .push(format!("--target {option}: unknown response `{name}`{meant}\n  known are {}", known.join(", ")));
             continue;
         };
+        // Quotes that a shell has not taken away mean the same.
+        let value = value.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(value);
         let value = match value.parse::<f64>() {
             Ok(number) => Wanted::Number(number),
             Err(_) => Wanted::Text(value.to_owned()),

@@ -20,6 +20,8 @@ pub enum Digits {
     Fixed(usize),
     /// So many significant digits.
     Significant(usize),
+    /// So many significant digits, whole numbers as they are: for quantities of many kinds below one another.
+    Unlike(usize),
 }
 
 /// A column with what its head needs.

@@ -61,7 +61,8 @@ pub fn shown(column: &Column, row: usize) -> Option<String> {
     Some(match column.digits {
         Digits::Shortest => lossless(x),
         Digits::Fixed(n) => unsigned_zero(format!("{x:.n$}")),
-        Digits::Significant(n) => significant(x, n),
+        Digits::Unlike(_) if x.fract() == 0.0 && x.abs() < 1e7 => lossless(x),
+        Digits::Significant(n) | Digits::Unlike(n) => significant(x, n),
     })
 }
 
@@ -208,6 +209,14 @@ mod tests {
             columns,
             notes: vec!["One note.".into()],
         }
+    }
+
+    #[test]
+    fn whole_numbers_among_unlike_quantities_have_no_decimals() {
+        let column =
+            Column::reals("value", vec![24.0, 0.0, 44086.0, 0.974_31, 2.837e10]).with_digits(Digits::Unlike(3));
+        let cells: Vec<String> = (0..5).filter_map(|row| shown(&column, row)).collect();
+        assert_eq!(cells, ["24", "0", "44086", "0.974", "2.84e10"]);
     }
 
     #[test]

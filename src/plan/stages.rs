@@ -53,7 +53,10 @@ fn configure(check: &mut Check<'_>, table: &mut Table, materials: Option<&Node>,
         let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, keys, by_kind) else { continue };
         for complaint in stage.check(context) {
             // It only follows from a fault that was told already.
-            if check.lost.iter().any(|name| complaint.message.contains(&format!("`{name}`"))) {
+            let names = |lost: &String| {
+                complaint.message.contains(&format!("`{lost}`")) || complaint.message.contains(&format!(".{lost}]"))
+            };
+            if check.lost.iter().any(names) {
                 continue;
             }
             let fault = Fault { hint: complaint.hint, ..Fault::new(complaint.message) };

@@ -106,6 +106,7 @@ impl<'a> Sheet<'a> {
             Some(&decimals) => Digits::Fixed(decimals),
             None if mark.is_some() => Digits::Fixed(1),
             None if exact => Digits::Shortest,
+            None if column.name == "value" && self.table.column("unit").is_some() => Digits::Unlike(self.digits),
             None => Digits::Significant(self.digits),
         };
         let own = Column { key: column.name.clone(), symbol: String::new(), unit: column.unit.clone(), values, digits };

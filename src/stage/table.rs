@@ -112,7 +112,7 @@ struct Params {
     /// Names of the stages when several are stacked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     stages: Vec<String>,
-    /// Units of responses that stand in rows.
+    /// Units of responses, for quantities that stand in rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     units: Option<BTreeMap<String, String>>,
 }
@@ -239,7 +239,8 @@ impl Table {
 impl Kind for Table {
     const NAME: &'static str = "table";
     const ABOUT: &'static str = "a table of other stages' results for people";
-    const WORKS: &'static [Work] = &[Work { name: "table", version: 1, run: print }];
+    /// 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 2, run: print }];
 }
 
 /// The table of that name, or the first.

@@ -104,6 +104,7 @@ fn every_fault_of_the_command_line_is_told() {
         (&["--target", "y=16 GP"], "--target y=16 GP: "),
         (&["--target", "y=16 GPa", "--target", "y=1 MPa"], "`y` is given twice"),
         (&["--target", "y=0 MPa"], "the target of `y` is 0"),
+        (&["--target", "y=\"0 MPa\""], "the target of `y` is 0"),
         (&["--target", "y=16 MPa", "--stage", "verify"], "`verify` is of kind verify, not calibrate"),
         (&["--target", "y=16 MPa", "--stage", "calibrat"], "did you mean `calibrate`?"),
         (&["--target", "y=16 MPa", "--set", "stage.calibrate.simulator=ccd"], "searches on surfaces alone: calibrate"),

@@ -88,3 +88,13 @@ fn what_the_program_started_ends_with_it() {
     assert_eq!(output.status.code(), Some(1));
     assert!(started.elapsed().as_secs() < 60, "the run waited for what its program left behind");
 }
+
+#[test]
+fn a_value_in_the_command_itself_is_refused_before_anything_runs() {
+    let space = space("true", "");
+    let output = space.flow(&["check", "w.toml", "--set", "stage.trial.run=[\"sh\", \"{{mortar.Ec}}\"]"]);
+    assert_eq!(output.status.code(), Some(2), "{}", told(&output));
+    assert!(told(&output).contains("`{{mortar.Ec}}` is filled in templates, not in `run`"), "{}", told(&output));
+    let kept = space.flow(&["check", "w.toml", "--set", "stage.trial.run=[\"awk\", \"{{ print $1 }}\"]"]);
+    assert!(kept.status.success(), "{}", told(&kept));
+}

@@ -57,6 +57,13 @@ pub struct Command {
     pub read: BTreeMap<String, Read>,
 }
 
+/// The name in `{{name}}`, the first in the text that could be one of a value.
+fn placeholder(text: &str) -> Option<&str> {
+    let within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
+    let plain = |name: &&str| name.trim().chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c));
+    within.filter(plain).find(|name| name.trim().starts_with(|c: char| c.is_ascii_alphabetic()))
+}
+
 /// What becomes of a run that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -107,6 +114,11 @@ impl Stage for Command {
         }
         if self.shell && self.run.len() > 1 {
             found.push(Complaint::new("run", "with `shell` the command is one text").hint("run = [\"a | b\"]"));
+        }
+        if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument)) {
+            let message = format!("`{{{{{name}}}}}` is filled in templates, not in `run`");
+            let hint = "put the value into a file of `templates` that the program reads";
+            found.push(Complaint::new("run", message).hint(hint));
         }
         found.extend(rows::check_material(self.material.as_ref(), context));
         for name in self.files.keys().chain(self.templates.keys()).filter(|name| !folder::is_plain(name)) {

@@ -38,9 +38,11 @@ pub(super) fn dag(outline: &[Outline]) -> Dag {
     let used: Vec<usize> = (0..CLASSES.len()).filter(|class| found.contains(class)).collect();
     let place = |class: &usize| used.binary_search(class).unwrap_or(0);
     let stages = outline.iter().zip(&found);
+    // A stage named after its kind needs no second line.
+    let note = |stage: &Outline| if stage.kind == stage.name { String::new() } else { stage.kind.clone() };
     Dag {
         stages: stages
-            .map(|(stage, own)| Stage { name: stage.name.clone(), note: stage.kind.clone(), class: place(own) })
+            .map(|(stage, own)| Stage { name: stage.name.clone(), note: note(stage), class: place(own) })
             .collect(),
         edges: outline
             .iter()

@@ -264,8 +264,9 @@ impl Kind for Figure {
     /// 2: numbers at points of designs stand on a ground of paper; "1 crack"; force chains are those above the mean.
     /// 3: surfaces say where their axes lie. 4: empty columns in the legend of contributions; normal plots.
     /// 5: several targets of a solution set one below the other; circles of PNG files without the system's cosines.
-    /// 6: descriptions in plain letters, without stray blanks.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 6, run: draw }];
+    /// 6: descriptions in plain letters, without stray blanks. 7: a stage named after its kind says it once; force
+    /// chains say when.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 7, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

@@ -157,3 +157,17 @@ fn responses_in_rows_are_told_in_the_units_of_the_workflow() {
     assert_eq!(ends, ["MPa", "GPa", "", "MPa"]);
     assert!(rows[4].starts_with("sigma_ci,13.07,"), "{rows:?}");
 }
+
+#[test]
+fn quantities_in_rows_are_told_as_people_read_them() {
+    let words = |w: [&str; 3]| w.map(String::from).to_vec();
+    let table = Data::default()
+        .texts_column("quantity", "", words(["mean radius", "width", "discs"]))
+        .reals_column("value", "", "", vec![0.485_400_01e-3, 0.1, 24.0])
+        .texts_column("unit", "", words(["m", "m", ""]));
+    let specimen = Arc::new(Artifact::new("specimen", 1, Group::new().with("quality", Node::Table(table))));
+    let made = run(json!({ "digits": 4, "units": {} }), &[("of", specimen)]).unwrap();
+    let rows: Vec<String> = text(&made, "markdown").lines().map(str::to_owned).collect();
+    let ends = ["| mean radius | 0.4854 | mm |", "| width | 0.1000 | m |", "| discs | 24 | – |"];
+    assert!(ends.iter().zip(&rows[rows.len() - 3..]).all(|(end, row)| row == end), "{rows:?}");
+}

@@ -1,14 +1,14 @@
-//! Responses told row by row (`response,value,unit`, in SI units) in the units that people read them in.
+//! Quantities told row by row (`value,unit`, in SI units) in the units that people read them in.
 //!
-//! A response of the workflow gets the unit of its `[response.NAME]`; another one in pascal the prefix that leaves one
-//! to three digits before the point.
+//! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`; another quantity in pascal the
+//! prefix that leaves one to three digits before the point, a length below a decimetre millimetres.
 
-use crate::figure::column::{Column, Values};
+use crate::figure::column::{Column, Digits, Values};
 use crate::unit::Unit;
 use std::collections::BTreeMap;
 
-/// The columns of a table that tells responses row by row.
-pub(super) const ROWWISE: [&str; 3] = ["response", "value", "unit"];
+/// The columns of a table that tells quantities row by row.
+pub(super) const ROWWISE: [&str; 2] = ["value", "unit"];
 
 /// Scales every number of the columns named after `value` to the wanted unit of its row, and names that unit.
 pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>) {
@@ -18,7 +18,8 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
             Values::Reals(_) | Values::Whole(_) => None,
         })
     };
-    let (Some(names), Some(units)) = (words("response"), words("unit")) else { return };
+    let Some(units) = words("unit") else { return };
+    let names = words("response").unwrap_or_else(|| vec![String::new(); units.len()]);
     let Some(values) = columns.iter().find_map(|c| match &c.values {
         Values::Reals(values) if c.key == "value" => Some(values.clone()),
         _ => None,
@@ -28,6 +29,11 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
     let rows = names.iter().zip(&units).zip(&values);
     let shown: Vec<(String, f64)> = rows.map(|((name, unit), &value)| one(wanted.get(name), unit, value)).collect();
     for column in columns {
+        if let Digits::Significant(digits) = column.digits
+            && column.key.starts_with(ROWWISE[0])
+        {
+            column.digits = Digits::Unlike(digits);
+        }
         match &mut column.values {
             Values::Words(words) if column.key == "unit" => {
                 words.iter_mut().zip(&shown).for_each(|(word, (unit, _))| word.clone_from(unit));
@@ -48,6 +54,7 @@ fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, f64) {
             size if unit == "Pa" && (1e3..1e6).contains(&size) => ("kPa".into(), 1e3),
             size if unit == "Pa" && (1e6..1e9).contains(&size) => ("MPa".into(), 1e6),
             size if unit == "Pa" && size >= 1e9 => ("GPa".into(), 1e9),
+            size if unit == "m" && size < 0.1 => ("mm".into(), 1e-3),
             _ => as_it_is(),
         };
     };
