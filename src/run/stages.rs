@@ -228,7 +228,10 @@ impl Stages {
     /// Ends the stages that can end now, and keeps their memos when something was or may be run.
     pub(super) fn close(&mut self, workflow: &Workflow, board: &Board, store: Option<&Store>) -> Vec<StageReport> {
         let mut closed = Vec::new();
-        for index in (0..self.places.len()).filter(|&index| self.places[index].wanted).collect::<Vec<_>>() {
+        for index in 0..self.places.len() {
+            if !self.places[index].wanted {
+                continue;
+            }
             let Some(status) = self.end(workflow, index, board) else { continue };
             if let (StageStatus::Done(content), Some(store)) = (&status, store) {
                 self.keep(index, *content, board, store);

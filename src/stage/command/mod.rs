@@ -57,13 +57,6 @@ pub struct Command {
     pub read: BTreeMap<String, Read>,
 }
 
-/// The name in `{{name}}`, the first in the text that could be one of a value.
-fn placeholder(text: &str) -> Option<&str> {
-    let within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
-    let plain = |name: &&str| name.trim().chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c));
-    within.filter(plain).find(|name| name.trim().starts_with(|c: char| c.is_ascii_alphabetic()))
-}
-
 /// What becomes of a run that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -170,6 +163,13 @@ impl Kind for Command {
     const NAME: &'static str = "command";
     const ABOUT: &'static str = "an external program, once or per design row";
     const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
+}
+
+/// The name in `{{name}}`, the first in the text that could be one of a value.
+fn placeholder(text: &str) -> Option<&str> {
+    let within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
+    let plain = |name: &&str| name.trim().chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c));
+    within.filter(plain).find(|name| name.trim().starts_with(|c: char| c.is_ascii_alphabetic()))
 }
 
 fn execute(job: &Job) -> Result<Artifact, Failure> {
