@@ -22,8 +22,8 @@
 //!
 //! The bonds' angle of friction is zero, as the text has none. With 40° the trends of the computed strengths over the
 //! published ones with every factor vanish in their errors (with 30° all but two), and the scatter of their ratio falls from
-//! 6.7 to 3.9 %, at the same level, E and ν: the published model very likely had one (`workflows/c30/README.md`, "Strength").
-//! It stays at zero: an angle chosen for its results would be a fit. What trend is left in E, −2.1 % over the range of E_c and
+//! 6.7 to 3.9 %, at the same level, E and ν: the likeliest cause (`workflows/c30/README.md`, "Strength"). It stays at zero,
+//! the commercial code's default: an angle chosen for its results would be a fit. What trend is left in E, −2.1 % over the range of E_c and
 //! +2.5 % over that of (E_c)_j, is the amount of interface: two thirds of the aggregate turn both signs ("What is left in E").
 
 pub mod brazilian;
