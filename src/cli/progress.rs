@@ -3,7 +3,7 @@
 use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, Watch};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -31,8 +31,8 @@ struct Live {
     failed: usize,
     /// Where the stage itself says it stands; empty for stages that do not decide by outcomes.
     note: String,
-    /// What was warned of, without its numbers.
-    warned: HashSet<String>,
+    /// What was warned of, without its numbers, and how often.
+    warned: HashMap<String, usize>,
     bar: Option<ProgressBar>,
 }
 
@@ -69,7 +69,7 @@ impl<'a> Progress<'a> {
         let mut stages = self.stages();
         if !stages.contains_key(stage) {
             let now = Instant::now();
-            let (note, warned, bar) = (String::new(), HashSet::new(), self.bar(stage));
+            let (note, warned, bar) = (String::new(), HashMap::new(), self.bar(stage));
             stages.insert(stage.to_owned(), Live { started: now, told: now, ended: 0, failed: 0, note, warned, bar });
         }
     }
@@ -77,8 +77,13 @@ impl<'a> Progress<'a> {
     /// A warning stays on the screen: of each kind the first of a stage, as rows differ in its numbers only.
     fn warn(&self, stage: &str, row: Option<usize>, words: &str) {
         let kind: String = words.chars().filter(|c| !c.is_ascii_digit()).collect();
-        let new = self.stages().get_mut(stage).is_some_and(|live| live.warned.insert(kind));
-        if new {
+        self.started(stage);
+        let times = self.stages().get_mut(stage).map(|live| {
+            let times = live.warned.entry(kind).or_default();
+            *times += 1;
+            *times
+        });
+        if times == Some(1) {
             self.say(&format!("warning: {}: {words}", place(stage, row)));
         }
     }
@@ -124,6 +129,12 @@ impl<'a> Progress<'a> {
             bar.finish_and_clear();
         }
         let name = &report.name;
+        let more: usize = live.iter().flat_map(|live| live.warned.values()).map(|times| times - 1).sum();
+        if more > 0 {
+            self.say(&format!(
+                "warning: {name}: {more} more of its rows are warned of alike, each with its own numbers"
+            ));
+        }
         match &report.status {
             StageStatus::Failed(why) => match live.map_or(0, |live| live.failed) {
                 0 => self.say(&format!("error: stage `{name}`: {why}")),
@@ -167,7 +178,7 @@ impl Watch for Progress<'_> {
 }
 
 /// A stage or one row of it, as `flow show` takes it.
-fn place(stage: &str, row: Option<usize>) -> String {
+pub(super) fn place(stage: &str, row: Option<usize>) -> String {
     row.map_or_else(|| stage.to_owned(), |row| format!("{stage}[{}]", row + 1))
 }
 

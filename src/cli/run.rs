@@ -2,7 +2,7 @@
 
 use super::Exit;
 use super::common::{Campaign, system, workers};
-use super::progress::Progress;
+use super::progress::{Progress, place};
 use super::remarks::remarks;
 use crate::exec::cores;
 use crate::plan::Workflow;
@@ -89,23 +89,23 @@ impl Run {
         Ok(exit)
     }
 
-    /// Every task that failed, and every stage that did so by itself, with the command that runs it again.
+    /// Every task that failed, and every stage that did so by itself, with the command that runs them again.
     fn failures(&self, workflow: &Workflow, report: &Report) {
-        let tell = |what: &str, name: &str, why: &str| {
-            eprintln!("failed: {what}: {why}\n  again: {}", self.campaign.command("run", &[name]));
-        };
-        let mut by_task = vec![false; workflow.stages.len()];
+        let mut by_stage: Vec<Vec<String>> = vec![Vec::new(); workflow.stages.len()];
         for task in report.tasks() {
             if let TaskState::Failed(why) = &task.state {
                 let name = workflow.stages[task.stage].name.as_str();
-                by_task[task.stage] = true;
-                tell(&task.row.map_or_else(|| name.to_owned(), |row| format!("{name}[{}]", row + 1)), name, why);
+                by_stage[task.stage].push(format!("failed: {}: {why}", place(name, task.row)));
             }
         }
         for stage in &report.stages {
-            let told = workflow.position(&stage.name).is_some_and(|place| by_task[place]);
-            if let (StageStatus::Failed(why), false) = (&stage.status, told) {
-                tell(&stage.name, &stage.name, why);
+            let Some(lines) = workflow.position(&stage.name).map(|place| &mut by_stage[place]) else { continue };
+            if let (StageStatus::Failed(why), true) = (&stage.status, lines.is_empty()) {
+                lines.push(format!("failed: {}: {why}", stage.name));
+            }
+            lines.iter().for_each(|line| eprintln!("{line}"));
+            if !lines.is_empty() {
+                eprintln!("  again: {}", self.campaign.command("run", &[&stage.name]));
             }
         }
     }

@@ -29,7 +29,7 @@ pub struct Chains {
     /// Contacts and bonds.
     pub links: Vec<Link>,
     /// When these forces act, such as "at the peak"; may be empty.
-    pub moment: String,
+    pub when: String,
     /// Unit of the forces.
     pub unit: String,
     /// Forces below this share of the mean are left out; 0 draws all.
@@ -49,7 +49,7 @@ impl Figure for Chains {
         let width = if aspect > 1.2 { 0.62 * style.width } else { style.width - 1.6 };
         let below = if aspect > 1.2 { 0.0 } else { 7.5 * style.size() };
         let mut scene = Scene::new(style.width, width * aspect + below + 1.6);
-        scene.title = format!("Force chains {}", self.moment).trim_end().to_owned();
+        scene.title = format!("Force chains {}", self.when).trim_end().to_owned();
         let (mean, most) = self.scale();
         let unit = &self.unit;
         scene.description =

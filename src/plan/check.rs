@@ -81,8 +81,8 @@ pub(super) struct Check<'a> {
     pub(super) sources: &'a Sources,
     /// The faults so far.
     pub(super) faults: Vec<Fault>,
-    /// Names of factors, responses and materials that could not be read.
-    pub(super) lost: Vec<String>,
+    /// Section and name of factors, responses and materials that could not be read.
+    pub(super) lost: Vec<(&'static str, String)>,
 }
 
 impl Check<'_> {
@@ -114,7 +114,7 @@ impl Check<'_> {
     fn named<T>(
         &mut self,
         root: &mut Table,
-        key: &str,
+        key: &'static str,
         one: impl Fn(&mut Self, &str, &mut Node) -> Option<T>,
     ) -> BTreeMap<String, T> {
         let Some(table) = self.tables(root, key) else { return BTreeMap::new() };
@@ -126,7 +126,7 @@ impl Check<'_> {
             self.name(name, entry);
             match one(self, name, &mut entry.node) {
                 Some(value) => drop(found.insert(name.clone(), value)),
-                None => self.lost.push(name.clone()),
+                None => self.lost.push((key, name.clone())),
             }
         }
         found

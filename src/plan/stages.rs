@@ -53,8 +53,8 @@ fn configure(check: &mut Check<'_>, table: &mut Table, materials: Option<&Node>,
         let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, keys, by_kind) else { continue };
         for complaint in stage.check(context) {
             // It only follows from a fault that was told already.
-            let names = |lost: &String| {
-                complaint.message.contains(&format!("`{lost}`")) || complaint.message.contains(&format!(".{lost}]"))
+            let names = |(section, lost): &(&str, String)| {
+                [format!("`{lost}`"), format!("[{section}.{lost}]")].iter().any(|name| complaint.message.contains(name))
             };
             if check.lost.iter().any(names) {
                 continue;

@@ -173,6 +173,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             ready: BTreeSet::new(),
             running: 0,
             failed: false,
+            untold: Vec::new(),
             fatal: None,
             ended: HashMap::new(),
             lost: HashSet::new(),
@@ -216,6 +217,8 @@ struct Loop<'env> {
     ready: BTreeSet<NodeId>,
     running: usize,
     failed: bool,
+    /// Stages that have failed while other tasks of theirs may still end.
+    untold: Vec<usize>,
     /// The store cannot be read: nothing more is started.
     fatal: Option<StoreError>,
     /// Tasks that were run, and why those failed that did: what is decided anew knows them.
@@ -243,6 +246,7 @@ impl Loop<'_> {
                 Err(_) => panic!("BUG: the run loop lost its own inbox"),
             }
         }
+        self.tell_failed(true);
         let interrupted = self.stop.load(Ordering::Relaxed);
         let broken = self.fatal.map(|error| error.to_string());
         let stages = self.stages.reports(self.workflow, &self.board);
@@ -274,12 +278,30 @@ impl Loop<'_> {
         let keeps = (!self.settings.dry).then_some(self.store);
         for report in self.stages.close(self.workflow, &self.board, keeps) {
             moved = true;
-            self.failed |= matches!(report.status, StageStatus::Failed(_));
-            if !self.settings.dry {
-                self.watch.event(Event::Stage { report: &report });
+            let failed = matches!(report.status, StageStatus::Failed(_));
+            self.failed |= failed;
+            match self.workflow.position(&report.name) {
+                Some(index) if failed => self.untold.push(index),
+                _ if self.settings.dry => {}
+                _ => self.watch.event(Event::Stage { report: &report }),
             }
         }
+        self.tell_failed(false);
         moved
+    }
+
+    /// Tells of stages that have failed once none of their tasks can end any more, so that all are counted.
+    fn tell_failed(&mut self, last: bool) {
+        let (workflow, board, watch) = (self.workflow, &self.board, self.watch);
+        let (stages, dry) = (&self.stages, self.settings.dry);
+        self.untold.retain(|&index| {
+            let report = stages.report(workflow, index, board);
+            let waits = !last && report.tasks.ended() < report.tasks.total;
+            if !waits && !dry {
+                watch.event(Event::Stage { report: &report });
+            }
+            waits
+        });
     }
 
     /// Decides about a node whose inputs may be known, and about all that follow from it.
@@ -337,6 +359,7 @@ impl Loop<'_> {
     /// Begins anew without memos, which may speak of what is gone. What was computed is in the store.
     fn decide_anew(&mut self) {
         self.again = false;
+        self.untold.clear();
         self.ready.clear();
         self.board = Board::default();
         self.stages = Stages::new(self.workflow, &self.settings.targets, false);

@@ -276,7 +276,8 @@ impl Stages {
         }
     }
 
-    fn report(&self, workflow: &Workflow, index: usize, board: &Board) -> StageReport {
+    /// Where a stage stands, by the tasks that it asked for first.
+    pub(super) fn report(&self, workflow: &Workflow, index: usize, board: &Board) -> StageReport {
         let place = &self.places[index];
         StageReport {
             name: workflow.stages[index].name.clone(),

@@ -173,7 +173,7 @@ impl Job<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// The same as the engine and the packing ask it.
+    /// Whether to stop, in the form in which the engine and the packing ask.
     pub fn watch(&self) -> Watch {
         if self.stopped() { Watch::Stop } else { Watch::Continue }
     }
@@ -197,8 +197,8 @@ impl Progress {
     }
 
     /// What a reader must know before the result is used; said as early as it is known.
-    pub fn warning(fault: &dyn std::fmt::Display) -> Self {
-        Self { note: fault.to_string(), warning: true, ..Self::default() }
+    pub fn warning(words: &dyn std::fmt::Display) -> Self {
+        Self { note: words.to_string(), warning: true, ..Self::default() }
     }
 }
 

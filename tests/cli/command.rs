@@ -95,6 +95,24 @@ fn a_value_in_the_command_itself_is_refused_before_anything_runs() {
     let output = space.flow(&["check", "w.toml", "--set", "stage.trial.run=[\"sh\", \"{{mortar.Ec}}\"]"]);
     assert_eq!(output.status.code(), Some(2), "{}", told(&output));
     assert!(told(&output).contains("`{{mortar.Ec}}` is filled in templates, not in `run`"), "{}", told(&output));
-    let kept = space.flow(&["check", "w.toml", "--set", "stage.trial.run=[\"awk\", \"{{ print $1 }}\"]"]);
+    let kept = space.flow(&["check", "w.toml", "--set", "stage.trial.run=[\"awk\", \"{{print}} {{ $1 }}\"]"]);
     assert!(kept.status.success(), "{}", told(&kept));
+}
+
+#[test]
+fn a_stage_with_failed_rows_is_told_once_when_its_last_row_has_ended() {
+    let space = space("exit 3", "");
+    let head = "[workflow]\nseed = 7\n[factor.a]\nsets = \"mortar.mu\"\nlevels = [1, 2, 3, 4]\n[material.m]\nmortar = { mu = 1 }\n[response]\nUCS = { unit = \"MPa\" }\n";
+    let design = "[stage.d]\nkind = \"design\"\nmethod = \"full-factorial\"\nfactors = [\"a\"]\n";
+    let rows =
+        "[stage.trial]\nkind = \"command\"\nmaterial = \"m\"\ndesign = \"d\"\nrun = [\"sh\", \"-c\", \"exit 3\"]\n";
+    let read = "read.UCS = { file = \"out.csv\", column = \"UCS\", unit = \"Pa\" }\n";
+    space.write("w.toml", &[head, design, rows, read].concat());
+    let output = space.flow(&["run", "w.toml", "--keep-going", "--jobs", "1"]);
+    let found = told(&output);
+    let at: Vec<usize> = found.match_indices("trial            failed: ").map(|(place, _)| place).collect();
+    assert_eq!(at.len(), 1, "{found}");
+    assert!(found[at[0]..].starts_with("trial            failed: 4 of 5 tasks"), "{found}");
+    assert!(found.rfind("error: trial[4]").is_some_and(|row| row < at[0]), "{found}");
+    assert_eq!(found.matches("again: ").count(), 1, "{found}");
 }

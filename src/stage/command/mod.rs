@@ -108,7 +108,10 @@ impl Stage for Command {
         if self.shell && self.run.len() > 1 {
             found.push(Complaint::new("run", "with `shell` the command is one text").hint("run = [\"a | b\"]"));
         }
-        if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument)) {
+        let values = self.material.iter().filter_map(|name| context.materials.get(name)).flat_map(|m| m.keys());
+        let values: Vec<&str> =
+            values.chain(context.factors.keys()).map(String::as_str).chain(["seed", "replicate"]).collect();
+        if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument, &values)) {
             let message = format!("`{{{{{name}}}}}` is filled in templates, not in `run`");
             let hint = "put the value into a file of `templates` that the program reads";
             found.push(Complaint::new("run", message).hint(hint));
@@ -165,11 +168,10 @@ impl Kind for Command {
     const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
 }
 
-/// The name in `{{name}}`, the first in the text that could be one of a value.
-fn placeholder(text: &str) -> Option<&str> {
-    let within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
-    let plain = |name: &&str| name.trim().chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c));
-    within.filter(plain).find(|name| name.trim().starts_with(|c: char| c.is_ascii_alphabetic()))
+/// The first of `{{name}}` in the text that names a value; other braces are the program's own.
+fn placeholder<'a>(text: &'a str, values: &[&str]) -> Option<&'a str> {
+    let mut within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
+    within.find(|name| values.contains(&name.trim()))
 }
 
 fn execute(job: &Job) -> Result<Artifact, Failure> {

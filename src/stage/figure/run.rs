@@ -204,6 +204,6 @@ pub(super) fn chains(sources: &Sources) -> Result<Chains, StageError> {
     let links = links.ok_or_else(|| StageError::new("the forces name discs that the run does not have"))?;
     let points: Vec<[f64; 2]> = links.iter().flat_map(|l| [l.from, l.to]).collect();
     let (low, high, _) = ground(sources, &points)?;
-    let moment = "at the greatest stress of the states kept".into();
-    Ok(Chains { low, high, links, moment, unit: "kN/m".into(), least: 1.0 })
+    let when = "at the greatest stress of the states kept".into();
+    Ok(Chains { low, high, links, when, unit: "kN/m".into(), least: 1.0 })
 }

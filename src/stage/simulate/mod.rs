@@ -113,5 +113,6 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
     if record.run.interrupted {
         return Err(Failure::Stopped);
     }
+    record::unmet(&record).for_each(|words| (job.say)(Progress::warning(&words)));
     Ok(record::artifact(&record, &params.test))
 }

@@ -55,11 +55,13 @@ fn responses(record: &TestRecord, kind: TestKind) -> Vec<(&'static str, f64, &'s
 /// Warnings on the rate of loading, and checks that are not met.
 fn warnings(record: &TestRecord, test: &Loading) -> Vec<String> {
     let rate = record.judgement.warnings(test.speed).into_iter().map(|warning| warning.to_string());
+    rate.chain(unmet(record)).collect()
+}
+
+/// Checks that are not met.
+pub(super) fn unmet(record: &TestRecord) -> impl Iterator<Item = String> + '_ {
     let unmet = record.checks.iter().filter(|check| !check.met);
-    rate.chain(
-        unmet.map(|c| format!("{} is {:.3}, the bound is {:.3}: the result is not valid", c.name, c.value, c.bound)),
-    )
-    .collect()
+    unmet.map(|c| format!("{} is {:.3}, the bound is {:.3}: the result is not valid", c.name, c.value, c.bound))
 }
 
 fn checks(record: &TestRecord) -> Table {

@@ -134,5 +134,5 @@ pub(super) fn chains() -> Chains {
             }
         }
     }
-    Chains { low: s.low, high: s.high, links, moment: String::new(), unit: "kN".into(), least: 0.5 }
+    Chains { low: s.low, high: s.high, links, when: String::new(), unit: "kN".into(), least: 0.5 }
 }
