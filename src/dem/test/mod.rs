@@ -21,11 +21,11 @@
 //! | masses | their own or of one time step: free choice | R = 1 mm: 42.55 against 42.63 MPa, E and ν equal to 3 digits, 1.8 times fewer steps |
 //!
 //! The bonds' angle of friction is zero, as the text has none. With 40° the trends of the computed strengths over the
-//! published ones with every factor vanish in their errors (with 30° all but two), and the scatter of their ratio falls
-//! from 6.7 to 3.9 %, at the same level, E and ν: the likeliest cause (`workflows/c30/README.md`, "Strength"). It stays
-//! at zero, the commercial code's default: an angle chosen for its results would be a fit. What trend is left in E,
-//! −2.1 % over the range of E_c and +2.5 % over that of (E_c)_j, is the amount of interface: two thirds of the
-//! aggregate turn both signs ("What is left in E").
+//! published ones are within 2.1 standard errors for every factor (with 30° for all but two), and the scatter of their
+//! ratio falls from 6.7 to 3.9 %, at the same level, E and ν: the likeliest cause (`workflows/c30/README.md`,
+//! "Strength"). It stays at zero, the commercial code's default: an angle chosen for its results would be a fit. What
+//! trend is left in E, −2.1 % over the range of E_c and +2.5 % over that of (E_c)_j, goes with the amount of interface:
+//! two thirds of the aggregate turn both signs ("What is left in E").
 
 pub mod brazilian;
 pub mod crack;
