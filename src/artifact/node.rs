@@ -172,6 +172,14 @@ impl PartialEq for Values {
 }
 
 impl Values {
+    /// Whether people can read all of them as they are: levels and counts need no rounding.
+    pub fn are_short(&self) -> bool {
+        match self {
+            Self::Reals(values) => values.iter().all(|x| !x.is_finite() || format!("{x}").len() <= 6),
+            Self::Ints(_) | Self::Texts(_) => true,
+        }
+    }
+
     /// Number of values.
     pub fn len(&self) -> usize {
         match self {
@@ -251,6 +259,14 @@ pub struct Array {
 }
 
 impl Node {
+    /// The texts of an array of texts.
+    pub fn texts(&self) -> Option<&[String]> {
+        match self {
+            Self::Array(Array { values: Values::Texts(texts), .. }) => Some(texts),
+            _ => None,
+        }
+    }
+
     fn canonicalise(&mut self) {
         match self {
             Self::Group(group) => group.canonicalise(),

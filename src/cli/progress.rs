@@ -77,7 +77,6 @@ impl<'a> Progress<'a> {
     /// A warning stays on the screen: of each kind the first of a stage, as rows differ in its numbers only.
     fn warn(&self, stage: &str, row: Option<usize>, words: &str) {
         let kind: String = words.chars().filter(|c| !c.is_ascii_digit()).collect();
-        self.started(stage);
         let times = self.stages().get_mut(stage).map(|live| {
             let times = live.warned.entry(kind).or_default();
             *times += 1;

@@ -2,7 +2,7 @@
 
 use super::Exit;
 use super::common::{Campaign, provenance, system};
-use crate::artifact::{Array, Artifact, Column, Node, Table, Values};
+use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::math::elementary::log10;
 use crate::plan::Workflow;
 use crate::run::{Report, StageReport, StageStatus, decide};
@@ -191,8 +191,8 @@ fn print_others(artifact: &Artifact, only_table: bool) {
             Node::Real { value, unit } => out!("{name}: {value} {unit}"),
             Node::Int(value) => out!("{name}: {value}"),
             Node::Flag(value) => out!("{name}: {}", if *value { "yes" } else { "no" }),
-            Node::Array(Array { values: Values::Texts(texts), .. }) if name == "warnings" => {
-                texts.iter().for_each(|text| out!("warning: {text}"));
+            Node::Array(_) if name == "warnings" && node.texts().is_some() => {
+                node.texts().into_iter().flatten().for_each(|text| out!("warning: {text}"));
             }
             Node::Array(array) => {
                 let shape: Vec<String> = array.shape.iter().map(usize::to_string).collect();

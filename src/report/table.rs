@@ -97,15 +97,11 @@ impl<'a> Sheet<'a> {
             Values::Ints(values) => column::Values::Whole(values.clone()),
             Values::Texts(values) => column::Values::Words(values.clone()),
         };
-        let exact = match &column.values {
-            Values::Reals(values) => values.iter().all(|x| !x.is_finite() || format!("{x}").len() <= 6),
-            Values::Ints(_) | Values::Texts(_) => true,
-        };
         let mark = Mark::of(column);
         let digits = match self.decimals.get(&column.name) {
             Some(&decimals) => Digits::Fixed(decimals),
             None if mark.is_some() => Digits::Fixed(1),
-            None if exact => Digits::Shortest,
+            None if column.values.are_short() => Digits::Shortest,
             None if column.name == "value" && self.table.column("unit").is_some() => Digits::Unlike(self.digits),
             None => Digits::Significant(self.digits),
         };

@@ -2,7 +2,7 @@
 //! show by the rules of the field.
 
 use super::paper::Part;
-use crate::artifact::{Array, Artifact, Node, Table, Values};
+use crate::artifact::{Artifact, Node, Table, Values};
 
 /// Adjusted and predicted R² of a sound model differ by less than this (a rule of thumb of designed experiments).
 const GAP: f64 = 0.2;
@@ -40,10 +40,7 @@ pub(super) fn warnings(part: &Part) -> Vec<String> {
 
 /// Texts that the stage left as warnings.
 fn own(artifact: &Artifact) -> Vec<String> {
-    match artifact.root.get("warnings") {
-        Some(Node::Array(Array { values: Values::Texts(texts), .. })) => texts.clone(),
-        _ => Vec::new(),
-    }
+    artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default().to_vec()
 }
 
 fn texts<'a>(table: &'a Table, name: &str) -> &'a [String] {

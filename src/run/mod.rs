@@ -217,7 +217,7 @@ struct Loop<'env> {
     ready: BTreeSet<NodeId>,
     running: usize,
     failed: bool,
-    /// Stages that have failed while other tasks of theirs may still end.
+    /// Stages that have failed while other tasks of theirs may still end, and those left out because of them.
     untold: Vec<usize>,
     /// The store cannot be read: nothing more is started.
     fatal: Option<StoreError>,
@@ -246,7 +246,7 @@ impl Loop<'_> {
                 Err(_) => panic!("BUG: the run loop lost its own inbox"),
             }
         }
-        self.tell_failed(true);
+        self.tell_without_result(true);
         let interrupted = self.stop.load(Ordering::Relaxed);
         let broken = self.fatal.map(|error| error.to_string());
         let stages = self.stages.reports(self.workflow, &self.board);
@@ -278,27 +278,33 @@ impl Loop<'_> {
         let keeps = (!self.settings.dry).then_some(self.store);
         for report in self.stages.close(self.workflow, &self.board, keeps) {
             moved = true;
-            let failed = matches!(report.status, StageStatus::Failed(_));
-            self.failed |= failed;
+            self.failed |= matches!(report.status, StageStatus::Failed(_));
+            let without_result = matches!(report.status, StageStatus::Failed(_) | StageStatus::Skipped(_));
             match self.workflow.position(&report.name) {
-                Some(index) if failed => self.untold.push(index),
                 _ if self.settings.dry => {}
+                Some(index) if without_result => self.untold.push(index),
                 _ => self.watch.event(Event::Stage { report: &report }),
             }
         }
-        self.tell_failed(false);
+        self.tell_without_result(false);
         moved
     }
 
-    /// Tells of stages that have failed once none of their tasks can end any more, so that all are counted.
-    fn tell_failed(&mut self, last: bool) {
-        let (workflow, board, watch) = (self.workflow, &self.board, self.watch);
-        let (stages, dry) = (&self.stages, self.settings.dry);
+    /// Tells of stages that have failed once none of their tasks can end any more, so that all are counted, and then of
+    /// those left out because of them.
+    fn tell_without_result(&mut self, last: bool) {
+        let (workflow, stages, board, watch) = (self.workflow, &self.stages, &self.board, self.watch);
+        let mut waiting: Vec<String> = Vec::new();
         self.untold.retain(|&index| {
             let report = stages.report(workflow, index, board);
-            let waits = !last && report.tasks.ended() < report.tasks.total;
-            if !waits && !dry {
-                watch.event(Event::Stage { report: &report });
+            let early = match &report.status {
+                StageStatus::Skipped(cause) => waiting.contains(cause),
+                _ => report.tasks.ended() < report.tasks.total,
+            };
+            let waits = early && !last;
+            match waits {
+                true => waiting.push(report.name),
+                false => watch.event(Event::Stage { report: &report }),
             }
             waits
         });

@@ -333,15 +333,11 @@ fn shown(column: &artifact::Column, rows: &[usize], params: &Params) -> Column {
         symbol: params.symbols.get(&column.name).cloned().unwrap_or_default(),
         unit: column.unit.clone(),
         values,
-        digits: if is_exact(column) && !params.decimals.contains_key(&column.name) { Digits::Shortest } else { digits },
-    }
-}
-
-/// Levels and counts: numbers that are short as they are need no rounding.
-fn is_exact(column: &artifact::Column) -> bool {
-    match &column.values {
-        artifact::Values::Reals(v) => v.iter().all(|x| !x.is_finite() || format!("{x}").len() <= 6),
-        artifact::Values::Ints(_) | artifact::Values::Texts(_) => true,
+        digits: if column.values.are_short() && !params.decimals.contains_key(&column.name) {
+            Digits::Shortest
+        } else {
+            digits
+        },
     }
 }
 

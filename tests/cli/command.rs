@@ -107,12 +107,14 @@ fn a_stage_with_failed_rows_is_told_once_when_its_last_row_has_ended() {
     let rows =
         "[stage.trial]\nkind = \"command\"\nmaterial = \"m\"\ndesign = \"d\"\nrun = [\"sh\", \"-c\", \"exit 3\"]\n";
     let read = "read.UCS = { file = \"out.csv\", column = \"UCS\", unit = \"Pa\" }\n";
-    space.write("w.toml", &[head, design, rows, read].concat());
+    let after = "[stage.after]\nkind = \"table\"\nof = \"trial\"\n";
+    space.write("w.toml", &[head, design, rows, read, after].concat());
     let output = space.flow(&["run", "w.toml", "--keep-going", "--jobs", "1"]);
     let found = told(&output);
     let at: Vec<usize> = found.match_indices("trial            failed: ").map(|(place, _)| place).collect();
     assert_eq!(at.len(), 1, "{found}");
     assert!(found[at[0]..].starts_with("trial            failed: 4 of 5 tasks"), "{found}");
+    assert!(found.find("after            skipped").is_some_and(|after| after > at[0]), "{found}");
     assert!(found.rfind("error: trial[4]").is_some_and(|row| row < at[0]), "{found}");
     assert_eq!(found.matches("again: ").count(), 1, "{found}");
 }

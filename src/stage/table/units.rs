@@ -29,17 +29,15 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
     let rows = names.iter().zip(&units).zip(&values);
     let shown: Vec<(String, f64)> = rows.map(|((name, unit), &value)| one(wanted.get(name), unit, value)).collect();
     for column in columns {
-        if let Digits::Significant(digits) = column.digits
-            && column.key.starts_with(ROWWISE[0])
-        {
-            column.digits = Digits::Unlike(digits);
-        }
         match &mut column.values {
             Values::Words(words) if column.key == "unit" => {
                 words.iter_mut().zip(&shown).for_each(|(word, (unit, _))| word.clone_from(unit));
             }
             Values::Reals(values) if column.key == "value" || column.key == "value published" => {
                 values.iter_mut().zip(&shown).for_each(|(value, (_, factor))| *value /= factor);
+                if let Digits::Significant(digits) = column.digits {
+                    column.digits = Digits::Unlike(digits);
+                }
             }
             Values::Reals(_) | Values::Whole(_) | Values::Words(_) => {}
         }
