@@ -1,12 +1,14 @@
 //! `flow` runs a numerical-experiment campaign with bonded-particle models that is written down as one TOML file.
 //!
 //! # Layers
-//! An arrow is the only import allowed, directly or further along it; `tests/layers.rs` holds the code to it.
+//! An arrow is the only import allowed, directly or further along it. The domains and [`math`] are crates of their own
+//! below `src/`, so Cargo holds them to it; `tests/layers.rs` holds the modules of this crate to it.
 //!
 //! ```text
 //! cli → report → run → { exec, plan, store }
-//! { run, plan } → stage → { dem, design, stats, optim, figure } → { math, unit }
-//! { run, plan, stage, store } → artifact → math
+//! { run, plan } → stage → { dem, design, stats, optim, figure } → math
+//! { run, plan, stage, store } → artifact
+//! { plan, stage } → unit
 //! ```
 //!
 //! | module | holds |
@@ -34,16 +36,10 @@
 
 pub mod artifact;
 pub mod cli;
-pub mod dem;
-pub mod design;
 pub mod exec;
-pub mod figure;
-pub mod math;
-pub mod optim;
 pub mod plan;
 pub mod report;
 pub mod run;
 pub mod stage;
-pub mod stats;
 pub mod store;
 pub mod unit;

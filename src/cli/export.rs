@@ -10,12 +10,12 @@ use super::common::{Campaign, system};
 use super::output::replace;
 use super::show::{csv_text, object, parts};
 use crate::artifact::{Artifact, ContentHash, Node};
-use crate::dem::genesis::specimen::Specimen;
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
 use crate::stage::specimen;
 use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
+use dem::genesis::specimen::Specimen;
 use std::path::PathBuf;
 
 /// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.

@@ -2,11 +2,11 @@
 
 use super::Exit;
 use super::common::Campaign;
-use crate::figure::dag::{Dag, Stage};
-use crate::figure::{DOUBLE, Figure, Style, svg::svg};
 use crate::plan::{StageNode, Workflow};
 use crate::run::{StageStatus, decide};
 use clap::{Args, ValueEnum};
+use figure::dag::{Dag, Stage};
+use figure::{DOUBLE, Figure, Style, svg::svg};
 
 /// Show the stages of a workflow, what they take from one another, and what is done of them.
 #[derive(Args)]

@@ -3,11 +3,11 @@
 use super::Exit;
 use super::common::{Campaign, provenance, system};
 use crate::artifact::{Artifact, Column, Node, Table, Values};
-use crate::math::elementary::log10;
 use crate::plan::Workflow;
 use crate::run::{Report, StageReport, StageStatus, decide};
 use crate::store::{ObjectId, Store};
 use clap::Args;
+use math::elementary::log10;
 use serde_json::{Value, json};
 
 /// Show a result as a table.

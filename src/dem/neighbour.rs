@@ -117,7 +117,7 @@ pub(crate) fn morton_order(points: &[[f64; 3]], dimension: usize) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::random::Stream;
+    use math::random::Stream;
 
     #[test]
     fn the_grid_finds_what_all_pairs_find() {

@@ -77,7 +77,7 @@ impl Design for BoxBehnken {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{DesignTable, Layout, Method, build};
+    use crate::{DesignTable, Layout, Method, build};
 
     fn table(k: usize, centre_points: Option<usize>) -> DesignTable {
         let factors: Vec<Factor> = (0..k).map(|i| Factor::range(&format!("x{i}"), "", -1.0, 1.0)).collect();

@@ -175,7 +175,7 @@ impl Design for CentralComposite {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{DesignTable, Layout, Method, build};
+    use crate::{DesignTable, Layout, Method, build};
 
     fn factors(k: usize) -> Vec<Factor> {
         (0..k).map(|i| Factor::range(&format!("x{i}"), "", -1.0, 1.0)).collect()

@@ -6,7 +6,7 @@
 //! that level's very bits, so that a row of one design equals the same row of another.
 
 use super::error::Fault;
-use crate::math::occurrence::occurrences;
+use math::occurrence::occurrences;
 use serde::{Deserialize, Serialize};
 
 /// Relative distance below which a computed value is taken for a declared level or a whole coded number.

@@ -66,7 +66,7 @@ impl Design for FullFactorial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Layout, Method, build};
+    use crate::{Layout, Method, build};
 
     #[test]
     fn the_matrix_of_2_by_3_is_in_yates_order() {

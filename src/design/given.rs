@@ -86,7 +86,7 @@ impl Design for Given {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Layout, Method, build};
+    use crate::{Layout, Method, build};
 
     #[test]
     fn rows_keep_their_values_and_bad_cells_are_all_named() {

@@ -12,7 +12,7 @@ use super::error::Fault;
 use super::sobol::{check_runs, place};
 use super::table::{PointType, Points};
 use super::{Design, Stream, is_default};
-use crate::math::elementary::{exp, ln};
+use math::elementary::{exp, ln};
 use serde::{Deserialize, Serialize};
 
 /// How the strata are combined.
@@ -221,7 +221,7 @@ const COLD: f64 = 0.0005;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{DesignTable, Layout, Method, build};
+    use crate::{DesignTable, Layout, Method, build};
 
     fn sample(runs: usize, k: usize, criterion: Criterion, position: Position, seed: u64) -> DesignTable {
         let factors: Vec<Factor> = (0..k).map(|i| Factor::range(&format!("x{i}"), "", 0.0, runs as f64)).collect();

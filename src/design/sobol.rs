@@ -157,7 +157,7 @@ impl Design for Sobol {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Layout, Method, build};
+    use crate::{Layout, Method, build};
 
     /// Written by `tests/reference/design/generate.py` with scipy's `qmc.Sobol`.
     #[test]

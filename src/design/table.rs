@@ -2,8 +2,8 @@
 
 use super::coding::{Coding, Factor};
 use super::error::Fault;
-use crate::math::occurrence::occurrences;
-use crate::math::random::Stream;
+use math::occurrence::occurrences;
+use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
 /// What a run is for.

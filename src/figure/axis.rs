@@ -4,7 +4,7 @@
 //! ticks (labelled too when the axis holds less than two powers). The largest exponents go into the tick labels as
 //! `4×10⁶`, so a number is never longer than six signs.
 
-use crate::math::elementary::{log10, pow};
+use math::elementary::{log10, pow};
 
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]

@@ -8,7 +8,7 @@ use super::panel::{Panel, marker};
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style};
-use crate::math::elementary::log10;
+use math::elementary::log10;
 
 /// One bar.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -8,7 +8,7 @@ use super::panel::{Margins, Panel, marker};
 use super::scene::{Anchor, Color, Path, Point, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style};
-use crate::math::elementary::atan2;
+use math::elementary::atan2;
 
 /// A response over two factors.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -224,7 +224,7 @@ fn draw_line(
             if angle.abs() > 90.0 {
                 angle -= 180.0 * angle.signum();
             }
-            let (sin, cos) = crate::math::elementary::sin_cos(angle.to_radians());
+            let (sin, cos) = math::elementary::sin_cos(angle.to_radians());
             let middle = [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0];
             let drop = label.size * super::text::CAP_HEIGHT / 2.0;
             let at =

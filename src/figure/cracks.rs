@@ -7,7 +7,7 @@ use super::scene::{Anchor, Color, Path, Point, Rect, Scene, Stroke};
 use super::specimen::{Frame, thousands};
 use super::text::Line;
 use super::{Figure, Style};
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 
 /// One broken bond; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]

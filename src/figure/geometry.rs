@@ -1,6 +1,6 @@
 //! Places, paths and rectangles on the page: millimetres, origin in the upper left corner, y down.
 
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 
 /// A place on the page in mm: right, down.
 pub type Point = [f64; 2];

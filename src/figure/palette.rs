@@ -5,7 +5,7 @@
 //! doi:10.1371/journal.pone.0199239) at 17 places, linear between. Two-sided: computed in Oklab (Ottosson 2020).
 
 use super::scene::Color;
-use crate::math::elementary::{cbrt, pow};
+use math::elementary::{cbrt, pow};
 
 /// Text and frames.
 pub const INK: Color = Color(0x22, 0x26, 0x2b);

@@ -3,7 +3,7 @@
 use super::font::{FACES, Face};
 use super::scene::{Color, Fill, Item, Path, Point, Scene, Step, Stroke};
 use super::text::{Line, POINT};
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 use pdf_writer::types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use std::collections::{BTreeMap, BTreeSet};

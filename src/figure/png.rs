@@ -3,7 +3,7 @@
 use super::font::UNITS_PER_EM;
 use super::scene::{Color, Item, Path, Point, Rect, Scene, Step, Stroke};
 use super::text::Line;
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 use tiny_skia::{FillRule, LineCap, LineJoin, Mask, Paint, PathBuilder, Pixmap, StrokeDash, Transform};
 
 /// Why a picture could not be drawn.

@@ -9,7 +9,7 @@ use super::palette::{self, GRID, INK, PAPER, SOFT};
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Style};
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 use std::f64::consts::PI;
 
 /// Angles of crack lines by mode.
@@ -102,7 +102,7 @@ impl Rose {
     fn describe(&self) -> String {
         let tell = |(name, angles): &(String, Vec<f64>)| {
             let (s, c) = angles.iter().map(|a| sin_cos(2.0 * a)).fold((0.0, 0.0), |t, v| (t.0 + v.0, t.1 + v.1));
-            let mean = crate::math::elementary::atan2(s, c).to_degrees() / 2.0;
+            let mean = math::elementary::atan2(s, c).to_degrees() / 2.0;
             format!("{name}: {} cracks, mean direction {}°.", angles.len(), fixed(mean.rem_euclid(180.0), 0))
         };
         self.modes.iter().map(tell).collect::<Vec<_>>().join(" ")

@@ -6,7 +6,7 @@
 
 pub use super::geometry::{Path, Point, Rect, Step, meet};
 use super::text::Line;
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 use std::fmt;
 
 /// An opaque sRGB colour.
@@ -24,7 +24,7 @@ impl Color {
     pub fn luminance(self) -> f64 {
         let linear = |c: u8| {
             let c = f64::from(c) / 255.0;
-            if c <= 0.04045 { c / 12.92 } else { crate::math::elementary::pow((c + 0.055) / 1.055, 2.4) }
+            if c <= 0.04045 { c / 12.92 } else { math::elementary::pow((c + 0.055) / 1.055, 2.4) }
         };
         0.2126 * linear(self.0) + 0.7152 * linear(self.1) + 0.0722 * linear(self.2)
     }
@@ -32,7 +32,7 @@ impl Color {
     /// The grey of equal luminance.
     pub fn grey(self) -> Self {
         let y = self.luminance();
-        let c = if y <= 0.003_130_8 { 12.92 * y } else { 1.055 * crate::math::elementary::pow(y, 1.0 / 2.4) - 0.055 };
+        let c = if y <= 0.003_130_8 { 12.92 * y } else { 1.055 * math::elementary::pow(y, 1.0 / 2.4) - 0.055 };
         let c = (c * 255.0).round() as u8;
         Self(c, c, c)
     }

@@ -223,7 +223,7 @@ fn draw_titles(scene: &mut Scene, space: &Box3, titles: [&str; 3], style: &Style
             scene.text(line, [mid[0] - reach - 0.9 * size, mid[1]], Anchor::Middle, 90.0, INK);
             continue;
         }
-        let slope = crate::math::elementary::atan2(a[1] - b[1], b[0] - a[0]).to_degrees();
+        let slope = math::elementary::atan2(a[1] - b[1], b[0] - a[0]).to_degrees();
         let angle = if slope.abs() > 90.0 { slope - 180.0 * slope.signum() } else { slope };
         let gap = reach + 0.9 * size;
         scene.text(line, [mid[0] + gap * away[0], mid[1] + gap * away[1] + 0.25 * size], Anchor::Middle, angle, INK);

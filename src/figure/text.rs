@@ -9,7 +9,7 @@ mod pen;
 
 use super::font::Face;
 use super::scene::{Point, Rect};
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 use pen::Pen;
 
 /// Height of capitals and digits in em.

@@ -1,6 +1,6 @@
 //! Parallel projection of a box onto the page, and the frame of a 3D plot.
 
-use crate::math::elementary::sin_cos;
+use math::elementary::sin_cos;
 
 /// Direction from which a box of edge coordinates −1 … 1 is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,7 @@
 //!
 //! Relative error against 50-digit values: below 10⁻¹² down to p = 10⁻³⁰⁰ (tests).
 
-use crate::math::elementary::{exp, ln, ln_1p};
+use crate::elementary::{exp, ln, ln_1p};
 use libm::{erfc, lgamma};
 use std::f64::consts::{PI, SQRT_2};
 

@@ -4,7 +4,7 @@
 //! are independent of one another and of the order in which they are made. The conversions to numbers are written
 //! here and pinned by tests, because library ones may change their values between releases.
 
-use crate::math::elementary::{cos, ln, pow};
+use crate::elementary::{cos, ln, pow};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

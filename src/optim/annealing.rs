@@ -22,8 +22,8 @@
 use super::constraint::Domain;
 use super::local::Local;
 use super::{Optimiser, Stop, Trial};
-use crate::math::elementary::{exp, pow, tan};
-use crate::math::random::Stream;
+use math::elementary::{exp, pow, tan};
+use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

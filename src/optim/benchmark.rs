@@ -3,8 +3,8 @@
 use super::Problem;
 use super::constraint::{Domain, Factor};
 use super::misfit::{Denominator, Form, Misfit, Target};
-use crate::math::elementary::{cos, exp};
-use crate::math::random::Stream;
+use math::elementary::{cos, exp};
+use math::random::Stream;
 
 /// The names of the methods, in the order of the tables.
 pub(crate) const METHODS: [&str; 5] = ["genetic", "annealing", "differential", "cma-es", "surrogate"];

@@ -14,8 +14,8 @@
 
 use super::constraint::Domain;
 use super::{Optimiser, Stop, Trial};
-use crate::math::elementary::{exp, ln, pow};
-use crate::math::random::Stream;
+use math::elementary::{exp, ln, pow};
+use math::random::Stream;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -6,7 +6,7 @@
 
 use super::Error;
 use super::least_distance::least_distance;
-use crate::math::random::Stream;
+use math::random::Stream;
 use std::collections::BTreeMap;
 
 /// How far outside a bound, in the unit box, still counts as on it.

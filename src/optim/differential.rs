@@ -17,8 +17,8 @@
 
 use super::constraint::Domain;
 use super::{Optimiser, Stop, Trial};
-use crate::math::elementary::tan;
-use crate::math::random::Stream;
+use math::elementary::tan;
+use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -19,7 +19,7 @@
 
 use super::constraint::Domain;
 use super::{Optimiser, Stop, Trial};
-use crate::math::random::Stream;
+use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -140,7 +140,7 @@ mod tests {
     /// Optimality (Karush–Kuhn–Tucker) on random polyhedra: y is a non-negative combination of its active rows.
     #[test]
     fn answers_meet_the_optimality_conditions() {
-        let mut random = crate::math::random::Stream::new(3, "least distance", 0);
+        let mut random = math::random::Stream::new(3, "least distance", 0);
         for _ in 0..200 {
             let inside: Vec<f64> = (0..5).map(|_| random.normal()).collect();
             let rows: Vec<Vec<f64>> = (0..12).map(|_| (0..5).map(|_| random.normal()).collect()).collect();

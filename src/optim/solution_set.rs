@@ -17,7 +17,7 @@ use super::constraint::Domain;
 use super::least_distance::least_distance;
 use super::local::Local;
 use super::{Optimiser, Problem, Trial};
-use crate::math::random::Stream;
+use math::random::Stream;
 use nalgebra::DMatrix;
 
 /// A model that answers at once: natural units in, responses in the order of the targets out.

@@ -5,7 +5,7 @@ use super::constraint::{Domain, Linear};
 use super::misfit::{Denominator, Form};
 use super::search::{Knowledge, Limits, Method, Next, Run, Search, minimise, next};
 use super::{Error, Problem, Stop, annealing, cma_es, differential, genetic, surrogate};
-use crate::math::random::Stream;
+use math::random::Stream;
 
 fn methods() -> Vec<Method> {
     vec![

@@ -2,8 +2,8 @@
 
 use super::figure::Glyphs;
 use super::paper::{Paper, State};
-use crate::figure::dag::{Dag, Stage};
-use crate::figure::{DOUBLE, Figure, Style, svg::svg};
+use figure::dag::{Dag, Stage};
+use figure::{DOUBLE, Figure, Style, svg::svg};
 use maud::{Markup, html};
 
 /// The stages that compute, as boxes. Tables and figures stand with what they show and are left out, and so is what

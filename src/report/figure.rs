@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn the_size_of_a_png_is_in_its_head() {
-        let scene = crate::figure::scene::Scene::new(25.4, 50.8);
-        let png = crate::figure::png::png(&scene, 300.0).unwrap();
+        let scene = figure::scene::Scene::new(25.4, 50.8);
+        let png = figure::png::png(&scene, 300.0).unwrap();
         assert_eq!(png_size(&png), Some([300, 600]));
         assert_eq!(png_size(b"GIF89a"), None);
         assert_eq!(png_size(&png[..20]), None);

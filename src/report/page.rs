@@ -4,7 +4,7 @@ use super::figure::{Glyphs, base64};
 use super::paper::{Cost, Paper, State};
 use super::time::moment;
 use super::{provenance, stage, summary};
-use crate::figure::font::Face;
+use figure::font::Face;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// The look.

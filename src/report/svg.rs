@@ -1,4 +1,4 @@
-//! Letting a stored picture into the page: only what [`crate::figure::svg`] writes gets through.
+//! Letting a stored picture into the page: only what [`figure::svg`] writes gets through.
 //!
 //! A store may come from anywhere, and SVG in a page could carry scripts, styles and addresses. This reads the few
 //! elements and attributes that our own writer uses, checks every value against the characters it can hold, and refuses
@@ -190,8 +190,8 @@ fn allowed(name: &str, value: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::dag::{Dag, Stage};
-    use crate::figure::{Figure, Style, svg::svg};
+    use figure::dag::{Dag, Stage};
+    use figure::{Figure, Style, svg::svg};
 
     fn ours() -> String {
         let stage = |name: &str| Stage { name: name.to_owned(), note: "<b>&\"".to_owned(), class: 0 };

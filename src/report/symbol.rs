@@ -1,11 +1,11 @@
 //! Symbols of factors and responses as HTML: italics, subscripts, superscripts, bars.
 //!
-//! The label is set by [`crate::figure::text`], and the places of its glyphs say what each of them is, so pages and
+//! The label is set by [`figure::text`], and the places of its glyphs say what each of them is, so pages and
 //! pictures read the same notation.
 
-use crate::figure::font::Face;
-use crate::figure::text::{self, Line};
 use crate::stage::Context;
+use figure::font::Face;
+use figure::text::{self, Line};
 use maud::{Markup, PreEscaped, html};
 
 /// How a glyph stands.

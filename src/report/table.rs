@@ -5,9 +5,9 @@
 
 use super::symbol;
 use crate::artifact::{self, Values};
-use crate::figure::column::{self, Column, Digits};
-use crate::figure::table::shown;
 use crate::stage::Context;
+use figure::column::{self, Column, Digits};
+use figure::table::shown;
 use maud::{Markup, PreEscaped, html};
 use serde_json::Value;
 use std::collections::BTreeMap;

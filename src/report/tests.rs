@@ -3,9 +3,9 @@
 use super::page::STYLE;
 use super::{Cost, Paper, Part, State, page};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::figure::dag::{Dag, Stage};
-use crate::figure::{Figure, Style, palette, scene::Color, svg::svg};
 use crate::stage::Context;
+use figure::dag::{Dag, Stage};
+use figure::{Figure, Style, palette, scene::Color, svg::svg};
 use serde_json::json;
 use std::sync::Arc;
 

@@ -9,8 +9,8 @@
 //! * `points`: per panel places with their words.
 
 use crate::artifact::{Table, Values};
-use crate::figure::text::Line;
 use crate::stage::Context;
+use figure::text::Line;
 use serde_json::{Value, json};
 
 /// Nodes along one side of a thinned field.
@@ -139,7 +139,7 @@ fn groups(words: &[String]) -> Vec<(&str, Vec<usize>)> {
 
 /// A number for people, with its unit.
 fn told(value: f64, unit: &str) -> String {
-    let text = crate::figure::axis::significant(value, 4);
+    let text = figure::axis::significant(value, 4);
     if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
 
@@ -151,7 +151,7 @@ fn pairs(data: &Table, context: &Context) -> Option<Value> {
         let sign = name_of(context, response);
         let words = |i: usize| {
             let origin = if origins[i].is_empty() { String::new() } else { format!("{}, ", origins[i]) };
-            let deviation = crate::figure::axis::fixed(100.0 * (ys[i] / xs[i] - 1.0), 1);
+            let deviation = figure::axis::fixed(100.0 * (ys[i] / xs[i] - 1.0), 1);
             let (x, y) = (told(xs[i], &units[i]), told(ys[i], &units[i]));
             format!("{origin}run {}: {sign} {} {x}, {} {y} ({deviation} %)", rows[i], a.name, b.name)
         };

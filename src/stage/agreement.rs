@@ -12,13 +12,13 @@ use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::stats::agreement::{Agreement as Found, agreement, pair_rows};
-use crate::stats::regression::{self, regress};
-use crate::stats::sample::{Factor, Response, Sample};
-use crate::stats::terms::Term;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use stats::agreement::{Agreement as Found, agreement, pair_rows};
+use stats::regression::{self, regress};
+use stats::sample::{Factor, Response, Sample};
+use stats::terms::Term;
 
 /// Settings of an `agreement` stage.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -195,7 +195,7 @@ fn trend(ours: &Sample, response: &str, table: &str, paired: &[(usize, usize, f6
     let column = |f: &Factor| Factor::new(&f.name, usable.iter().map(|p| f.values[p.0]).collect());
     let mut factors: Vec<Factor> = ours.factors.iter().map(column).collect();
     factors.retain(|f| f.values.iter().any(|v| *v != f.values[0]));
-    let ratio = |p: &&(usize, usize, f64, f64)| 100.0 * crate::math::elementary::ln(p.2 / p.3);
+    let ratio = |p: &&(usize, usize, f64, f64)| 100.0 * math::elementary::ln(p.2 / p.3);
     let names: Vec<String> = factors.iter().map(|f| f.name.clone()).collect();
     let sample =
         Sample { factors, responses: vec![Response::new(response, usable.iter().map(ratio).collect())], weights: None };

@@ -10,10 +10,10 @@ use super::notes::{Notes, short};
 use super::published::{Computed, beside, prints};
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::stats::anova::{Anova as Analysis, Error, Interactions, Line, Settings, Squares, anova};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use stats::anova::{Anova as Analysis, Error, Interactions, Line, Settings, Squares, anova};
 use std::collections::BTreeMap;
 
 /// Settings of an `anova` stage.

@@ -1,6 +1,6 @@
 //! `kind = "calibrate"`: from wanted responses to the parameters that give them.
 //!
-//! The misfit of [`crate::optim::misfit`] is minimised over the ranges of the factors, for one or many target sets:
+//! The misfit of [`optim::misfit`] is minimised over the ranges of the factors, for one or many target sets:
 //! * with `surfaces` alone, on the fitted surfaces, at once;
 //! * with `simulator`, by simulations: each is an ordinary task (cached, parallel, resumed by replay), because what is
 //!   asked next is a pure function of the outcomes so far; failed ones tell the optimiser where not to go;
@@ -32,7 +32,7 @@ pub use config::{Calibrate, Constraint, Curve, MethodName, Wanted};
 
 use super::{Complaint, Context, Kind, Known, Outcome, Point, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::Artifact;
-use crate::optim::search::{Search, State};
+use optim::search::{Search, State};
 use params::{Params, Told};
 use serde_json::{Value, json};
 use std::sync::Arc;

@@ -2,10 +2,10 @@
 
 use super::{Complaint, Context, StageError};
 use crate::artifact::{Artifact, Table, Values};
-use crate::stats::error::Faults;
-use crate::stats::sample::{Factor, Response, Sample};
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
+use stats::error::Faults;
+use stats::sample::{Factor, Response, Sample};
 
 /// Which columns of a table are analysed, and in which units.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]

@@ -6,8 +6,8 @@
 
 use super::{Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::design::table::MOST_RUNS;
 use crate::unit::Unit;
+use design::table::MOST_RUNS;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};

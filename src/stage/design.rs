@@ -17,9 +17,9 @@ pub use config::Design;
 
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
 use crate::artifact::{Artifact, Table};
-use crate::design::report::power::Question;
-use crate::design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use crate::unit::Unit;
+use design::report::power::Question;
+use design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 

@@ -8,10 +8,10 @@
 use super::rows::{self, GATHER};
 use super::{Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node};
-use crate::math::elementary as math;
-use crate::math::random::Stream;
 use crate::unit::Unit;
 use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator, literal_matcher_from_pattern};
+use math::elementary;
+use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -58,7 +58,7 @@ impl MakeOperators<f64> for Operators {
     fn make<'a>() -> Vec<Operator<'a, f64>> {
         let binary = |apply: fn(f64, f64) -> f64, prio, is_commutative| BinOp { apply, prio, is_commutative };
         vec![
-            Operator::make_bin("^", binary(math::pow, 4, false)),
+            Operator::make_bin("^", binary(elementary::pow, 4, false)),
             Operator::make_bin("*", binary(|a, b| a * b, 2, true)),
             Operator::make_bin("/", binary(|a, b| a / b, 3, false)),
             Operator::make_bin_unary("+", binary(|a, b| a + b, 0, true), |a| a),
@@ -67,14 +67,14 @@ impl MakeOperators<f64> for Operators {
             Operator::make_bin("max", binary(f64::max, 0, true)),
             Operator::make_unary("abs", f64::abs),
             Operator::make_unary("sqrt", f64::sqrt),
-            Operator::make_unary("exp", math::exp),
-            Operator::make_unary("ln", math::ln),
-            Operator::make_unary("log10", math::log10),
-            Operator::make_unary("sin", math::sin),
-            Operator::make_unary("cos", math::cos),
-            Operator::make_unary("tan", math::tan),
-            Operator::make_unary("atan", math::atan),
-            Operator::make_unary("tanh", math::tanh),
+            Operator::make_unary("exp", elementary::exp),
+            Operator::make_unary("ln", elementary::ln),
+            Operator::make_unary("log10", elementary::log10),
+            Operator::make_unary("sin", elementary::sin),
+            Operator::make_unary("cos", elementary::cos),
+            Operator::make_unary("tan", elementary::tan),
+            Operator::make_unary("atan", elementary::atan),
+            Operator::make_unary("tanh", elementary::tanh),
         ]
     }
 }

@@ -4,9 +4,9 @@
 
 use super::columns::Rows;
 use crate::artifact::Table;
-use crate::stats::diagnostics::Residual;
-use crate::stats::fit::Fit;
-use crate::stats::regression::Coefficient;
+use stats::diagnostics::Residual;
+use stats::fit::Fit;
+use stats::regression::Coefficient;
 
 /// Remarks with the responses they are about, in order.
 #[derive(Default)]

@@ -7,10 +7,10 @@ use super::columns::{Columns, Rows, Wanted, check_names, refused, runs};
 use super::notes::Notes;
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::stats::range::{Range as Line, range_analysis};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
+use stats::range::{Range as Line, range_analysis};
 
 /// Settings of a `range` stage.
 #[derive(Debug, Deserialize, JsonSchema)]

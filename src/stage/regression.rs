@@ -7,11 +7,11 @@
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
 use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::stats::selection::Direction;
-use crate::stats::terms::Term;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
+use stats::selection::Direction;
+use stats::terms::Term;
 use std::collections::BTreeMap;
 
 /// Settings of a `regression` stage.

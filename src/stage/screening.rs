@@ -10,11 +10,11 @@ use super::notes::Notes;
 use super::regression::{check_doubled, factors_of};
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::stats::screening::{Effect, Screening as Found, screen};
-use crate::stats::terms::Term;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use stats::screening::{Effect, Screening as Found, screen};
+use stats::terms::Term;
 
 /// Settings of a `screening` stage.
 #[derive(Debug, Deserialize, JsonSchema)]

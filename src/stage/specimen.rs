@@ -1,20 +1,20 @@
 //! `kind = "specimen"`: discs packed in a rectangle or a disc, with polygons of aggregate as rigid clumps.
 //!
 //! Replicate k is another packing and another aggregate of the same recipe; its seed comes from the workflow's seed and
-//! k. What is computed and why: [`crate::dem::genesis`].
+//! k. What is computed and why: [`dem::genesis`].
 
 use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Stage, StageError, Step, Task, Work};
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Artifact, Table, Values};
-use crate::dem::genesis::clump::{Clump, ClumpMass};
-use crate::dem::genesis::gradation::{Gradation, GradationError};
-use crate::dem::genesis::packing::{Packing, PackingError};
-use crate::dem::genesis::placement::{ClassSize, Placement};
-use crate::dem::genesis::polygon::{AngleLaw, Polygon, PolygonError, PolygonRecipe, SizeRule};
-use crate::dem::genesis::region::Region;
-use crate::dem::genesis::specimen::{Aggregate, Quality, Recipe, Specimen as Made, SpecimenError};
-use crate::math::random::Stream;
 use crate::unit::{Density, Length};
+use dem::genesis::clump::{Clump, ClumpMass};
+use dem::genesis::gradation::{Gradation, GradationError};
+use dem::genesis::packing::{Packing, PackingError};
+use dem::genesis::placement::{ClassSize, Placement};
+use dem::genesis::polygon::{AngleLaw, Polygon, PolygonError, PolygonRecipe, SizeRule};
+use dem::genesis::region::Region;
+use dem::genesis::specimen::{Aggregate, Quality, Recipe, Specimen as Made, SpecimenError};
+use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -409,7 +409,7 @@ mod tests {
              density = '2650 kg/m^3'",
         )
         .unwrap();
-        let (made, quality) = config.recipe().unwrap().make(1, &|| crate::dem::Watch::Continue).unwrap();
+        let (made, quality) = config.recipe().unwrap().make(1, &|| dem::Watch::Continue).unwrap();
         assert!(!made.clumps.is_empty());
         let artifact = store(&made, &quality).to_artifact();
         assert_eq!(load(&artifact).unwrap(), made);

@@ -3,7 +3,7 @@
 use super::StageError;
 use super::ledger::KeptRuns;
 use crate::artifact::{Artifact, ContentHash};
-use crate::dem::Watch;
+use dem::Watch;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::borrow::Cow;

@@ -10,7 +10,7 @@
 use super::calibrate::read_response;
 use super::{Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table, Values};
-use crate::math::distribution::t_for_coverage;
+use math::distribution::t_for_coverage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};

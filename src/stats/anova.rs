@@ -22,7 +22,7 @@ use super::fit::{Fit, PureError, Solution, is_small, ratio};
 use super::number::{Real, Twofold};
 use super::range::level_faults;
 use super::sample::{Sample, Usable};
-use crate::math::distribution::f_upper;
+use math::distribution::f_upper;
 use serde::{Deserialize, Serialize};
 
 mod terms;

@@ -14,7 +14,7 @@ use super::columns::Matrix;
 use super::fit::Solution;
 use super::number::{PANEL, Real};
 use super::triangle::{BLOCK, Blocks};
-use crate::math::distribution::t_for_tail;
+use math::distribution::t_for_tail;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;

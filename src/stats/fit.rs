@@ -12,7 +12,7 @@ use super::error::Fault;
 use super::number::Real;
 use super::sample::{Sample, Usable};
 use super::triangle::Triangle;
-use crate::math::distribution::{f_upper, t_two_sided};
+use math::distribution::{f_upper, t_two_sided};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,7 @@ use super::diagnostics::Residual;
 use super::fit::Solution;
 use super::number::Real;
 use super::terms::Term;
-use crate::math::distribution::t_for_coverage;
+use math::distribution::t_for_coverage;
 use serde::{Deserialize, Serialize};
 
 /// One factor of a model.

@@ -14,8 +14,8 @@ use super::error::{Fault, Faults};
 use super::regression::{self, Regression, regress};
 use super::sample::Sample;
 use super::terms::Term;
-use crate::math::distribution::{normal_quantile, t_for_coverage, t_for_tail};
-use crate::math::elementary::{exp, ln_1p};
+use math::distribution::{normal_quantile, t_for_coverage, t_for_tail};
+use math::elementary::{exp, ln_1p};
 use serde::{Deserialize, Serialize};
 
 /// One effect.

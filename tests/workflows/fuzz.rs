@@ -4,8 +4,8 @@
 //! many as it says; a failure names the number, and `FLOW_FUZZ_ONLY=number` runs and shows just that one.
 
 use super::corpus::files;
-use flow::math::random::Stream;
 use flow::plan::{Overrides, parse, schema};
+use math::random::Stream;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,8 +1,8 @@
 //! A specimen and a run on it as other programs want them: discs, groups, contacts.
 
 use crate::artifact::Artifact;
-use crate::dem::genesis::relax::Heap;
-use crate::dem::genesis::specimen::Specimen;
+use dem::genesis::relax::Heap;
+use dem::genesis::specimen::Specimen;
 
 /// Words of the groups of contacts, by number.
 pub(super) const GROUPS: [&str; 3] = ["mortar", "interface", "aggregate"];

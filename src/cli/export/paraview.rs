@@ -15,7 +15,7 @@ use super::File;
 use super::bodies::{column, contacts};
 use super::vtu::{Cells, Field, Grid, pvd};
 use crate::artifact::{Array, Artifact, Node, Values};
-use crate::dem::genesis::specimen::Specimen;
+use dem::genesis::specimen::Specimen;
 
 /// The files of a specimen.
 pub(super) fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {

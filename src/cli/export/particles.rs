@@ -13,7 +13,7 @@ use super::File;
 use super::bodies::{Contact, GROUPS, contacts};
 use crate::artifact::Table;
 use crate::cli::show::csv_text;
-use crate::dem::genesis::specimen::Specimen;
+use dem::genesis::specimen::Specimen;
 use std::collections::BTreeMap;
 
 /// Parameters of a run by their paths in its task, as they stand there.

@@ -4,7 +4,7 @@
 //! relative to it; L is the prescribed velocity gradient (du/dt = L x), by which the edges move as da/dt = L a. Bodies are
 //! not brought back when they leave the cell: they may go half an edge beyond it.
 
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::space::{Space, Tuple, Vector};
 
 /// A periodic cell as the caller describes it: a box along the axes at the start.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,8 @@
 //! Servo: wall velocity = G (σ − σ_target) along the outward normal, G = α A / (Σ k_n dt), capped; σ = F / A with F the
 //! force of the balls on the wall along its outward normal (compression positive). α = 0.5 is usual.
 
-use crate::dem::particle::Group;
-use crate::dem::space::{Space, Vector};
+use crate::particle::Group;
+use crate::space::{Space, Vector};
 
 /// How a wall moves.
 #[derive(Clone, Copy, Debug)]

@@ -4,10 +4,10 @@
 //! Blocks stand in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second whole list
 //! stands beside it.
 
-use crate::dem::interaction::Bond;
-use crate::dem::law::{ContactBondLaw, LEDGER, Law, LinearLaw, Memory, ParallelBondLaw, Rows, fresh};
-use crate::dem::simd::{Row, WIDEST};
-use crate::dem::space::Space;
+use crate::interaction::Bond;
+use crate::law::{ContactBondLaw, LEDGER, Law, LinearLaw, Memory, ParallelBondLaw, Rows, fresh};
+use crate::simd::{Row, WIDEST};
+use crate::space::Space;
 use std::ops::Range;
 
 /// Blocks of a chunk.

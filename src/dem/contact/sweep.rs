@@ -1,12 +1,10 @@
 //! The one contact loop: geometry, law, loads, for every block of a section.
 
 use super::section::{Chunk, LawKind, Rank, Section};
-use crate::dem::boundary::Image;
-use crate::dem::law::{
-    BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Viscous,
-};
-use crate::dem::simd::{Lane, Quad, Row, WIDEST, prefetch, prefetch_rows};
-use crate::dem::space::{End, Load, Space, Touch, Tuple, Vector};
+use crate::boundary::Image;
+use crate::law::{BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Viscous};
+use crate::simd::{Lane, Quad, Row, WIDEST, prefetch, prefetch_rows};
+use crate::space::{End, Load, Space, Touch, Tuple, Vector};
 
 /// Blocks between the one at work and the one whose memory and second ends are asked for.
 const AHEAD: usize = 2;
@@ -269,9 +267,9 @@ fn note(rank: Rank, ends: [&[u32]; 2], masks: [u8; 2], places: &Places, breaks: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
-    use crate::dem::law::Rows;
-    use crate::dem::space::{D2, D3};
+    use crate::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
+    use crate::law::Rows;
+    use crate::space::{D2, D3};
 
     /// Loads a bonded pair, then turns it as a whole once around `axis` in `steps` steps (chords against arcs leave an
     /// error of the order of steps⁻²); normal force, shear force,
@@ -311,7 +309,7 @@ mod tests {
         let before = answer(&[end([-0.5, 0.0, 0.0], zero, zero), pushed]);
         // Rodrigues' formula about the middle of the pair.
         let around = |x: [f64; 3], angle: f64| {
-            let (sin, cos) = crate::math::elementary::sin_cos(angle);
+            let (sin, cos) = math::elementary::sin_cos(angle);
             let cross = D3::carried(axis, x);
             let along = axis.dot(x) * (1.0 - cos);
             std::array::from_fn::<f64, 3, _>(|k| x[k] * cos + cross[k] * sin + axis[k] * along)

@@ -1,6 +1,6 @@
 //! One contact as a caller sees it.
 
-use crate::dem::space::{Space, Spin, Tuple, Vector};
+use crate::space::{Space, Spin, Tuple, Vector};
 
 /// The other end of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

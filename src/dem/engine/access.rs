@@ -2,12 +2,12 @@
 //! there is not panics, as it does on a slice.
 
 use super::{Engine, Settings};
-use crate::dem::body::{self, Rigid};
-use crate::dem::contact::{Contact, Key, Other, Section};
-use crate::dem::law::{KN, REFERENCE, Rows, SHEAR};
-use crate::dem::measure::Crack;
-use crate::dem::particle::{Clump, Group, Particle};
-use crate::dem::space::{Load, Space, Spin, Touch, Tuple, Vector};
+use crate::body::{self, Rigid};
+use crate::contact::{Contact, Key, Other, Section};
+use crate::law::{KN, REFERENCE, Rows, SHEAR};
+use crate::measure::Crack;
+use crate::particle::{Clump, Group, Particle};
+use crate::space::{Load, Space, Spin, Touch, Tuple, Vector};
 
 impl<S: Space> Engine<S> {
     /// Number of particles.
@@ -197,7 +197,7 @@ impl<S: Space> Engine<S> {
         let reach = self.radii[i] + 0.5 * gap;
         let value = |row: usize| section.value::<S>(c, row);
         let bonded = section.bonded::<S>(c);
-        let point_bond = bonded && self.classes[section.rank.class].law == crate::dem::contact::LawKind::ContactBond;
+        let point_bond = bonded && self.classes[section.rank.class].law == crate::contact::LawKind::ContactBond;
         let overlap = value(REFERENCE) - gap;
         let push = value(KN) * if point_bond { overlap } else { overlap.max(0.0) };
         let shear = |first: usize| S::Shear::<f64>::build(|k| value(first + k));

@@ -1,12 +1,12 @@
 //! Bonds put into contacts, and overlaps taken as the state of rest.
 
 use super::Engine;
-use crate::dem::contact::Key;
-use crate::dem::error::Faults;
-use crate::dem::interaction::Bond;
-use crate::dem::law::{Memory, REFERENCE, Rows, SHEAR};
-use crate::dem::space::Space;
-use crate::math::random::Stream;
+use crate::contact::Key;
+use crate::error::Faults;
+use crate::interaction::Bond;
+use crate::law::{Memory, REFERENCE, Rows, SHEAR};
+use crate::space::Space;
+use math::random::Stream;
 
 impl<S: Space> Engine<S> {
     /// Installs the bond of its class into every unbonded contact whose gap is at most `gap` (m); how many.

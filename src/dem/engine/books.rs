@@ -1,12 +1,12 @@
 //! Books of energy: what a run stores, spends and is given.
 
 use super::{Books, Engine};
-use crate::dem::law::{BOUNDARY, BROKEN, DASHPOT, LEDGER, SLIP};
-use crate::dem::measure::{Energy, stored};
-use crate::dem::space::Space;
+use crate::law::{BOUNDARY, BROKEN, DASHPOT, LEDGER, SLIP};
+use crate::measure::{Energy, stored};
+use crate::space::Space;
 
 impl<S: Space> Engine<S> {
-    /// Begins to keep the books of energy, which takes time in every step (`cargo bench --bench engine -- books`); see [`crate::dem::measure::energy`].
+    /// Begins to keep the books of energy, which takes time in every step (`cargo bench --bench engine -- books`); see [`crate::measure::energy`].
     ///
     /// Changes between runs (radii, tables, bonds, prescribed velocities) are not booked: begin anew after one.
     pub fn keep_books(&mut self) {

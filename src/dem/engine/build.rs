@@ -1,16 +1,16 @@
 //! From a model to an engine.
 
 use super::{Class, Engine, Model, MovingWall};
-use crate::dem::body::{Rigid, set_kinematics, spin_place};
-use crate::dem::boundary::{Motion, MovingCell, Wall};
-use crate::dem::contact::{Face, LawKind};
-use crate::dem::error::Faults;
-use crate::dem::interaction::ContactTable;
-use crate::dem::law::Constants;
-use crate::dem::neighbour::morton_order;
-use crate::dem::particle::Clump;
-use crate::dem::simd::{Quad, Same, Table, Width};
-use crate::dem::space::{Space, Spin, Tuple, Vector};
+use crate::body::{Rigid, set_kinematics, spin_place};
+use crate::boundary::{Motion, MovingCell, Wall};
+use crate::contact::{Face, LawKind};
+use crate::error::Faults;
+use crate::interaction::ContactTable;
+use crate::law::Constants;
+use crate::neighbour::morton_order;
+use crate::particle::Clump;
+use crate::simd::{Quad, Same, Table, Width};
+use crate::space::{Space, Spin, Tuple, Vector};
 use std::collections::BTreeMap;
 
 /// A body of its own, in `bodies`.
@@ -205,7 +205,7 @@ fn add_load<S: Space>(load: &mut [Quad], force: Vector<S>, moment: Spin<S>) {
 
 /// The classes of a table.
 pub(super) fn classes(table: &ContactTable) -> Vec<Class> {
-    let class = |e: &(_, _, crate::dem::interaction::Interaction)| Class {
+    let class = |e: &(_, _, crate::interaction::Interaction)| Class {
         law: LawKind::of(&e.2.bond),
         constants: Constants::new(&e.2),
     };

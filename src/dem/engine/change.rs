@@ -4,13 +4,13 @@
 
 use super::Engine;
 use super::build::{classes, moving};
-use crate::dem::body::set_kinematics;
-use crate::dem::boundary::{Motion, Wall};
-use crate::dem::error::Faults;
-use crate::dem::interaction::ContactTable;
-use crate::dem::law::unbond;
-use crate::dem::simd::{Same, Width};
-use crate::dem::space::{Space, Spin, Tuple, Vector};
+use crate::body::set_kinematics;
+use crate::boundary::{Motion, Wall};
+use crate::error::Faults;
+use crate::interaction::ContactTable;
+use crate::law::unbond;
+use crate::simd::{Same, Width};
+use crate::space::{Space, Spin, Tuple, Vector};
 
 impl<S: Space> Engine<S> {
     /// Sets all velocities and spins of free bodies to zero.
@@ -18,8 +18,7 @@ impl<S: Space> Engine<S> {
         let rest = (Vector::<S>::zero(), Spin::<S>::zero());
         for p in 0..self.caller.len() {
             let x = self.position_of(p);
-            let (v, w) =
-                (crate::dem::body::velocity::<S>(&self.records, p), crate::dem::body::spin::<S>(&self.records, p));
+            let (v, w) = (crate::body::velocity::<S>(&self.records, p), crate::body::spin::<S>(&self.records, p));
             let [keep_v, keep_w] = self.fixed[p];
             let (v, w) = (if keep_v { v } else { rest.0 }, if keep_w { w } else { rest.1 });
             set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, v, w);
@@ -138,8 +137,8 @@ impl<S: Space> Engine<S> {
         cell.rate = rate;
         let low = gain.low;
         for p in (0..self.caller.len()).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
-            let (x, v) = (self.position_of(p), crate::dem::body::velocity::<S>(&self.records, p));
-            let (v, w) = (v.plus(gain.carried(x.minus(low))), crate::dem::body::spin::<S>(&self.records, p));
+            let (x, v) = (self.position_of(p), crate::body::velocity::<S>(&self.records, p));
+            let (v, w) = (v.plus(gain.carried(x.minus(low))), crate::body::spin::<S>(&self.records, p));
             set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, v, w);
         }
         for clump in &mut self.clumps {
@@ -235,7 +234,7 @@ impl<S: Space> Engine<S> {
     }
 
     /// Pairs of groups that can meet.
-    fn meetings(&self) -> Vec<(crate::dem::particle::Group, crate::dem::particle::Group)> {
+    fn meetings(&self) -> Vec<(crate::particle::Group, crate::particle::Group)> {
         let members = self.groups.iter().copied().zip(self.bodies.iter().copied());
         super::validate::meetings(members, self.walls.iter().filter(|w| w.present).map(|w| w.group))
     }

@@ -5,9 +5,9 @@
 
 use super::Engine;
 use super::list::Found;
-use crate::dem::contact::{Break, Section};
-use crate::dem::simd::Table;
-use crate::dem::space::Space;
+use crate::contact::{Break, Section};
+use crate::simd::Table;
+use crate::space::Space;
 use std::ops::Range;
 
 /// A stretch of bodies and what is needed to move it.
@@ -51,7 +51,7 @@ impl<S: Space> Engine<S> {
         let stretch = |cut: &[usize]| {
             let particles = cut[0]..cut[1];
             let mut loads = loads.pop().unwrap_or_else(|| Table::new(rows));
-            loads.fill(crate::dem::simd::Quad::default());
+            loads.fill(crate::simd::Quad::default());
             let clumps = self.clumps.partition_point(|c| c.pebbles.start < cut[0])
                 ..self.clumps.partition_point(|c| c.pebbles.start < cut[1]);
             Domain { singles: self.singles(&particles, &clumps), particles, clumps, loads, ..Domain::default() }

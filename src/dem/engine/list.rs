@@ -6,11 +6,11 @@
 
 use super::Engine;
 use super::domain::Domain;
-use crate::dem::body::position;
-use crate::dem::contact::{Key, LawKind, Rank, Reader, Section, Writer};
-use crate::dem::law::{KN, Memory, REFERENCE, bonded, fresh};
-use crate::dem::neighbour::pairs;
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::body::position;
+use crate::contact::{Key, LawKind, Rank, Reader, Section, Writer};
+use crate::law::{KN, Memory, REFERENCE, bonded, fresh};
+use crate::neighbour::pairs;
+use crate::space::{Space, Tuple, Vector};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Ends of contacts by what they have in common, each list in order.

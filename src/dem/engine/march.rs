@@ -6,12 +6,12 @@
 
 use super::domain::Domain;
 use super::{Class, Engine, MovingWall};
-use crate::dem::body::Rigid;
-use crate::dem::boundary::{Motion, MovingCell};
-use crate::dem::contact::{Break, Second, Sweep, sweep_section};
-use crate::dem::damping::damped;
-use crate::dem::simd::{Board, Kernel, Lane, Quad, Rows, Update};
-use crate::dem::space::{Space, Tuple};
+use crate::body::Rigid;
+use crate::boundary::{Motion, MovingCell};
+use crate::contact::{Break, Second, Sweep, sweep_section};
+use crate::damping::damped;
+use crate::simd::{Board, Kernel, Lane, Quad, Rows, Update};
+use crate::space::{Space, Tuple};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What all threads of a march know.

@@ -21,7 +21,7 @@ use super::law::{Constants, LEDGER};
 use super::particle::{Clump, Group, Particle};
 use super::simd::{Quad, Table, Width};
 use super::space::{Space, Spin, Vector};
-use crate::dem::measure::Crack;
+use crate::measure::Crack;
 use domain::Domain;
 use std::collections::BTreeMap;
 
@@ -109,7 +109,7 @@ pub(crate) struct MovingWall<S: Space> {
     pub(crate) stiffness: f64,
 }
 
-/// A model in motion. See the head of [`crate::dem`] for how it is used.
+/// A model in motion. See the head of [`crate`] for how it is used.
 #[derive(Clone, Debug)]
 pub struct Engine<S: Space> {
     settings: Settings<S>,

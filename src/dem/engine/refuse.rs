@@ -2,9 +2,9 @@
 
 use super::Engine;
 use super::validate::{FINITE, POSITIVE, cell_edge, check_wall, motion_faults, ok, positive, wall_overlaps};
-use crate::dem::boundary::{Motion, Wall};
-use crate::dem::error::{Fault, Faults};
-use crate::dem::space::{Space, Spin, Tuple, Vector};
+use crate::boundary::{Motion, Wall};
+use crate::error::{Fault, Faults};
+use crate::space::{Space, Spin, Tuple, Vector};
 
 impl<S: Space> Engine<S> {
     /// A particle that there is, by the engine's place of it.

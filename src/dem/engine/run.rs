@@ -2,12 +2,12 @@
 
 use super::march::{March, Notes, Orders, Outcome};
 use super::{Ended, Engine, Watch};
-use crate::dem::body::velocity;
-use crate::dem::contact::{Break, Key, Other};
-use crate::dem::error::Failure;
-use crate::dem::measure::{Crack, Mode};
-use crate::dem::simd::{Board, dispatch, exchange};
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::body::velocity;
+use crate::contact::{Break, Key, Other};
+use crate::error::Failure;
+use crate::measure::{Crack, Mode};
+use crate::simd::{Board, dispatch, exchange};
+use crate::space::{Space, Tuple, Vector};
 
 /// Smallest radii that a body may move in one step; further, and it could pass through another.
 const STRIDE: f64 = 2.0;

@@ -8,9 +8,9 @@
 //! given that of one, so that a body in flight has a step as well.
 
 use super::{Engine, Masses};
-use crate::dem::body::position;
-use crate::dem::law::{KN, REFERENCE, Rows};
-use crate::dem::space::{Space, Tuple};
+use crate::body::position;
+use crate::law::{KN, REFERENCE, Rows};
+use crate::space::{Space, Tuple};
 
 /// Stiffness of one body along and about the axes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -80,7 +80,7 @@ impl<S: Space> Engine<S> {
         entries.map(|e| e.2.linear.stiffness.normal::<S>([radius, radius])).fold(0.0, f64::max)
     }
 
-    fn add_stiffness(&self, section: &crate::dem::contact::Section, c: usize, bodies: &mut [Diagonal]) {
+    fn add_stiffness(&self, section: &crate::contact::Section, c: usize, bodies: &mut [Diagonal]) {
         let key = section.key(c);
         let gap = self.gap(key);
         let bonded = section.bonded::<S>(c);
@@ -158,6 +158,6 @@ fn shortest_period(masses: &[[f64; 2]], stiffness: &[[f64; 2]]) -> f64 {
 }
 
 /// Three coordinates, the third 0 in the plane.
-fn flat<S: Space>(x: crate::dem::space::Vector<S>) -> [f64; 3] {
+fn flat<S: Space>(x: crate::space::Vector<S>) -> [f64; 3] {
     std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })
 }

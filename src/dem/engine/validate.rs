@@ -2,12 +2,12 @@
 
 use super::Model;
 use super::list::coordinates;
-use crate::dem::boundary::{Motion, MovingCell, Wall};
-use crate::dem::error::{Fault, Faults};
-use crate::dem::interaction::{Bond, BondStiffness, ContactTable, Interaction, Stiffness};
-use crate::dem::neighbour::pairs;
-use crate::dem::particle::Group;
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::boundary::{Motion, MovingCell, Wall};
+use crate::error::{Fault, Faults};
+use crate::interaction::{Bond, BondStiffness, ContactTable, Interaction, Stiffness};
+use crate::neighbour::pairs;
+use crate::particle::Group;
+use crate::space::{Space, Tuple, Vector};
 use std::collections::BTreeMap;
 
 pub(super) const POSITIVE: &str = "a number above 0";

@@ -15,7 +15,7 @@
 //! exactly 2.
 
 use super::region::{Point, Region, norm};
-use crate::math::random::Stream;
+use math::random::Stream;
 use std::f64::consts::PI;
 
 /// Number of balls of mean radius `mean` (m) that leave the porosity in `area` (m²), eq. (4).

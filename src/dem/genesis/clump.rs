@@ -19,7 +19,7 @@
 
 use super::polygon::{AreaMoments, Polygon};
 use super::region::{Point, norm};
-use crate::math::elementary::{acos, atan2, sin_cos};
+use math::elementary::{acos, atan2, sin_cos};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -209,7 +209,7 @@ mod tests {
     /// A random heap of discs against a fine grid of points.
     #[test]
     fn a_heap_agrees_with_counting_points() {
-        let mut stream = crate::math::random::Stream::new(4, "heap", 0);
+        let mut stream = math::random::Stream::new(4, "heap", 0);
         let discs: Vec<(Point, f64)> =
             (0..12).map(|_| ([stream.uniform(), stream.uniform()], stream.uniform_in(0.05, 0.3))).collect();
         let (n, low, side) = (1200, -0.4, 1.8);

@@ -18,7 +18,7 @@
 //!
 //! Source: Su, Li, Hu, Yang 2021, Materials 14, 1627, doi:10.3390/ma14071627; Walraven, Reinhardt 1981, Heron 26(1A).
 
-use crate::math::elementary::pow;
+use math::elementary::pow;
 use serde::{Deserialize, Serialize};
 
 /// Area fraction of a plane section that is taken by aggregate below a size.

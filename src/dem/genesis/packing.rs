@@ -18,8 +18,8 @@ use super::cloud::{ball_count, scale_to_porosity, scatter, uniform_radii};
 use super::fabric::{Fabric, HELD, contact_counts};
 use super::region::{Point, Region};
 use super::relax::Heap;
-use crate::dem::Watch;
-use crate::math::random::Stream;
+use crate::Watch;
+use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
 /// Settings of a packing.

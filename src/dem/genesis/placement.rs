@@ -10,7 +10,7 @@
 use super::gradation::SizeClass;
 use super::polygon::{Polygon, PolygonRecipe};
 use super::region::{Point, Region, norm};
-use crate::math::random::Stream;
+use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
 /// Which diameter the particles of a size class get.

@@ -20,8 +20,8 @@
 //! Lengths in metres, vertices anticlockwise. Source: doi:10.3390/ma14071627, section 2.3.
 
 use super::region::Point;
-use crate::math::elementary::sin_cos;
-use crate::math::random::Stream;
+use math::elementary::sin_cos;
+use math::random::Stream;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -259,9 +259,9 @@ mod tests {
                 PolygonRecipe { min_vertices: n, max_vertices: n, ..recipe(SizeRule::Inscribed, AngleLaw::Even) };
             let got = even.draw(2.0, &mut Stream::new(3, "even", n as u64)).moments();
             let step = TAU / n as f64;
-            let area = 0.5 * n as f64 * crate::math::elementary::sin(step);
+            let area = 0.5 * n as f64 * math::elementary::sin(step);
             assert!((got.area - area).abs() < 1e-13);
-            assert!((got.polar - area * (2.0 + crate::math::elementary::cos(step)) / 6.0).abs() < 1e-13);
+            assert!((got.polar - area * (2.0 + math::elementary::cos(step)) / 6.0).abs() < 1e-13);
         }
     }
 

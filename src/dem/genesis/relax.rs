@@ -18,7 +18,7 @@
 
 use super::cloud::Bins;
 use super::region::{Point, Region, norm};
-use crate::dem::Watch;
+use crate::Watch;
 
 /// Discs in a vessel (m).
 #[derive(Clone, Debug)]
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn pairs_are_those_of_all_against_all() {
-        let mut stream = crate::math::random::Stream::new(2, "pairs", 0);
+        let mut stream = math::random::Stream::new(2, "pairs", 0);
         let region = Region::Rectangle { width: 1.0, height: 2.0 };
         let centres: Vec<Point> = (0..300).map(|_| [stream.uniform() - 0.5, 2.0 * stream.uniform() - 1.0]).collect();
         let radii: Vec<f64> = (0..300).map(|_| stream.uniform_in(0.01, 0.03)).collect();

@@ -19,8 +19,8 @@ use super::placement::{DoesNotFit, Placement, place};
 use super::polygon::{Polygon, PolygonError, PolygonRecipe};
 use super::region::{Point, Region};
 use super::relax::Heap;
-use crate::dem::Watch;
-use crate::math::random::Stream;
+use crate::Watch;
+use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
 /// Aggregate of a specimen.

@@ -9,8 +9,8 @@
 use super::{
     Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
 };
-use crate::dem::simd::{Lane, Row};
-use crate::dem::space::{Load, Space, Touch, Tuple};
+use crate::simd::{Lane, Row};
+use crate::space::{Load, Space, Touch, Tuple};
 
 /// The linear law.
 pub(crate) struct LinearLaw;

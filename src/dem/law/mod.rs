@@ -116,7 +116,7 @@ impl Constants {
                 c.bond_share = bond.shear_share();
                 c.multiplier = bond.radius_multiplier;
                 c.moment_factor = bond.moment_factor;
-                c.slope = crate::math::elementary::tan(bond.friction_angle);
+                c.slope = math::elementary::tan(bond.friction_angle);
             }
         }
         c

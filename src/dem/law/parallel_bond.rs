@@ -9,8 +9,8 @@
 
 use super::linear::spring;
 use super::{BROKEN, Broken, Constants, Law, Ledger, Rows, Viscous, load_shear, store_shear};
-use crate::dem::simd::{Lane, Row};
-use crate::dem::space::{Load, Space, Touch, Tuple};
+use crate::simd::{Lane, Row};
+use crate::space::{Load, Space, Touch, Tuple};
 
 /// The parallel-bond law.
 pub(crate) struct ParallelBondLaw;
@@ -164,9 +164,9 @@ impl<S: Space> Law<S> for ParallelBondLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dem::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
-    use crate::dem::space::{D2, D3};
-    use crate::math::random::Stream;
+    use crate::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
+    use crate::space::{D2, D3};
+    use math::random::Stream;
 
     /// Draws cements whose stress is at the strength to within `share`; how often the quick check held.
     fn held<S: Space>(share: f64) -> usize {

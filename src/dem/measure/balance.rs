@@ -1,8 +1,8 @@
 //! How far from equilibrium: the unbalanced ratio.
 
-use crate::dem::contact::Other;
-use crate::dem::engine::Engine;
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::contact::Other;
+use crate::engine::Engine;
+use crate::space::{Space, Tuple, Vector};
 
 /// Mean |unbalanced force| of the bodies over the mean sum of |contact forces| on them (PFC `aratio`), gravity and
 /// applied forces included; 0 where nothing touches. Usual limits: 10⁻³ while packing, 10⁻⁵ before a test. Bodies that are held are left out.

@@ -1,7 +1,7 @@
 //! Cracks: one for each bond that broke.
 
-use crate::dem::contact::Other;
-use crate::dem::space::{Space, Vector};
+use crate::contact::Other;
+use crate::space::{Space, Vector};
 
 /// How a bond broke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,8 +2,8 @@
 //! kinetic + spring + bond + potential + damping + slip + dashpot + broken = initial + boundary, within about 1 %
 //! (velocities live half a step from positions).
 
-use crate::dem::engine::Engine;
-use crate::dem::space::{Space, Tuple};
+use crate::engine::Engine;
+use crate::space::{Space, Tuple};
 
 /// Energies of a run, J (per metre of thickness in the plane).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,8 +1,8 @@
 //! How the bodies hang together: coordination, fabric, forces between particles.
 
-use crate::dem::contact::{Contact, Other};
-use crate::dem::engine::Engine;
-use crate::dem::space::{Space, Tuple};
+use crate::contact::{Contact, Other};
+use crate::engine::Engine;
+use crate::space::{Space, Tuple};
 
 /// Contacts and bonds per body (a clump is one body).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@
 //! stone counts by the room that it takes.
 
 use super::stress::Region;
-use crate::dem::engine::Engine;
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::engine::Engine;
+use crate::space::{Space, Tuple, Vector};
 
 /// Velocity gradient of a region, 1/s, row by row; nothing where fewer centres than it takes lie in the region, or all on
 /// one line (plane).

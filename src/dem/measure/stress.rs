@@ -3,9 +3,9 @@
 //!
 //! A contact counts when its point is in the region. V is the whole region, voids included.
 
-use crate::dem::contact::Other;
-use crate::dem::engine::Engine;
-use crate::dem::space::{Space, Tuple, Vector};
+use crate::contact::Other;
+use crate::engine::Engine;
+use crate::space::{Space, Tuple, Vector};
 
 /// Where a stress is measured.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! The plane: discs of unit thickness.
 
 use super::{End, Load, Space, Touch, Tuple};
-use crate::dem::simd::{Lane, Quad};
+use crate::simd::{Lane, Quad};
 
 /// Discs of unit thickness.
 ///

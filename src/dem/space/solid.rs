@@ -6,7 +6,7 @@
 //! order: (1 − φ²/2) v' + φ n' × v'. So a rigid rotation keeps lengths to fourth order in a step.
 
 use super::{End, Load, Space, Touch, Tuple};
-use crate::dem::simd::{Lane, Quad};
+use crate::simd::{Lane, Quad};
 use std::f64::consts::PI;
 
 /// Spheres.
@@ -218,7 +218,7 @@ impl Space for D3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::random::Stream;
+    use math::random::Stream;
 
     #[test]
     fn a_limit_has_the_bits_of_its_formula() {

@@ -20,9 +20,9 @@ use super::judgement::Judgement;
 use super::loading::{Check, Loading, Run, TestError, TestRecord, drive};
 use super::material::Material;
 use super::uniaxial::{between_platens, judge, platens};
-use crate::dem::genesis::region::{Point, Region};
-use crate::dem::genesis::specimen::Specimen;
-use crate::dem::{D2, Engine, Watch};
+use crate::genesis::region::{Point, Region};
+use crate::genesis::specimen::Specimen;
+use crate::{D2, Engine, Watch};
 
 /// Half width of the band about the loaded diameter, over the diameter.
 const BAND: f64 = 0.1;

@@ -1,8 +1,8 @@
 //! Cracks of a loading test: one for each bond that broke, with the strain of the specimen at that moment.
 
 use super::material::AGGREGATE;
-use crate::dem::measure::Mode;
-use crate::dem::{D2, Engine, Other};
+use crate::measure::Mode;
+use crate::{D2, Engine, Other};
 use serde::{Deserialize, Serialize};
 
 /// Contact group of a crack.

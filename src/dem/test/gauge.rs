@@ -7,7 +7,7 @@
 //!
 //! Lengths in metres; the loading axis is y.
 
-use crate::dem::genesis::region::Point;
+use crate::genesis::region::Point;
 
 /// Gauges across a specimen.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,9 +10,9 @@ use super::judgement::Judgement;
 use super::material::Material;
 use super::rig::Machine;
 use super::snapshot::{Ladder, Snapshot, State};
-use crate::dem::genesis::specimen::Specimen;
-use crate::dem::measure::{Energy, energy, links};
-use crate::dem::{D2, Engine, Failure, Fault, Faults, Watch};
+use crate::genesis::specimen::Specimen;
+use crate::measure::{Energy, energy, links};
+use crate::{D2, Engine, Failure, Fault, Faults, Watch};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of test.

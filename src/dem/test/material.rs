@@ -16,8 +16,8 @@
 //!
 //! Source: Su et al. 2021, doi:10.3390/ma14071627, sections 2.1 and 3.2, Tables 3 and 4.
 
-use crate::dem::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Group, Interaction, Linear};
-use crate::dem::{NormalForce, ParallelBond, ShearBreak, Stiffness};
+use crate::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Group, Interaction, Linear};
+use crate::{NormalForce, ParallelBond, ShearBreak, Stiffness};
 use serde::{Deserialize, Serialize};
 
 /// Contact group of mortar balls.

@@ -4,9 +4,9 @@
 //! stay unbonded (clump–clump, platens). Reference gaps belong to the pair and outlive a loss of contact.
 
 use super::material::{AGGREGATE, MORTAR, Material};
-use crate::dem::genesis::region::Point;
-use crate::dem::genesis::specimen::Specimen;
-use crate::dem::{Clump, D2, Engine, Faults, Masses, Model, Particle, Settings, Wall};
+use crate::genesis::region::Point;
+use crate::genesis::specimen::Specimen;
+use crate::{Clump, D2, Engine, Faults, Masses, Model, Particle, Settings, Wall};
 use serde::{Deserialize, Serialize};
 
 /// What the machine adds to the physics: damping, masses, share of the critical time step.
@@ -61,7 +61,7 @@ pub fn mount(
     Ok(engine)
 }
 
-fn clump(clump: &crate::dem::genesis::clump::Clump) -> Clump<D2> {
+fn clump(clump: &crate::genesis::clump::Clump) -> Clump<D2> {
     let mut inertia = [[0.0; 3]; 3];
     inertia[2][2] = clump.inertia;
     Clump {

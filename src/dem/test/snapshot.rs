@@ -5,8 +5,8 @@
 //! stress are dropped on the way, so memory stays at about thirty states.
 
 use super::curve::Sample;
-use crate::dem::genesis::region::Point;
-use crate::dem::measure::Link;
+use crate::genesis::region::Point;
+use crate::measure::Link;
 
 /// What is kept of the balls at one moment.
 #[derive(Clone, Debug, Default, PartialEq)]

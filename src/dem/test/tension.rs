@@ -19,9 +19,9 @@ use super::loading::{Loading, TestError, TestRecord, drive};
 use super::material::Material;
 use super::rig::{mount, set_velocities};
 use super::uniaxial::judge;
-use crate::dem::genesis::region::Region;
-use crate::dem::genesis::specimen::Specimen;
-use crate::dem::{D2, Engine, Other, Watch};
+use crate::genesis::region::Region;
+use crate::genesis::specimen::Specimen;
+use crate::{D2, Engine, Other, Watch};
 
 /// Height of a grip over that of the specimen.
 const GRIP: f64 = 0.1;

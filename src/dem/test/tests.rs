@@ -3,11 +3,11 @@
 use super::loading::{Loading, TestError, TestFailure, TestKind, TestRecord};
 use super::material::{Bonded, Bonding, Material, Unbonded};
 use super::uniaxial::{between_platens, platens};
-use crate::dem::genesis::packing::Packing;
-use crate::dem::genesis::region::Region;
-use crate::dem::genesis::specimen::{Recipe, Specimen};
-use crate::dem::measure::{self, stress};
-use crate::dem::{D2, Faults, Watch};
+use crate::genesis::packing::Packing;
+use crate::genesis::region::Region;
+use crate::genesis::specimen::{Recipe, Specimen};
+use crate::measure::{self, stress};
+use crate::{D2, Faults, Watch};
 
 fn material(modulus: f64, ratio: f64, strength: f64) -> Material {
     let bonded =

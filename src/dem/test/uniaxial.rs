@@ -23,10 +23,10 @@ use super::judgement::{Judgement, LoadingWarning, rate_warnings};
 use super::loading::{Loading, Run, TestError, TestRecord, drive};
 use super::material::{Material, PLATEN};
 use super::rig::{mount, set_velocities};
-use crate::dem::genesis::region::Region;
-use crate::dem::genesis::specimen::Specimen;
-use crate::dem::measure::unbalanced_ratio;
-use crate::dem::{D2, Engine, Faults, Motion, Wall, Watch};
+use crate::genesis::region::Region;
+use crate::genesis::specimen::Specimen;
+use crate::measure::unbalanced_ratio;
+use crate::{D2, Engine, Faults, Motion, Wall, Watch};
 
 pub(super) fn run(
     test: &Loading,

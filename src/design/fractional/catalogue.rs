@@ -1,7 +1,7 @@
 //! Fractions of minimum aberration up to 128 runs (Chen, Sun & Wu 1993; Box, Hunter & Hunter 2005).
 
 use super::generator::{LETTERS, Word};
-use crate::design::error::Fault;
+use crate::error::Fault;
 
 /// Runs, and the generators of the factors beyond the basic ones, in the order of the factors.
 const DESIGNS: &[(usize, &[&str])] = &[

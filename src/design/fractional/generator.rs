@@ -1,7 +1,7 @@
 //! Generators as text: `E=ABCD`, `E=-ABCD`, `mu=Ec*kn_ks`.
 
-use crate::design::coding::Factor;
-use crate::design::error::Fault;
+use crate::coding::Factor;
+use crate::error::Fault;
 
 /// Letters of the factors by position; I stands for the identity and is left out.
 pub(super) const LETTERS: &str = "ABCDEFGHJKLMNOPQRSTUVWXYZ";

@@ -1,5 +1,5 @@
 use super::*;
-use crate::design::{Layout, Method, build};
+use crate::{Layout, Method, build};
 
 fn factors(n: usize) -> Vec<Factor> {
     (0..n).map(|i| Factor::range(&format!("x{}", i + 1), "", -1.0, 1.0)).collect()

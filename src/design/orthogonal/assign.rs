@@ -2,8 +2,8 @@
 
 use super::array::{Array, entanglement};
 use super::shape::{Counts, count};
-use crate::design::coding::Factor;
-use crate::design::error::Fault;
+use crate::coding::Factor;
+use crate::error::Fault;
 
 /// Whether columns of these levels can hold the factors, with levels merged where a column has more than its factor.
 pub(super) fn holds(columns: &Counts, factors: &[Factor]) -> bool {

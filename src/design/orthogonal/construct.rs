@@ -1,8 +1,8 @@
 //! The constructions. Each gives an array of strength two or more; the tests count every pair (or triple) of columns.
 
 use super::array::Array;
-use crate::design::galois::Field;
-use crate::design::hadamard::two_level;
+use crate::galois::Field;
+use crate::hadamard::two_level;
 
 /// How an array is made. `q` and `order` are prime powers for which [`Field`] exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::design::{DesignTable, Layout, Method, build};
+use crate::{DesignTable, Layout, Method, build};
 
 fn factors(levels: &[usize]) -> Vec<Factor> {
     let factor = |(i, n): (usize, &usize)| {

@@ -7,7 +7,7 @@
 
 use super::model::Model;
 use super::tidy;
-use crate::design::table::DesignTable;
+use crate::table::DesignTable;
 
 /// One entry of the alias matrix.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! How often levels stand, alone and together.
 
-use crate::design::table::{DesignTable, PointType};
+use crate::table::{DesignTable, PointType};
 
 /// How often each value of a factor stands.
 #[derive(Clone, Debug, PartialEq)]

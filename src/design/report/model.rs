@@ -12,7 +12,7 @@
 
 use super::balance::{MOST_LEVELS, level_count, levels};
 use super::{named, tidy};
-use crate::design::table::{DesignTable, PointType};
+use crate::table::{DesignTable, PointType};
 
 /// A kind of model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,8 +12,8 @@
 //! / (σ² var(τ̂_a − τ̂_b)) for the worst pair (a, b).
 
 use super::model::{Kind, Model, ModelReport};
-use crate::math::distribution::f_upper;
-use crate::math::elementary::{exp, ln};
+use math::distribution::f_upper;
+use math::elementary::{exp, ln};
 use serde::{Deserialize, Serialize};
 
 /// Which effect, noise and level the power is asked for.

@@ -1,6 +1,6 @@
 //! How evenly a sample fills its cube.
 
-use crate::design::table::DesignTable;
+use crate::table::DesignTable;
 
 /// Distances and discrepancy in the unit cube, u = (coded + 1) / 2.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,13 +1,13 @@
 use super::*;
-use crate::design::box_behnken::BoxBehnken;
-use crate::design::central_composite::{Alpha, CentralComposite};
-use crate::design::factorial::FullFactorial;
-use crate::design::fractional::FractionalFactorial;
-use crate::design::given::Given;
-use crate::design::orthogonal::Orthogonal;
-use crate::design::plackett_burman::PlackettBurman;
-use crate::design::sobol::Sobol;
-use crate::design::{Factor, Layout, Method, build};
+use crate::box_behnken::BoxBehnken;
+use crate::central_composite::{Alpha, CentralComposite};
+use crate::factorial::FullFactorial;
+use crate::fractional::FractionalFactorial;
+use crate::given::Given;
+use crate::orthogonal::Orthogonal;
+use crate::plackett_burman::PlackettBurman;
+use crate::sobol::Sobol;
+use crate::{Factor, Layout, Method, build};
 use power::{f_critical, noncentral_f_upper};
 
 fn factors(levels: &[usize]) -> Vec<Factor> {

@@ -1,8 +1,8 @@
 //! Setting one label: reads the markup from left to right and puts glyphs down as it goes.
 
 use super::{Glyph, LabelError};
-use crate::figure::font::Face;
-use crate::figure::scene::Rect;
+use crate::font::Face;
+use crate::scene::Rect;
 
 const SCRIPT_SIZE: f64 = 0.70;
 const SUB_DROP: f64 = 0.17;

@@ -14,10 +14,10 @@
 //!
 //! The sizes maximise the log marginal likelihood (eq. 2.30) times log-normal priors.
 
-use crate::math::elementary::{exp, ln};
-use crate::optim::constraint::{Domain, Factor};
-use crate::optim::local::Local;
-use crate::optim::{Optimiser, Trial};
+use crate::constraint::{Domain, Factor};
+use crate::local::Local;
+use crate::{Optimiser, Trial};
+use math::elementary::{exp, ln};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// The sizes of the terms of the covariance.
@@ -214,7 +214,7 @@ mod tests {
     /// With plenty of runs the fit finds the scatter that was put in, and the function to within it.
     #[test]
     fn the_fit_finds_scatter_and_function() {
-        let mut random = crate::math::random::Stream::new(2, "gaussian test", 0);
+        let mut random = math::random::Stream::new(2, "gaussian test", 0);
         let truth = |z: &[f64]| 0.4 * z[0] - 0.3 * z[1] + 0.1 * z[0] * z[1] - 0.05 * z[2] * z[2];
         let points: Vec<Vec<f64>> = (0..60).map(|_| (0..3).map(|_| random.uniform_in(-1.0, 1.0)).collect()).collect();
         let values: Vec<f64> = points.iter().map(|z| truth(z) + 0.03 * random.normal()).collect();

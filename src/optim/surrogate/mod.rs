@@ -22,7 +22,7 @@ pub mod gaussian;
 pub mod models;
 
 use super::{Optimiser, Problem, Recommendation, Stop, Trial};
-use crate::math::random::Stream;
+use math::random::Stream;
 use models::Models;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -2,10 +2,10 @@
 
 use super::Trend;
 use super::gaussian::Gaussian;
-use crate::math::elementary::{exp, ln};
-use crate::math::random::Stream;
-use crate::optim::solution_set::descend;
-use crate::optim::{Interval, Problem, Recommendation, Trial};
+use crate::solution_set::descend;
+use crate::{Interval, Problem, Recommendation, Trial};
+use math::elementary::{exp, ln};
+use math::random::Stream;
 
 /// Distance over which a failed run warns, in half ranges and per root of the number of factors.
 const WARNING: f64 = 0.35;

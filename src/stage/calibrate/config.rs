@@ -1,12 +1,12 @@
 //! The settings of a calibration, and what can be wrong with them before anything runs.
 
 use super::params::{FactorParam, ORDINATE, Params, TargetParam};
-use crate::optim::Error;
-use crate::optim::misfit::{Denominator, Form};
-use crate::optim::search::{Limits, Method};
-use crate::optim::{annealing, cma_es, differential, genetic, surrogate};
 use crate::stage::{Complaint, Context, StageError};
 use crate::unit::{Unit, parse_any};
+use optim::Error;
+use optim::misfit::{Denominator, Form};
+use optim::search::{Limits, Method};
+use optim::{annealing, cma_es, differential, genetic, surrogate};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -3,11 +3,11 @@
 use super::config::Constraint;
 use super::read;
 use crate::artifact::Artifact;
-use crate::optim::constraint::{Domain, Factor, Linear};
-use crate::optim::misfit::{Denominator, Form, Misfit, Target};
-use crate::optim::search::{Knowledge, Limits, Method};
-use crate::optim::{Error, Problem};
 use crate::stage::StageError;
+use optim::constraint::{Domain, Factor, Linear};
+use optim::misfit::{Denominator, Form, Misfit, Target};
+use optim::search::{Knowledge, Limits, Method};
+use optim::{Error, Problem};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -2,14 +2,14 @@
 
 use super::params::{FactorParam, TargetParam};
 use crate::artifact::{Artifact, Node, Table, Values};
-use crate::optim::Interval;
-use crate::optim::misfit::ordinates;
-use crate::optim::search::Run;
-use crate::optim::surrogate::Trend;
 use crate::stage::StageError;
 use crate::stage::fitted::models;
-use crate::stats::model::Model;
 use crate::unit::Unit;
+use optim::Interval;
+use optim::misfit::ordinates;
+use optim::search::Run;
+use optim::surrogate::Trend;
+use stats::model::Model;
 use std::sync::Arc;
 
 /// One surface per target: the model, and where its axes stand among the factors.

@@ -3,7 +3,7 @@
 use super::params::{FactorParam, Params, TargetParam};
 use super::solve::{Line, Solved};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::optim::Interval;
+use optim::Interval;
 
 /// The tables of a calibration.
 pub(super) fn artifact(params: &Params, solved: &[Solved]) -> Artifact {

@@ -3,12 +3,12 @@
 use super::params::{Params, Told};
 use super::{read, record};
 use crate::artifact::Artifact;
-use crate::optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
-use crate::optim::solution_set::{SolutionSet, explore};
-use crate::optim::surrogate::models::Models;
-use crate::optim::surrogate::{Model, Trend};
-use crate::optim::{Interval, Problem, Stop, Trial};
 use crate::stage::{Failure, Job, Progress, StageError};
+use optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
+use optim::solution_set::{SolutionSet, explore};
+use optim::surrogate::models::Models;
+use optim::surrogate::{Model, Trend};
+use optim::{Interval, Problem, Stop, Trial};
 use std::sync::Arc;
 
 /// One line of the history.

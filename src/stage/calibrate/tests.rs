@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::artifact::{Artifact, ContentHash, Group, Node};
-use crate::math::random::Stream;
 use crate::stage::rows::response_table;
 use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
+use math::random::Stream;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 

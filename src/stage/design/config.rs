@@ -1,17 +1,17 @@
 //! The table of a `design` stage: `method`, the options of every method, and which of them go together.
 
-use crate::design::box_behnken::BoxBehnken;
-use crate::design::central_composite::{Alpha, CentralComposite, Corners, Extent};
-use crate::design::factorial::FullFactorial;
-use crate::design::fractional::FractionalFactorial;
-use crate::design::given::Given;
-use crate::design::latin_hypercube::{Criterion, LatinHypercube, Position};
-use crate::design::orthogonal::Orthogonal;
-use crate::design::plackett_burman::PlackettBurman;
-use crate::design::report::power::Question;
-use crate::design::sobol::Sobol;
-use crate::design::{Domain, Factor, Layout, Method, Order};
 use crate::stage::{Complaint, Context};
+use design::box_behnken::BoxBehnken;
+use design::central_composite::{Alpha, CentralComposite, Corners, Extent};
+use design::factorial::FullFactorial;
+use design::fractional::FractionalFactorial;
+use design::given::Given;
+use design::latin_hypercube::{Criterion, LatinHypercube, Position};
+use design::orthogonal::Orthogonal;
+use design::plackett_burman::PlackettBurman;
+use design::report::power::Question;
+use design::sobol::Sobol;
+use design::{Domain, Factor, Layout, Method, Order};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

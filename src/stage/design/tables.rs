@@ -1,7 +1,7 @@
 //! The artifact of a design.
 
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::design::{DesignTable, Report};
+use design::{DesignTable, Report};
 
 /// The tables `design`, `coded` and `report`.
 pub(super) fn artifact(table: &DesignTable, report: &Report) -> Artifact {
@@ -42,7 +42,7 @@ fn coded(table: &DesignTable) -> Table {
 
 fn lines(table: &DesignTable, report: &Report) -> Table {
     let lines = report.lines(table);
-    let texts = |pick: &dyn Fn(&crate::design::report::Line) -> String| lines.iter().map(pick).collect();
+    let texts = |pick: &dyn Fn(&design::report::Line) -> String| lines.iter().map(pick).collect();
     Table { about: "what the design can tell, judged by its rows".to_owned(), columns: Vec::new() }
         .texts_column("section", "", texts(&|l| l.section.to_owned()))
         .texts_column("subject", "factor, term or model", texts(&|l| l.subject.clone()))

@@ -124,7 +124,7 @@ fn each_method_takes_levels_or_the_range() {
         let design = stage(&format!("method = \"{method}\"\nruns = 8\nfactors = [\"{factor}\"]"));
         design.factors(&context())[0].domain.clone()
     };
-    use crate::design::Domain::{Levels, Range};
+    use design::Domain::{Levels, Range};
     assert_eq!(domain("orthogonal", "tau_c"), Levels(vec![10.0, 20.0, 30.0]));
     assert_eq!(domain("orthogonal", "sigma_c"), Range { low: 10.0, high: 30.0 });
     assert_eq!(domain("plackett-burman", "Ec"), Range { low: 10.0, high: 30.0 });

@@ -1,8 +1,8 @@
 //! Settings of a `figure` stage, and what each figure takes.
 
-use crate::figure::palette::Map;
-use crate::figure::{DOUBLE, SINGLE};
 use crate::unit::Length;
+use figure::palette::Map;
+use figure::{DOUBLE, SINGLE};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;

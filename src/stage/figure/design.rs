@@ -3,12 +3,12 @@
 use super::super::StageError;
 use super::source::{Rows, Source, Sources};
 use super::{Label, Params};
-use crate::figure::agreement::{Agreement, Cloud, Pair};
-use crate::figure::axis::fixed;
-use crate::figure::bars::{Bar, RankedBars};
-use crate::figure::effects::{FactorMeans, MainEffects};
-use crate::figure::points::DesignPoints;
-use crate::stats::agreement::{agreement as agreement_of, pair_rows};
+use figure::agreement::{Agreement, Cloud, Pair};
+use figure::axis::fixed;
+use figure::bars::{Bar, RankedBars};
+use figure::effects::{FactorMeans, MainEffects};
+use figure::points::DesignPoints;
+use stats::agreement::{agreement as agreement_of, pair_rows};
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {
     params.responses.first().ok_or_else(|| StageError::new("no response is named"))
@@ -113,10 +113,10 @@ pub(super) fn points(params: &Params, sources: &Sources) -> Result<DesignPoints,
     let points: Vec<Vec<f64>> = (0..rows.len()).map(|i| columns.iter().map(|c| c[i]).collect()).collect();
     let kinds = if rows.has("point_type") { rows.texts("point_type")? } else { vec!["run".to_owned(); rows.len()] };
     let side = |(label, column): (&Label, &Vec<f64>)| {
-        let (low, high) = crate::figure::axis::extent(column.iter().copied());
+        let (low, high) = figure::axis::extent(column.iter().copied());
         let cube: Vec<f64> =
             column.iter().zip(&kinds).filter(|(_, k)| !k.starts_with("axial")).map(|(v, _)| *v).collect();
-        let (inner_low, inner_high) = crate::figure::axis::extent(cube);
+        let (inner_low, inner_high) = figure::axis::extent(cube);
         let within = label.range.filter(|[a, b]| low <= *a && *b <= high && a < b);
         within.unwrap_or(if inner_high > inner_low { [inner_low, inner_high] } else { [low, high] })
     };

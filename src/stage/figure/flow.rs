@@ -1,7 +1,7 @@
 //! The graph of the workflow itself: the stages that lead to those named.
 
 use super::super::{Context, Outline};
-use crate::figure::dag::{Dag, Stage};
+use figure::dag::{Dag, Stage};
 
 /// Classes of stages, and the kinds that belong to each; other kinds belong to the last.
 const CLASSES: [(&str, &[&str]); 5] = [

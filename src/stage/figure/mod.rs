@@ -32,8 +32,8 @@ mod source;
 
 use super::{Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, Group, Node, Table};
-use crate::figure::palette::Map;
-use crate::figure::{self, Figure as Picture, Style, column, text};
+use figure::palette::Map;
+use figure::{self, Figure as Picture, Style, column, text};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

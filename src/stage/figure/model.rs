@@ -3,17 +3,17 @@
 use super::super::StageError;
 use super::source::{Rows, Source, Sources, pick};
 use super::{Label, Params};
-use crate::figure::Quantity;
-use crate::figure::agreement::{Agreement, Cloud, Pair};
-use crate::figure::axis::{fixed, significant};
-use crate::figure::bars::{Bar, RankedBars};
-use crate::figure::contour::Contour;
-use crate::figure::effect_plot::{Coordinates, Effect, EffectPlot};
-use crate::figure::residuals::Residuals;
-use crate::figure::surface::Surface;
-use crate::math::distribution::normal_quantile;
-use crate::math::elementary::ln;
-use crate::stats::terms::Term;
+use figure::Quantity;
+use figure::agreement::{Agreement, Cloud, Pair};
+use figure::axis::{fixed, significant};
+use figure::bars::{Bar, RankedBars};
+use figure::contour::Contour;
+use figure::effect_plot::{Coordinates, Effect, EffectPlot};
+use figure::residuals::Residuals;
+use figure::surface::Surface;
+use math::distribution::normal_quantile;
+use math::elementary::ln;
+use stats::terms::Term;
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {
     params.responses.first().ok_or_else(|| StageError::new("no response is named"))
@@ -92,8 +92,7 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
     let values = ys.iter().flat_map(|&v| xs.iter().map(move |&u| (u, v)));
     let values = values.map(|(u, v)| model.value(&|key| at(key, u, v))).collect();
     let note = held.iter().map(|(l, v)| {
-        let unit =
-            if l.unit.is_empty() { String::new() } else { format!(" {}", crate::figure::text::unit_markup(&l.unit)) };
+        let unit = if l.unit.is_empty() { String::new() } else { format!(" {}", figure::text::unit_markup(&l.unit)) };
         format!("{} = {}{unit}", l.quantity().sign(), short(*v))
     });
     let note = note.collect::<Vec<_>>().join(", ");

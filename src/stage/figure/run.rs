@@ -3,12 +3,12 @@
 use super::super::StageError;
 use super::Params;
 use super::source::{Rows, Source, Sources};
-use crate::figure::chains::{Chains, Link};
-use crate::figure::cracks::{Crack, Cracks, Moment};
-use crate::figure::curve::{Curve, StressStrain};
-use crate::figure::rose::Rose;
-use crate::figure::specimen::Specimen;
-use crate::math::elementary::atan2;
+use figure::chains::{Chains, Link};
+use figure::cracks::{Crack, Cracks, Moment};
+use figure::curve::{Curve, StressStrain};
+use figure::rose::Rose;
+use figure::specimen::Specimen;
+use math::elementary::atan2;
 
 /// Metres to millimetres.
 const MM: f64 = 1e3;
@@ -126,7 +126,7 @@ fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> 
         let (low, high) = domain(specimen)?;
         return Ok((low, high, outlines(specimen)));
     }
-    let around = crate::figure::scene::Rect::around(points.iter().copied());
+    let around = figure::scene::Rect::around(points.iter().copied());
     let r = around.ok_or_else(|| StageError::new("there is nothing to draw").hint("the run has no cracks"))?;
     Ok(([r.left, r.top], [r.right, r.bottom], Vec::new()))
 }

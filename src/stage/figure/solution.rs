@@ -3,9 +3,9 @@
 use super::super::StageError;
 use super::source::{Rows, Source, Sources, pick};
 use super::{Label, Params};
-use crate::figure::convergence::{Convergence, Descent};
-use crate::figure::solutions::{SolutionSet, Solutions};
-use crate::figure::verification::{Check, Verification};
+use figure::convergence::{Convergence, Descent};
+use figure::solutions::{SolutionSet, Solutions};
+use figure::verification::{Check, Verification};
 
 /// Rows of each target, in the order in which targets appear; one nameless group when there is no such column.
 fn by_target(targets: &[String]) -> Vec<(String, Vec<usize>)> {
@@ -75,7 +75,7 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
         }
     }
     let bound = |(k, label): (usize, &&Label)| {
-        let (low, high) = crate::figure::axis::extent(sets.iter().flat_map(|s| s.rows.iter().map(|r| r[k])));
+        let (low, high) = figure::axis::extent(sets.iter().flat_map(|s| s.rows.iter().map(|r| r[k])));
         label.range.unwrap_or(if high > low { [low, high] } else { [low - 1.0, low + 1.0] })
     };
     let bounds = labels.iter().enumerate().map(bound).collect();

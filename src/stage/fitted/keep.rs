@@ -4,8 +4,8 @@ use super::super::StageError;
 use super::{named, reals, unreadable};
 use crate::artifact::{Artifact, Group, Node, Table, Values, take};
 use crate::stage::columns::Rows;
-use crate::stats::model::{Axis, Model};
-use crate::stats::terms::Term;
+use stats::model::{Axis, Model};
+use stats::terms::Term;
 
 /// The group `models`.
 pub(super) fn kept<'a>(models: impl Iterator<Item = (&'a str, &'a Model)>) -> Group {

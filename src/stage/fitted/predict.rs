@@ -5,11 +5,11 @@ use super::super::notes::Notes;
 use super::super::{Complaint, Context};
 use super::{Fitting, named};
 use crate::artifact::Table;
-use crate::stats::canonical::steepest_path;
-use crate::stats::model::Prediction;
-use crate::stats::regression::Regression;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use stats::canonical::steepest_path;
+use stats::model::Prediction;
+use stats::regression::Regression;
 use std::collections::BTreeMap;
 
 /// Points at which models are asked, and how sure the intervals are.

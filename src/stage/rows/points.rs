@@ -2,8 +2,8 @@
 
 use super::factor_columns;
 use crate::artifact::{Artifact, Column, Values};
-use crate::math::occurrence::occurrences;
 use crate::stage::{Context, Point, StageError};
+use math::occurrence::occurrences;
 
 /// The rows of a design. Equal rows are replicates, numbered from 1 by occurrence.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,11 +1,11 @@
 //! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
 
 use super::super::{Complaint, Context, Parameter, StageError};
-use crate::dem::test::loading::{Loading, Rule, TestKind};
-use crate::dem::test::material::{BondKind, Bonded, Bonding, Material, MaterialError, Unbonded};
-use crate::dem::test::rig::Machine;
-use crate::dem::{Convention, Masses};
 use crate::unit::{Angle, Dimension, Pressure, Velocity};
+use dem::test::loading::{Loading, Rule, TestKind};
+use dem::test::material::{BondKind, Bonded, Bonding, Material, MaterialError, Unbonded};
+use dem::test::rig::Machine;
+use dem::{Convention, Masses};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

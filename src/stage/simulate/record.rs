@@ -2,11 +2,11 @@
 
 use super::super::rows::response_table;
 use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
-use crate::dem::measure::{Energy, Link, Mode};
-use crate::dem::test::crack::{CrackEvent, CrackGroup};
-use crate::dem::test::curve::{Sample, thinned};
-use crate::dem::test::loading::{Loading, TestKind, TestRecord};
-use crate::dem::test::snapshot::Snapshot;
+use dem::measure::{Energy, Link, Mode};
+use dem::test::crack::{CrackEvent, CrackGroup};
+use dem::test::curve::{Sample, thinned};
+use dem::test::loading::{Loading, TestKind, TestRecord};
+use dem::test::snapshot::Snapshot;
 
 /// Points of the stored curve.
 const CURVE_POINTS: usize = 400;

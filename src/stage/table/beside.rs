@@ -3,7 +3,7 @@
 use super::super::StageError;
 use super::column_of;
 use crate::artifact;
-use crate::figure::column::{Column, Digits, Values};
+use figure::column::{Column, Digits, Values};
 
 /// After each column of numbers that the other table has too: its value, and the deviation of ours in per cent.
 pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String]) -> Result<Vec<Column>, StageError> {

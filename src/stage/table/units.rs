@@ -3,8 +3,8 @@
 //! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`; another quantity in pascal the
 //! prefix that leaves one to three digits before the point, a length below a decimetre millimetres.
 
-use crate::figure::column::{Column, Digits, Values};
 use crate::unit::Unit;
+use figure::column::{Column, Digits, Values};
 use std::collections::BTreeMap;
 
 /// The columns of a table that tells quantities row by row.

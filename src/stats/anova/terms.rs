@@ -1,8 +1,8 @@
 //! Which terms an analysis of variance has, and which columns belong to each.
 
 use super::{Column, Interactions, Matrix, Part, Sample, Settings, Usable};
-use crate::stats::sample::Factor;
-use crate::stats::triangle::Triangle;
+use crate::sample::Factor;
+use crate::triangle::Triangle;
 use std::ops::Range;
 
 /// The terms of a model and their columns; column 0 is the constant.

@@ -1,0 +1,138 @@
+//! Specimens, cracks and forces.
+
+use figure::chains::{Chains, Link};
+use figure::cracks::{Crack, Cracks, Moment};
+use figure::rose::Rose;
+use figure::specimen::Specimen;
+use math::random::Stream;
+
+type Polygon = Vec<[f64; 2]>;
+
+fn polygons(random: &mut Stream, w: f64, h: f64) -> Vec<Polygon> {
+    let mut found: Vec<([f64; 2], f64, Polygon)> = Vec::new();
+    for (size, n) in [(12.0, 8), (10.0, 15), (8.0, 28), (6.0, 59)] {
+        let mut placed = 0;
+        for _ in 0..20_000 {
+            let r = size / 2.0;
+            let c = [random.uniform_in(r, w - r), random.uniform_in(r, h - r)];
+            if found.iter().any(|(d, q, _)| (c[0] - d[0]).hypot(c[1] - d[1]) < r + q + 1.0) {
+                continue;
+            }
+            let sides = 4 + random.below(3);
+            let turn = random.uniform_in(0.0, 6.28);
+            let corner = |k: usize| {
+                let a = turn + 6.2832 * (k as f64 + 0.25 * ((k * 7 % 3) as f64 - 1.0)) / sides as f64;
+                [c[0] + r * a.cos(), c[1] + r * a.sin()]
+            };
+            found.push((c, r, (0..sides).map(corner).collect()));
+            placed += 1;
+            if placed == n {
+                break;
+            }
+        }
+    }
+    found.into_iter().map(|f| f.2).collect()
+}
+
+fn inside(p: [f64; 2], poly: &[[f64; 2]]) -> bool {
+    let n = poly.len();
+    (0..n)
+        .filter(|&i| {
+            let (a, b) = (poly[i], poly[(i + 1) % n]);
+            (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        })
+        .count()
+        % 2
+        == 1
+}
+
+/// About 22,000 discs on a jittered hexagonal lattice.
+pub(super) fn specimen(ratio: f64) -> Specimen {
+    let (w, h) = if ratio > 1.0 { (200.0, 200.0 / ratio) } else { (100.0, 200.0) };
+    let mut random = Stream::new(11, "discs", 0);
+    let outlines = polygons(&mut random, w, h);
+    let pitch = 1.02;
+    let (mut centres, mut radii, mut group) = (Vec::new(), Vec::new(), Vec::new());
+    let mut y = 0.5;
+    let mut row = 0;
+    while y < h {
+        let mut x = if row % 2 == 0 { 0.5 } else { 1.0 };
+        while x < w {
+            let c = [x + 0.12 * random.normal(), y + 0.12 * random.normal()];
+            centres.push(c);
+            radii.push(random.uniform_in(0.3, 0.68));
+            group.push(usize::from(outlines.iter().any(|o| inside(c, o))));
+            x += pitch;
+        }
+        y += pitch * 0.87;
+        row += 1;
+    }
+    Specimen {
+        low: [0.0, 0.0],
+        high: [w, h],
+        centres,
+        radii,
+        group,
+        groups: vec!["mortar".into(), "aggregate".into()],
+        outlines,
+    }
+}
+
+pub(super) fn cracks() -> Cracks {
+    let mut random = Stream::new(5, "cracks", 0);
+    let outlines = polygons(&mut random, 100.0, 200.0);
+    let mut moment = |title: &str, n: usize, sharp: f64| {
+        let crack = |_| {
+            let t = random.uniform();
+            let band = random.uniform() < sharp;
+            let y = 200.0 * t;
+            let x = if band { 20.0 + 62.0 * t + 2.5 * random.normal() } else { random.uniform_in(2.0, 98.0) };
+            let mode = usize::from(random.uniform() < if band { 0.35 } else { 0.05 });
+            let angle = if mode == 0 { 1.57 + 0.25 * random.normal() } else { 1.1 + 0.2 * random.normal() };
+            Crack { at: [x, y], angle, length: random.uniform_in(0.7, 1.4), mode }
+        };
+        Moment { title: title.into(), cracks: (0..n).map(crack).collect() }
+    };
+    let moments = vec![
+        moment("50 %", 40, 0.0),
+        moment("80 %", 190, 0.2),
+        moment("peak", 760, 0.55),
+        moment("70 % after the peak", 2400, 0.8),
+    ];
+    Cracks {
+        low: [0.0, 0.0],
+        high: [100.0, 200.0],
+        modes: vec!["tensile crack".into(), "shear crack".into()],
+        moments,
+        outlines,
+    }
+}
+
+pub(super) fn rose() -> Rose {
+    let mut random = Stream::new(5, "rose", 0);
+    let tensile = (0..1700).map(|_| 1.57 + 0.42 * random.normal()).collect();
+    let shear = (0..500).map(|i| if i % 2 == 0 { 1.05 } else { 2.09 } + 0.2 * random.normal()).collect();
+    Rose { modes: vec![("tensile".into(), tensile), ("shear".into(), shear)], petals: 18 }
+}
+
+pub(super) fn chains() -> Chains {
+    let s = specimen(1.0);
+    let mut random = Stream::new(5, "chains", 0);
+    let mut links = Vec::new();
+    let n = s.centres.len();
+    for i in 0..n {
+        for j in i + 1..(i + 110).min(n) {
+            let (a, b) = (s.centres[i], s.centres[j]);
+            let d = [b[0] - a[0], b[1] - a[1]];
+            let length = d[0].hypot(d[1]);
+            if length < 1.25 {
+                let steep = (d[1] / length).powi(2);
+                let chain = (0.35 * a[0] + 0.9 * (0.05 * a[1]).sin()).sin().powi(2);
+                let force = 2.4e4 * (steep * (0.2 + 1.6 * chain) * -random.uniform().max(1e-3).ln() * 0.5)
+                    - 2.5e3 * (1.0 - steep);
+                links.push(Link { from: a, to: b, force: force / 1e3 });
+            }
+        }
+    }
+    Chains { low: s.low, high: s.high, links, when: String::new(), unit: "kN".into(), least: 0.5 }
+}
