@@ -50,6 +50,7 @@ pub mod regression;
 pub mod rows;
 pub mod rsm;
 pub mod screening;
+mod sheet;
 pub mod simulate;
 pub mod specimen;
 pub mod table;

@@ -148,7 +148,8 @@ impl Wanted {
             Self::Text(text) => text.trim().strip_suffix(unit).and_then(|number| number.trim().parse().ok()),
             Self::Number(_) => None,
         };
-        Ok(plain.unwrap_or(value / to.factor))
+        let value = plain.unwrap_or(value / to.factor);
+        if value.is_finite() { Ok(value) } else { Err(format!("{value} `{unit}` is not a finite number")) }
     }
 }
 
@@ -265,8 +266,13 @@ impl Calibrate {
             let (strains, stresses) = (curve.strain.len(), curve.stress.len());
             found.push(Complaint::new("curve", format!("{strains} strains but {stresses} stresses")));
         }
-        if self.specimens == Some(0) {
-            found.push(Complaint::new("specimens", "there must be at least one specimen"));
+        let counts = [
+            ("specimens", self.specimens.unwrap_or(1), 1, 1_000_000),
+            ("solutions", self.solutions as u64, 0, 100_000),
+            ("evaluations", self.evaluations.map_or(1, |count| count as u64), 1, 10_000_000),
+        ];
+        for (key, count, least, most) in counts.into_iter().filter(|(_, n, least, most)| n < least || n > most) {
+            found.push(Complaint::new(key, format!("`{key}` is {count}; a number from {least} to {most} is needed")));
         }
         if !found.is_empty() {
             return found;
