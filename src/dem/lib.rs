@@ -71,12 +71,13 @@ mod error;
 pub mod genesis;
 pub mod interaction;
 mod law;
+pub mod loading;
 pub mod measure;
 mod neighbour;
 mod particle;
 pub mod simd;
 pub mod space;
-pub mod test;
+
 mod union;
 
 pub use boundary::{Cell, Motion, Servo, Wall};

@@ -9,7 +9,7 @@
 //!
 //! The responses of `test = "uniaxial"` are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus
 //! around half of it; strain ratio there), of `"tension"` `sigma_t`, `E`, `nu`, of `"brazilian"` `sigma_t`; in SI units.
-//! Further ones are named in the record. What is computed and why: [`dem::test`].
+//! Further ones are named in the record. What is computed and why: [`dem::loading`].
 
 mod config;
 mod record;
@@ -23,8 +23,8 @@ use super::{
 use crate::artifact::Artifact;
 use crate::artifact::specimen::Specimen as Stored;
 use config::Params;
-use dem::test::curve::Sample;
-use dem::test::uniaxial;
+use dem::loading::curve::Sample;
+use dem::loading::uniaxial;
 use math::random::Stream;
 use serde_json::{Value, json};
 use std::sync::Arc;

@@ -2,11 +2,11 @@
 
 use super::super::rows::response_table;
 use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
+use dem::loading::crack::{CrackEvent, CrackGroup};
+use dem::loading::curve::{Sample, thinned};
+use dem::loading::drive::{Loading, TestKind, TestRecord};
+use dem::loading::snapshot::Snapshot;
 use dem::measure::{Energy, Link, Mode};
-use dem::test::crack::{CrackEvent, CrackGroup};
-use dem::test::curve::{Sample, thinned};
-use dem::test::loading::{Loading, TestKind, TestRecord};
-use dem::test::snapshot::Snapshot;
 
 /// Points of the stored curve.
 const CURVE_POINTS: usize = 400;
