@@ -249,7 +249,7 @@ fn ratio(constraint: &Linear, factors: &[Factor], text: String) -> Result<Wall, 
     let mut bound = if over.is_none() { -ln(limit) } else { ln(limit) };
     let mut normal = vec![0.0; factors.len()];
     for (sign, place) in [(1.0, over), (-1.0, under)] {
-        for i in place {
+        if let Some(i) = place {
             normal[i] = sign * factors[i].span();
             bound -= sign * ln(factors[i].low);
         }
