@@ -209,7 +209,10 @@ mod tests {
         for count in [MOST_RUNS, 1 << 32, usize::MAX] {
             let all = [
                 Method::FullFactorial(factorial::FullFactorial { centre_points: count }),
-                Method::FractionalFactorial(fractional::FractionalFactorial { centre_points: count, ..Default::default() }),
+                Method::FractionalFactorial(fractional::FractionalFactorial {
+                    centre_points: count,
+                    ..Default::default()
+                }),
                 Method::PlackettBurman(plackett_burman::PlackettBurman { centre_points: count, ..Default::default() }),
                 Method::CentralComposite(central_composite::CentralComposite {
                     centre_points: Some(count),
@@ -219,7 +222,12 @@ mod tests {
             ];
             for method in all {
                 let found = check(&method, &factors, once);
-                assert!(found.iter().any(|fault| fault.to_string().starts_with(&format!("`centre_points` is {count}; the table would have "))), "{found:?}");
+                assert!(
+                    found.iter().any(|fault| fault
+                        .to_string()
+                        .starts_with(&format!("`centre_points` is {count}; the table would have "))),
+                    "{found:?}"
+                );
                 assert_eq!(build(&method, &factors, once, 1).unwrap_err().to_string(), found[0].to_string());
                 let many = Layout { replicates: count, ..once };
                 assert!(!check(&Method::FullFactorial(Default::default()), &factors, many).is_empty());

@@ -6,8 +6,8 @@
 //! `simulate` gives it.
 
 use super::sheet::Sheet;
-use super::{Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node, Table};
+use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use crate::unit::Unit;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -27,8 +27,8 @@ impl Stage for Data {
         Vec::new()
     }
 
-    fn gives(&self) -> &'static str {
-        "results"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::RESULTS
     }
 
     fn check(&self, _context: &super::Context) -> Vec<Complaint> {
@@ -50,12 +50,14 @@ impl Stage for Data {
 impl Kind for Data {
     const NAME: &'static str = "data";
     const ABOUT: &'static str = "a table from a CSV file with units";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
+    const CLASS: Class = Class::Data;
     const WORKS: &'static [Work] = &[Work { name: "data", version: 1, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
     let table = parse(&job.file("table")?)?;
-    Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
+    Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
 }
 
 /// Reads the whole table, or says what is wrong with it.
@@ -82,8 +84,10 @@ fn named(head: &str) -> Result<(&str, &str), StageError> {
     let Some((name, rest)) = head.split_once('[') else { return Ok((head, "")) };
     match rest.trim_end().strip_suffix(']') {
         Some(unit) if !unit.contains(['[', ']']) => Ok((name.trim(), unit.trim())),
-        Some(_) | None => Err(StageError::new(format!("column `{head}`: the unit must stand alone in brackets at the end"))
-            .hint("write for example `Ec [GPa]`")),
+        Some(_) | None => {
+            Err(StageError::new(format!("column `{head}`: the unit must stand alone in brackets at the end"))
+                .hint("write for example `Ec [GPa]`"))
+        }
     }
 }
 

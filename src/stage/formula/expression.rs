@@ -271,7 +271,9 @@ impl Reader<'_> {
                 Ok(Term::Number(value))
             }
             Ok(value) if !joined => Err(format!("`{text}` is {value}, which is not a finite number")),
-            Ok(_) | Err(_) => Err(format!("`{}` is no number", &self.text[self.at..self.at + end + next.map_or(0, char::len_utf8)])),
+            Ok(_) | Err(_) => {
+                Err(format!("`{}` is no number", &self.text[self.at..self.at + end + next.map_or(0, char::len_utf8)]))
+            }
         }
     }
 

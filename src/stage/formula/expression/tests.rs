@@ -62,8 +62,34 @@ fn what_is_unclear_is_refused() {
         assert!(why.contains("a minus before a power"), "{unclear}: {why}");
     }
     for wrong in [
-        "", " ", "a +* 2", "a b", "2a", "a 2", "(a", "a)", "()", "max()", "max(1,)", "sqrt(1, 2)", "wide(1)", "1e", "1..2",
-        "1.2.3", "a,b", "a^", "^a", "a**2", "1e400", "a.b", "$", "a;b", "\u{0}", "0x10", "1_000", "a^*2",
+        "",
+        " ",
+        "a +* 2",
+        "a b",
+        "2a",
+        "a 2",
+        "(a",
+        "a)",
+        "()",
+        "max()",
+        "max(1,)",
+        "sqrt(1, 2)",
+        "wide(1)",
+        "1e",
+        "1..2",
+        "1.2.3",
+        "a,b",
+        "a^",
+        "^a",
+        "a**2",
+        "1e400",
+        "a.b",
+        "$",
+        "a;b",
+        "\u{0}",
+        "0x10",
+        "1_000",
+        "a^*2",
     ] {
         assert!(Expression::parse(wrong).is_err(), "{wrong}");
     }
