@@ -53,7 +53,7 @@ impl Run {
 
     fn report(&self) -> Result<Exit, Exit> {
         let started = SystemTime::now();
-        let workflow = self.campaign.load(&self.stages)?;
+        let workflow = self.campaign.load_to_run(&self.stages)?;
         let store = self.campaign.open()?;
         let stop = interruption();
         let jobs = self.jobs.unwrap_or_else(cores);
@@ -68,7 +68,7 @@ impl Run {
         };
         drop(watch);
         for damage in store.take_damages() {
-            eprintln!("warning: {damage}");
+            err!("warning: {damage}");
         }
         let did = report.count().ran + report.count().failed > 0;
         let recorded = did.then(|| record(&workflow, &self.campaign.sets, &report, started, &store));
@@ -81,7 +81,7 @@ impl Run {
         }
         self.failures(&workflow, &report);
         if !self.campaign.common.quiet {
-            remarks(&self.campaign, &report, &store).iter().for_each(|line| eprintln!("{line}"));
+            remarks(&self.campaign, &report, &store).iter().for_each(|line| err!("{line}"));
         }
         let exit = exit(&report);
         // The process ends now, and the system takes all of its memory back faster than it is given back piece by piece.
@@ -103,9 +103,9 @@ impl Run {
             if let (StageStatus::Failed(why), true) = (&stage.status, lines.is_empty()) {
                 lines.push(format!("failed: {}: {why}", stage.name));
             }
-            lines.iter().for_each(|line| eprintln!("{line}"));
+            lines.iter().for_each(|line| err!("{line}"));
             if !lines.is_empty() {
-                eprintln!("  again: {}", self.campaign.command("run", &[&stage.name]));
+                err!("  again: {}", self.campaign.command("run", &[&stage.name]));
             }
         }
     }
@@ -122,10 +122,10 @@ pub(super) fn interruption() -> Arc<AtomicBool> {
                 if flag.swap(true, Ordering::Relaxed) {
                     std::process::exit(Exit::Interrupted as i32);
                 }
-                eprintln!("stopping: what is finished is kept; once more to stop at once");
+                err!("stopping: what is finished is kept; once more to stop at once");
             }
         })),
-        Err(e) => eprintln!("warning: Ctrl-C will not stop cleanly: {e}"),
+        Err(e) => err!("warning: Ctrl-C will not stop cleanly: {e}"),
     }
     stop
 }
@@ -162,7 +162,7 @@ fn summary(report: &Report, seconds: f64, number: Option<u64>) -> String {
 
 fn exit(report: &Report) -> Exit {
     if let Some(why) = &report.broken {
-        eprintln!("error: {why}");
+        err!("error: {why}");
         Exit::System
     } else if report.interrupted {
         Exit::Interrupted

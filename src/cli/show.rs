@@ -84,7 +84,7 @@ impl Show {
         // Single rows are known only when every task is looked up.
         let report = decide(&workflow, &store, std::slice::from_ref(&stage), false);
         let Some(object) = object(&workflow, &report, &stage, row) else {
-            eprintln!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
+            err!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
             return Err(Exit::BadInput);
         };
         if self.path {
@@ -143,12 +143,12 @@ impl Show {
         if let Some(wanted) = &self.table {
             tables.retain(|(name, _)| name == wanted);
             if tables.is_empty() {
-                eprintln!("error: `{what}` has no table `{wanted}`; it has {known}");
+                err!("error: `{what}` has no table `{wanted}`; it has {known}");
                 return Err(Exit::BadInput);
             }
         }
         if self.csv && tables.len() > 1 {
-            eprintln!("error: `{what}` has several tables; choose one with --table: {known}");
+            err!("error: `{what}` has several tables; choose one with --table: {known}");
             return Err(Exit::BadInput);
         }
         Ok(tables)
@@ -163,7 +163,7 @@ pub(super) fn parts(what: &str) -> Result<(String, Option<usize>), Exit> {
     match row.trim().parse::<usize>() {
         Ok(row) if row > 0 => Ok((stage.to_owned(), Some(row - 1))),
         Ok(_) | Err(_) => {
-            eprintln!("error: `{row}` is not a row; rows are counted from 1, as in orthogonal[12]");
+            err!("error: `{row}` is not a row; rows are counted from 1, as in orthogonal[12]");
             Err(Exit::BadInput)
         }
     }

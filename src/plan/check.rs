@@ -5,7 +5,7 @@ use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
 use super::node::{Entry, Node, Sources, Step, Table, Value};
 use super::read::read;
 use super::{Overrides, StageNode, Workflow, overlay, stages, syntax};
-use crate::stage::{Context, Outline};
+use crate::stage::{Context, OWN_COLUMNS, Outline};
 use crate::unit::Unit;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,7 +25,12 @@ const LONGEST_NAME: usize = 64;
 pub(super) const NAME_PATTERN: &str = "^[A-Za-z][A-Za-z0-9_-]{0,63}$";
 
 /// The checked workflow, or every fault of it in the order of the file.
-pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
+pub(super) fn workflow(
+    name: &str,
+    text: &str,
+    overrides: &Overrides,
+    folder: Option<&Path>,
+) -> Result<Workflow, Vec<Fault>> {
     let mut sources = Sources(vec![Arc::new(Source { name: name.to_owned(), text: text.to_owned() })]);
     let (tree, mut faults) = syntax::tree(&sources, 0);
     let Some(Node { value: Value::Table(mut root), .. }) = tree else { return Err(faults) };
@@ -33,6 +38,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
     overlay::profile(&mut root, overrides.profile.as_deref(), &mut sources, &mut faults);
     overlay::sets(&mut root, &overrides.sets, &mut sources, &mut faults);
     let mut check = Check { sources: &sources, faults, lost: Vec::new() };
+    let mut looked = stages::Looked { folder, absent: Vec::new(), remarks: Vec::new() };
     check.root_keys(&root);
     let head = check.head(&mut root);
     let mut context = Context {
@@ -43,7 +49,8 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         outline: Vec::new(),
     };
     check.settings(&root, &context);
-    let stages = stages::read_all(&mut check, &mut root, &context);
+    check.columns(&root, &context);
+    let stages = stages::read_all(&mut check, &mut root, &context, &mut looked);
     let mut faults = check.faults;
     let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
         faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.source.name != name, place.span.start)));
@@ -64,6 +71,8 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         profile: overrides.profile.clone(),
         profiles,
         stages,
+        absent: looked.absent,
+        remarks: looked.remarks,
     })
 }
 
@@ -216,6 +225,25 @@ impl Check<'_> {
                 let hint = format!("give it the unit that `{}` has in [material.{material}]", factor.sets);
                 self.complain(factors, &steps([name.as_str(), "unit"]), fault.hint(hint));
             }
+        }
+    }
+
+    /// Factors and responses are columns of one table, beside the program's own.
+    fn columns(&mut self, root: &Table, context: &Context) {
+        let own = |key| root.0.get(key).map(|entry| &entry.node);
+        let names = context.factors.keys().map(|name| ("factor", name));
+        for (section, name) in names.chain(context.responses.keys().map(|name| ("response", name))) {
+            let Some(node) = own(section) else { continue };
+            let Some(column) = OWN_COLUMNS.iter().find(|column| column.eq_ignore_ascii_case(name)) else { continue };
+            let message = format!("{section} `{name}` has the name of a column that flow writes, `{column}`");
+            let fault = Fault::new(message).hint("give it another name; its `symbol` says how it is shown");
+            self.complain(node, &steps([name.as_str()]), fault);
+        }
+        let both = context.responses.keys().filter(|name| context.factors.contains_key(*name));
+        for (name, node) in both.filter_map(|name| Some((name, own("response")?))) {
+            let message = format!("`{name}` is a factor and a response, which are columns of one table");
+            let fault = Fault::new(message).hint("rename one of them; the `symbol` of both may be the same");
+            self.complain(node, &steps([name.as_str()]), fault);
         }
     }
 

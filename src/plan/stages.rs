@@ -6,8 +6,10 @@ use super::node::{Entry, Node, Step, Table, Value};
 use super::read::read;
 use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
-use crate::stage::{Context, KINDS, Port, Stage};
+use crate::stage::beside::Beside;
+use crate::stage::{Complaint, Context, KINDS, Port, Stage};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A stage that was read.
 struct Configured {
@@ -17,8 +19,23 @@ struct Configured {
     ports: Vec<Port>,
 }
 
+/// What was seen of the files beside the workflow.
+pub(super) struct Looked<'a> {
+    /// The folder they lie in; none when there is only a text.
+    pub(super) folder: Option<&'a Path>,
+    /// Those that cannot be read.
+    pub(super) absent: Vec<Fault>,
+    /// What else is to be said of them.
+    pub(super) remarks: Vec<Fault>,
+}
+
 /// The stages in order; all faults go to `check`, and then stages may be missing.
-pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Context) -> Option<Vec<StageNode>> {
+pub(super) fn read_all(
+    check: &mut Check<'_>,
+    root: &mut Table,
+    context: &Context,
+    looked: &mut Looked<'_>,
+) -> Option<Vec<StageNode>> {
     if !root.0.contains_key("stage") {
         let hint = "add a table such as [stage.runs] with its `kind`";
         let file = &check.sources.0[0].name;
@@ -28,6 +45,7 @@ pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Contex
     let materials = root.get("material").cloned();
     let table = check.tables(root, "stage")?;
     let stages = configure(check, table, materials.as_ref(), context);
+    look(check, table, &stages, context, looked);
     same_but_for_case(check, table);
     let inputs = connect(check, table, &stages);
     let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| inputs.iter().map(|(_, i)| *i).collect()).collect();
@@ -67,6 +85,22 @@ fn configure(check: &mut Check<'_>, table: &mut Table, materials: Option<&Node>,
         stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
     }
     stages
+}
+
+/// Looks at the files that the stages name.
+fn look(check: &Check<'_>, table: &Table, stages: &[Configured], context: &Context, looked: &mut Looked<'_>) {
+    let Some(folder) = looked.folder else { return };
+    for stage in stages {
+        let Some(node) = table.get(&stage.name) else { continue };
+        let mut found = Beside::of(folder);
+        stage.stage.beside(context, &mut found);
+        let fault = |complaint: Complaint| {
+            let place = check.sources.place(node.nearest(&steps(complaint.path.iter().map(String::as_str))).span);
+            Fault { hint: complaint.hint, ..Fault::new(complaint.message) }.at(place)
+        };
+        looked.absent.extend(found.faults.into_iter().map(fault));
+        looked.remarks.extend(found.remarks.into_iter().map(fault));
+    }
 }
 
 fn stage_of(kind: &str, reader: Reader<'_>) -> Result<Box<dyn Stage>, Unread> {

@@ -12,6 +12,7 @@ use super::library::path_of;
 use crate::artifact::{ContentHash, Key};
 use crate::plan::Workflow;
 use crate::stage::Context;
+use crate::stage::beside::plain;
 use crate::store::{Memo, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -102,7 +103,8 @@ pub(super) fn recall(workflow: &Workflow, store: &Store, key: &Key) -> Option<Kn
 /// Whether all these files are as they were.
 pub(super) fn unchanged(workflow: &Workflow, files: &Files) -> bool {
     files.iter().all(|(path, digest)| {
-        let bytes = std::fs::read(path_of(workflow, path)).ok();
+        let path = path_of(workflow, path);
+        let bytes = plain(&path).ok().and_then(|_| std::fs::read(path).ok());
         bytes.is_some_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
     })
 }

@@ -5,6 +5,7 @@
 //! result is an artifact `results` with the table `runs`, as
 //! `simulate` gives it.
 
+use super::beside::Beside;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
@@ -34,6 +35,10 @@ impl Stage for Data {
     fn check(&self, _context: &super::Context) -> Vec<Complaint> {
         let empty = Complaint::new("file", "the name of the file is empty").hint("name a CSV file beside the workflow");
         if self.file.trim().is_empty() { vec![empty] } else { Vec::new() }
+    }
+
+    fn beside(&self, _context: &super::Context, found: &mut Beside) {
+        found.file("file", &self.file);
     }
 
     fn settings(&self) -> Value {

@@ -15,6 +15,7 @@ mod tests;
 
 pub use config::Design;
 
+use super::beside::Beside;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
 use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::unit::Unit;
@@ -62,6 +63,10 @@ impl Stage for Design {
             }
             Err(complaint) => vec![complaint],
         }
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("file", self.file.as_ref());
     }
 
     fn settings(&self) -> Value {

@@ -10,7 +10,6 @@ mod expression;
 use super::rows::{self, GATHER};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
-use crate::unit::Unit;
 use expression::Expression;
 use math::random::Stream;
 use schemars::JsonSchema;
@@ -81,9 +80,7 @@ impl Stage for Formula {
                     }
                 }
             }
-            if let Err(e) = Unit::parse(&response.unit) {
-                found.push(Complaint::new(&at("unit"), e.to_string()));
-            }
+            found.extend(rows::check_response(&at("unit"), name, &response.unit, context));
             if !(response.scatter >= 0.0) {
                 found.push(Complaint::new(&at("scatter"), "the scatter must be 0 or more"));
             }
@@ -140,7 +137,8 @@ impl Kind for Formula {
     const ABOUT: &'static str = "a stand-in simulator given by formulas of the factors";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "formula", version: 1, run: evaluate }, GATHER];
+    // 2: powers from the right, products from the left, smallest and largest of any number of values
+    const WORKS: &'static [Work] = &[Work { name: "formula", version: 2, run: evaluate }, GATHER];
 }
 
 fn evaluate(job: &Job) -> Result<Artifact, Failure> {

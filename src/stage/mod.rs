@@ -34,6 +34,7 @@
 
 pub mod agreement;
 pub mod anova;
+pub mod beside;
 pub mod calibrate;
 mod columns;
 pub mod command;
@@ -67,6 +68,30 @@ use serde::Deserializer;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+/// Names of columns that stand beside factors and responses in one table or template, so that neither can bear them.
+pub const OWN_COLUMNS: [&str; 20] = [
+    "run",
+    "row",
+    "standard_order",
+    "replicate",
+    "point_type",
+    "failure",
+    "validity",
+    "set",
+    "specimen",
+    "evaluation",
+    "evaluations",
+    "misfit",
+    "best",
+    "recommended",
+    "failed",
+    "stop",
+    "free",
+    "seed",
+    "weight",
+    "remark",
+];
+
 /// One configured stage of a workflow.
 pub trait Stage: Send + Sync {
     /// The stages it takes as inputs, in a fixed order.
@@ -77,6 +102,9 @@ pub trait Stage: Send + Sync {
 
     /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
     fn check(&self, context: &Context) -> Vec<Complaint>;
+
+    /// What can be seen of the files that it names: those that are not there, and those outside every key.
+    fn beside(&self, _context: &Context, _found: &mut beside::Beside) {}
 
     /// All settings as canonical values (SI numbers), for `flow diff` and for recognising an unchanged stage at once.
     fn settings(&self) -> Value;

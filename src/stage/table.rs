@@ -16,6 +16,7 @@ mod beside;
 mod list;
 mod units;
 
+use super::beside::Beside;
 use super::figure::{Names, stored};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{self, Accepts, Artifact, ArtifactKind, Group, Node};
@@ -159,6 +160,10 @@ impl Stage for Table {
             }
         }
         found
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("published", self.published.as_ref());
     }
 
     fn settings(&self) -> Value {

@@ -21,13 +21,13 @@ const LONGEST: usize = 10_000;
 const DEEPEST: usize = 64;
 
 /// A formula that was read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Expression {
     root: Term,
     names: Vec<String>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 enum Term {
     Number(f64),
     /// Which of the names.
