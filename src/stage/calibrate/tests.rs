@@ -1,7 +1,7 @@
 //! Calibration through the stage, with a simulator and a library that live in memory.
 
 use super::*;
-use crate::artifact::{Artifact, ContentHash, Group, Node};
+use crate::artifact::{Artifact, ArtifactKind, ContentHash, Group, Node};
 use crate::stage::rows::response_table;
 use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
 use math::random::Stream;
@@ -38,7 +38,7 @@ impl Laboratory {
         let root = Group::new()
             .with("failure", Node::Text(failure))
             .with("responses", Node::Table(response_table(&responses)));
-        Outcome::Done(self.put(Artifact::new("run", 1, root)))
+        Outcome::Done(self.put(Artifact::of(ArtifactKind::RUN, root)))
     }
 
     fn simulations(&self) -> usize {
