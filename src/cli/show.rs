@@ -115,6 +115,10 @@ impl Show {
     fn values(&self, what: &str, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
         let artifact = store.get(&object.content).map_err(|e| system(&e))?;
         let tables = self.chosen(what, &artifact)?;
+        // Beside its numbers, in whatever form they are shown.
+        if let Some(why) = super::remarks::failure(&artifact) {
+            err!("warning: {what}: the run gave no result: {}", on_screen(why));
+        }
         if self.json {
             let value = match &self.table {
                 Some(_) => tables.first().map_or(Value::Null, |(_, table)| table_json(table)),
@@ -242,21 +246,36 @@ fn head(column: &Column) -> String {
 /// So many rows of a table are shown to a reader; programs take `--csv` or `--json`.
 const MOST_ROWS: usize = 100;
 
+/// So many columns.
+const MOST_COLUMNS: usize = 200;
+
+/// A cell for a terminal: characters that steer it, which a log or a file may hold, are shown as signs.
+fn on_screen(cell: &str) -> String {
+    cell.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
 pub(super) fn text(table: &Table) -> String {
     let mut shown = comfy_table::Table::new();
     shown.load_style(comfy_table::presets::NOTHING);
-    shown.set_header(table.columns.iter().map(head));
-    let columns: Vec<Vec<String>> = table.columns.iter().map(|column| short(&column.values)).collect();
+    let seen = &table.columns[..table.columns.len().min(MOST_COLUMNS)];
+    shown.set_header(seen.iter().map(|column| on_screen(&head(column))));
+    let columns: Vec<Vec<String>> = seen.iter().map(|column| short(&column.values)).collect();
     for row in 0..table.rows().min(MOST_ROWS) {
-        shown.add_row(columns.iter().map(|column| &column[row]));
+        shown.add_row(columns.iter().map(|column| on_screen(&column[row])));
     }
-    for (place, column) in table.columns.iter().enumerate() {
+    for (place, column) in seen.iter().enumerate() {
         if let (Some(shown), Values::Reals(_) | Values::Ints(_)) = (shown.column_mut(place), &column.values) {
             shown.set_cell_alignment(comfy_table::CellAlignment::Right);
         }
     }
     let more = table.rows().saturating_sub(MOST_ROWS);
-    let rest = if more > 0 { format!("\n… and {more} more rows; --csv shows all") } else { String::new() };
+    let hidden = table.columns.len() - seen.len();
+    let rest = match (more, hidden) {
+        (0, 0) => String::new(),
+        (rows, 0) => format!("\n… and {rows} more rows; --csv shows all"),
+        (0, columns) => format!("\n… and {columns} more columns; --csv shows all"),
+        (rows, columns) => format!("\n… and {rows} more rows and {columns} more columns; --csv shows all"),
+    };
     let lines: Vec<String> = shown.lines().map(|line| line.trim_end().to_owned()).collect();
     format!("{}{rest}", lines.join("\n"))
 }
@@ -264,7 +283,8 @@ pub(super) fn text(table: &Table) -> String {
 /// A table as CSV, with units in the first line and all digits.
 pub(super) fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
-    let mut out = csv::Writer::from_writer(Vec::new());
+    // A first name that begins with `#` stands in quotes, or it would read as a comment.
+    let mut out = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
     let written = out.write_record(table.columns.iter().map(head)).and_then(|()| {
         (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))
     });

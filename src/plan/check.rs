@@ -5,7 +5,7 @@ use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
 use super::node::{Entry, Node, Sources, Step, Table, Value};
 use super::read::read;
 use super::{Overrides, StageNode, Workflow, overlay, stages, syntax};
-use crate::stage::{Context, OWN_COLUMNS, Outline};
+use crate::stage::{Context, OWN_COLUMNS, Outline, symbol_fault};
 use crate::unit::Unit;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -169,6 +169,7 @@ impl Check<'_> {
         let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| FactorTable::deserialize(reader))?;
         let before = self.faults.len();
         self.unit(&table.unit, node);
+        self.symbol(table.symbol.as_deref(), node);
         if table.levels.is_empty() && table.range.is_none() {
             let fault = Fault::new(format!("factor `{name}` has neither levels nor a range"));
             let hint = "give it `levels = [10, 20, 30]` or `range = [10, 30]`";
@@ -192,6 +193,7 @@ impl Check<'_> {
     fn response(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Response> {
         let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| ResponseTable::deserialize(reader))?;
         self.unit(&table.unit, node);
+        self.symbol(table.symbol.as_deref(), node);
         Some(table.response(name))
     }
 
@@ -244,6 +246,12 @@ impl Check<'_> {
             let message = format!("`{name}` is a factor and a response, which are columns of one table");
             let fault = Fault::new(message).hint("rename one of them; the `symbol` of both may be the same");
             self.complain(node, &steps([name.as_str()]), fault);
+        }
+    }
+
+    fn symbol(&mut self, symbol: Option<&str>, node: &Node) {
+        if let Some(why) = symbol.and_then(symbol_fault) {
+            self.complain(node, &steps(["symbol"]), Fault::new(why));
         }
     }
 

@@ -8,7 +8,7 @@
 use super::beside::Beside;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::unit::Unit;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -79,7 +79,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Table, StageError> {
             return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
         }
         Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
-        table = column(table, name, unit, cells);
+        table.columns.push(column(name, unit, cells));
     }
     Ok(table)
 }
@@ -97,15 +97,16 @@ fn named(head: &str) -> Result<(&str, &str), StageError> {
 }
 
 /// Numbers where every cell is one or empty, else texts.
-fn column(table: Table, name: &str, unit: &str, cells: Vec<String>) -> Table {
+fn column(name: &str, unit: &str, cells: Vec<String>) -> Column {
     let number = |cell: &String| {
         if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|value: &f64| value.is_finite()) }
     };
     let numbers: Option<Vec<f64>> = cells.iter().map(number).collect();
-    match numbers {
-        Some(values) => table.reals_column(name, unit, "", values),
-        None => table.texts_column(name, "", cells),
-    }
+    let (unit, values) = match numbers {
+        Some(values) => (unit.to_owned(), Values::Reals(values)),
+        None => (String::new(), Values::Texts(cells)),
+    };
+    Column { name: name.to_owned(), unit, about: String::new(), values }
 }
 
 #[cfg(test)]

@@ -92,6 +92,17 @@ pub const OWN_COLUMNS: [&str; 20] = [
     "remark",
 ];
 
+/// What is wrong with a symbol, which becomes mathematics in figures, pages and LaTeX.
+pub fn symbol_fault(symbol: &str) -> Option<String> {
+    if symbol.is_empty() || ::figure::escape::is_mathematics(symbol) {
+        return None;
+    }
+    let known = ::figure::text::check(&format!("${symbol}$")).err().map(|fault| fault.to_string());
+    Some(known.unwrap_or_else(|| {
+        format!("symbol `{symbol}`: `$ % & # ~ \" ' are no mathematics; write `\\%` for a per cent sign")
+    }))
+}
+
 /// One configured stage of a workflow.
 pub trait Stage: Send + Sync {
     /// The stages it takes as inputs, in a fixed order.
