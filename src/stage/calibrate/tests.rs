@@ -130,7 +130,8 @@ fn finished(laboratory: &Laboratory, task: &Task) -> Result<Artifact, String> {
         .collect();
     let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: Progress| ());
     let (params, seed) = (&task.params, task.seed);
-    let job = Job { params, seed, inputs: &inputs, files: &[], threads: 1, time_limit: None, say: &say, stop: &stop };
+    let job =
+        Job { params, seed, inputs: &inputs, files: &[], threads: &|| 1, time_limit: None, say: &say, stop: &stop };
     solve::solve(&job).map_err(|failure| failure.to_string())
 }
 

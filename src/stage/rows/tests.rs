@@ -65,7 +65,7 @@ fn gathering_converts_units_and_keeps_failures() {
         seed: None,
         inputs: &inputs,
         files: &[],
-        threads: 1,
+        threads: &|| 1,
         time_limit: None,
         say: &say,
         stop: &stop,

@@ -21,7 +21,7 @@ fn run(params: Value, inputs: &[(&str, Arc<Artifact>)]) -> Result<Artifact, Fail
         seed: None,
         inputs: &inputs,
         files: &[],
-        threads: 1,
+        threads: &|| 1,
         time_limit: None,
         say: &say,
         stop: &stop,
