@@ -8,7 +8,7 @@
 //! cli → report → run → { exec, plan, store }
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → math
 //! { run, plan, stage, store } → artifact
-//! { plan, stage } → unit
+//! { plan, stage } → expression → unit
 //! ```
 //!
 //! | module | holds |
@@ -23,7 +23,7 @@
 //! | [`artifact`] | what can be stored, as plain data with a content hash |
 //! | [`dem`] | the discrete-element engine, specimens and tests |
 //! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
-//! | [`math`], [`unit`] | random streams, elementary functions, distributions; quantities with units |
+//! | [`math`], [`unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
 //!
 //! The domains (`dem`, `design`, `stats`, `optim`, `figure`) are pure and know nothing of one another, of files or of TOML.
 //!
@@ -37,6 +37,7 @@
 pub mod artifact;
 pub mod cli;
 pub mod exec;
+pub mod expression;
 pub mod plan;
 pub mod report;
 pub mod run;

@@ -15,6 +15,7 @@ mod overlay;
 mod read;
 mod reader;
 pub mod schema;
+mod sets;
 mod stages;
 mod syntax;
 pub mod why;

@@ -15,7 +15,7 @@ mod tests;
 
 pub use config::Design;
 
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
+use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work, data};
 use crate::artifact::{Artifact, Table};
 use crate::unit::Unit;
 use design::report::power::Question;
@@ -62,6 +62,10 @@ impl Stage for Design {
             }
             Err(complaint) => vec![complaint],
         }
+    }
+
+    fn sketch(&self) -> Sketch {
+        Sketch { factors: Some(self.factors.clone()), ..Sketch::default() }
     }
 
     fn settings(&self) -> Value {

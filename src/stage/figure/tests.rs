@@ -199,7 +199,8 @@ fn verification() -> Artifact {
 fn context() -> Context {
     let mut context = Context::default();
     let mut add = |name: &str, sets: &str, symbol: &str, levels: &[f64]| {
-        let factor = Factor { sets: sets.into(), symbol: symbol.into(), levels: levels.to_vec(), ..Factor::default() };
+        let factor =
+            Factor { sets: vec![sets.into()], symbol: symbol.into(), levels: levels.to_vec(), ..Factor::default() };
         context.factors.insert(name.into(), factor);
     };
     add("Ec", "mortar.Ec", "E_c", &[10.0, 20.0]);

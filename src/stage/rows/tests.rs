@@ -3,7 +3,9 @@ use crate::stage::Factor;
 
 fn context() -> Context {
     let mut context = Context::default();
-    context.factors.insert("Ec".into(), Factor { sets: "mortar.Ec".into(), unit: "GPa".into(), ..Factor::default() });
+    context
+        .factors
+        .insert("Ec".into(), Factor { sets: vec!["mortar.Ec".into()], unit: "GPa".into(), ..Factor::default() });
     context.factors.insert("null".into(), Factor::default());
     context
 }

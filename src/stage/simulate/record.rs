@@ -2,9 +2,10 @@
 
 use super::super::rows::response_table;
 use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
-use dem::loading::crack::{CrackEvent, CrackGroup};
+use dem::loading::crack::CrackEvent;
 use dem::loading::curve::{Sample, thinned};
 use dem::loading::drive::{Loading, TestKind, TestRecord};
+use dem::loading::material::Material;
 use dem::loading::snapshot::Snapshot;
 use dem::measure::{Energy, Link, Mode};
 
@@ -12,7 +13,7 @@ use dem::measure::{Energy, Link, Mode};
 const CURVE_POINTS: usize = 400;
 
 /// The storable form of a record.
-pub(super) fn artifact(record: &TestRecord, test: &Loading) -> Artifact {
+pub(super) fn artifact(record: &TestRecord, test: &Loading, material: &Material) -> Artifact {
     let failure = record.run.failure.map_or_else(String::new, |failure| failure.to_string());
     let mut root = Group::new()
         .with("failure", Node::Text(failure))
@@ -22,7 +23,7 @@ pub(super) fn artifact(record: &TestRecord, test: &Loading) -> Artifact {
         .with("checks", Node::Table(checks(record)))
         .with("curve", Node::Table(curve(record)))
         .with("energies", Node::Table(energies(&record.run.energies)))
-        .with("cracks", Node::Table(cracks(&record.run.cracks)))
+        .with("cracks", Node::Table(cracks(&record.run.cracks, material)))
         .with("snapshots", Node::Group(snapshots(&record.run.snapshots)));
     if test.rule.forces {
         root.put("forces", Node::Table(forces(&record.run.snapshots)));
@@ -124,7 +125,8 @@ fn energies(energies: &[(f64, Energy)]) -> Table {
         .reals_column("damping", "J", "spent by local damping", of(|e| e.damping))
 }
 
-fn cracks(cracks: &[CrackEvent]) -> Table {
+fn cracks(cracks: &[CrackEvent], material: &Material) -> Table {
+    let contact = |[a, b]: [usize; 2]| material.contact(a, b).map_or_else(String::new, |(name, _)| name.to_owned());
     let of = |pick: fn(&CrackEvent) -> f64| cracks.iter().map(pick).collect::<Vec<f64>>();
     let words = |pick: fn(&CrackEvent) -> &'static str| cracks.iter().map(|c| pick(c).to_owned()).collect();
     table("broken bonds in the order of breaking")
@@ -137,14 +139,7 @@ fn cracks(cracks: &[CrackEvent]) -> Table {
                 Mode::Shear => "shear",
             }),
         )
-        .texts_column(
-            "group",
-            "mortar or interface",
-            words(|c| match c.group {
-                CrackGroup::Mortar => "mortar",
-                CrackGroup::Interface => "interface",
-            }),
-        )
+        .texts_column("group", "contact of the material", cracks.iter().map(|c| contact(c.groups)).collect())
         .reals_column("x", "m", "place", of(|c| c.position[0]))
         .reals_column("y", "m", "place", of(|c| c.position[1]))
         .reals_column("normal_x", "", "normal of the contact; the crack lies across it", of(|c| c.normal[0]))

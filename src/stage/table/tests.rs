@@ -97,7 +97,7 @@ fn given(text: &str) -> Option<Given> {
     }
     let mut context = Context::default();
     let factor = |sets: &str, unit: &str, levels: &[f64]| crate::stage::Factor {
-        sets: sets.into(),
+        sets: vec![sets.into()],
         unit: unit.into(),
         levels: levels.to_vec(),
         ..Default::default()
