@@ -12,7 +12,7 @@ use super::material::{self, Material};
 use super::{
     Complaint, Context, Failure, Input, Job, Known, Parameter, Point, Source, Stage, StageError, Step, Task, Work, vary,
 };
-use crate::artifact::{Artifact, Column, Group, Node, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::expression::Measure;
 use crate::unit::{Dimension, Unit};
 use serde::{Deserialize, Serialize};
@@ -166,7 +166,7 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     }
     let failures = results.iter().map(|(failure, _)| (*failure).to_owned()).collect();
     table = table.texts_column("failure", "why the run gave no result; empty when it did", failures);
-    Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
+    Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
 }
 
 /// Places among the inputs of the task, and briefs, of runs that were made before.

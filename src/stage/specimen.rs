@@ -4,10 +4,10 @@
 //! k. What is computed and why: [`dem::genesis`].
 
 use super::{
-    Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
 };
 use crate::artifact::specimen::Specimen as Stored;
-use crate::artifact::{Artifact, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Table, Values};
 use crate::unit::{Density, Length};
 use dem::genesis::clump::{Clump, ClumpMass};
 use dem::genesis::gradation::{Gradation, GradationError};
@@ -268,7 +268,7 @@ impl Stage for Specimen {
         Vec::new()
     }
 
-    fn gives(&self) -> &'static str {
+    fn gives(&self) -> ArtifactKind {
         Stored::KIND
     }
 
@@ -304,6 +304,8 @@ impl Stage for Specimen {
 impl Kind for Specimen {
     const NAME: &'static str = "specimen";
     const ABOUT: &'static str = "discs packed to a porosity, with polygons of aggregate";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SPECIMEN];
+    const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "specimen", version: 1, run: make }];
 }
 

@@ -3,10 +3,10 @@
 //! | file | cells | fields |
 //! |---|---|---|
 //! | `NAME.particles.vtu` | discs as points | `radius`, `group` (0 mortar, 1 aggregate), `clump` (-1 none); of a run `displacement` |
-//! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 mortar, 1 interface, 2 aggregate), `gap` |
+//! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 between discs, 1 of a disc and aggregate, 2 within aggregate), `gap` |
 //! | `NAME.clumps.vtu` | polygons of aggregate | `polygon`, `clump` (-1 when no disc lies in it), `mass` |
 //! | `NAME.forces.vtu` | contacts of a run as lines, where it kept forces | `normal_force` (compression positive), `shear_force`, `bonded`, `chain` (1 from the mean force on) |
-//! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact | `mode` (0 tension, 1 shear), `group` (0 mortar, 1 interface), `axial_strain` |
+//! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact | `mode` (0 tension, 1 shear), `group` (number of the contact among those of all cracks by name), `axial_strain` |
 //! | `NAME.pvd` | all states of a run over the axial strain | |
 //!
 //! In ParaView: *Glyph* with `radius` as scale shows the discs, *Tube* the forces.
@@ -16,6 +16,7 @@ use super::bodies::{column, contacts};
 use super::vtu::{Cells, Field, Grid, pvd};
 use crate::artifact::{Array, Artifact, Node, Values};
 use dem::genesis::specimen::Specimen;
+use std::collections::BTreeSet;
 
 /// The files of a specimen.
 pub(super) fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
@@ -78,7 +79,7 @@ fn links(specimen: &Specimen) -> Grid {
         cells: Cells::Lines(contacts.iter().map(|c| c.ends).collect()),
         on_points: Vec::new(),
         on_cells: vec![
-            Field::Ints("group", contacts.iter().map(|c| c.group as i64).collect()),
+            Field::Ints("group", contacts.iter().map(|c| (c.groups[0] + c.groups[1]) as i64).collect()),
             Field::Reals("gap", contacts.iter().map(|c| c.gap).collect()),
         ],
     }
@@ -163,6 +164,8 @@ fn cracks(run: &Artifact, until: f64) -> Result<Option<Grid>, String> {
         return Ok(None);
     }
     let ends = |&c: &usize| [-0.5, 0.5].map(|half| [x[c] - half * size[c] * ny[c], y[c] + half * size[c] * nx[c]]);
+    let names: BTreeSet<&String> = group.iter().collect();
+    let number = |name: &String| names.iter().position(|known| *known == name).map_or(-1, |place| place as i64);
     let is = |texts: &[String], word: &str| open.iter().map(|&c| i64::from(texts[c] == word)).collect();
     Ok(Some(Grid {
         points: open.iter().flat_map(ends).collect(),
@@ -170,7 +173,7 @@ fn cracks(run: &Artifact, until: f64) -> Result<Option<Grid>, String> {
         on_points: Vec::new(),
         on_cells: vec![
             Field::Ints("mode", is(&mode, "shear")),
-            Field::Ints("group", is(&group, "interface")),
+            Field::Ints("group", open.iter().map(|&c| number(&group[c])).collect()),
             Field::Reals("axial_strain", open.iter().map(|&c| strain[c]).collect()),
         ],
     }))

@@ -65,7 +65,7 @@ fn a_weibull_distribution_has_the_mean_and_deviation_asked_for() {
     near(weibull_of_deviation(1.0), [1.0, 1.0]);
     near(weibull_of_deviation((4.0 / PI - 1.0).sqrt()), [2.0 / PI.sqrt(), 2.0]);
     let (one_third, two_thirds) = (2.678_938_534_707_747_6, 1.354_117_939_426_400_4);
-    let [mean, square] = [one_third / 3.0, two_thirds * 2.0 / 3.0];
+    let (mean, square): (f64, f64) = (one_third / 3.0, two_thirds * 2.0 / 3.0);
     near(weibull_of_deviation((square / (mean * mean) - 1.0).sqrt()), [1.0 / mean, 3.0]);
     let (_, shape) = weibull_of_deviation(1e-3);
     assert!((shape * 1e-3 / (PI / 6.0_f64.sqrt()) - 1.0).abs() < 2e-3, "{shape}");

@@ -1,5 +1,5 @@
 use super::*;
-use crate::artifact::{Array, ContentHash, Values};
+use crate::artifact::{Array, ArtifactKind, ContentHash, Values};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -111,7 +111,7 @@ fn specimen() -> Artifact {
         .with("clump_of", ints(vec![-1, 0, 0]))
         .with("polygon_of", ints(vec![0, 0, 0]))
         .with("vertices", vectors(vec![0.0, 0.0, 0.005, 0.0, 0.0, 0.005]));
-    Artifact::new("specimen", 1, root)
+    Artifact::of(ArtifactKind::SPECIMEN, root)
 }
 
 fn surfaces() -> Artifact {
@@ -237,10 +237,11 @@ fn task_of(figure: &Figure, context: &Context, from: &[Artifact], compare: &[Art
         key: if i < from.len() { "of" } else { "compare" },
         stage: "s",
         content: ContentHash([i as u8; 32]),
+        vary: Box::new(|_, _| Ok(None)),
         replicate: Box::new(|_| None),
         sample: Box::new(|_, _| Err(StageError::new("none"))),
     };
-    let known = Known { context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
+    let known = Known { name: "figure", context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
     match figure.next(&known).unwrap() {
         Step::Finish(task) => task,
         Step::Ask(..) => panic!("a figure asks for nothing"),

@@ -71,10 +71,11 @@ impl Material {
             match self.source(&between) {
                 Err(fault) => faults.push(fault),
                 Ok(Source::Rule(rule)) => derived.push((between, rule)),
-                Ok(Source::Entry(name)) => match self.entry_contact(name, between, values, need.bonding) {
-                    Ok(contact) => drop(made.contacts.insert(name.to_owned(), contact)),
-                    Err(bad) => faults.extend(bad),
-                },
+                Ok(Source::Entry(name)) => {
+                    let (contact, bad) = self.entry_contact(name, between, values, need.bonding);
+                    made.contacts.insert(name.to_owned(), contact);
+                    faults.extend(bad);
+                }
             }
         }
         for (name, contact) in &made.contacts {
@@ -140,14 +141,15 @@ impl Material {
         }
     }
 
-    /// The contact of an entry; what is missing in it is told by the contact itself.
+    /// The contact of an entry and what is wrong with its keys and units; what is missing or outside its range the contact tells
+    /// itself.
     fn entry_contact(
         &self,
         name: &str,
         between: [String; 2],
         values: &Values,
         bonding: &Bonding,
-    ) -> Result<Contact, Vec<Complaint>> {
+    ) -> (Contact, Vec<Complaint>) {
         let entry = self.entries.get(name).cloned().unwrap_or_default();
         let bond = entry.bond.unwrap_or(bonding.kind);
         let mut contact =
@@ -159,7 +161,11 @@ impl Material {
         for &(key, value) in &own {
             match microparameter(name, key, value, &own) {
                 Ok((parameter, value)) => drop(contact.values.insert(parameter, value)),
-                Err(fault) => faults.push(fault),
+                Err(fault) => {
+                    // A value stands there, only not a right one.
+                    contact.values.extend(Parameter::from_key(key).map(|parameter| (parameter, 1.0)));
+                    faults.push(fault);
+                }
             }
         }
         if entry.distribution.is_some() && bond == BondKind::None {
@@ -172,7 +178,7 @@ impl Material {
             }
         }
         contact.values.retain(|parameter, value| *value != parameter.declaration().default);
-        if faults.is_empty() { Ok(contact) } else { Err(faults) }
+        (contact, faults)
     }
 }
 

@@ -1,5 +1,6 @@
 use super::*;
 use crate::stage::Factor;
+use crate::stage::material::MaterialTable;
 
 fn context() -> Context {
     let mut context = Context::default();
@@ -13,7 +14,7 @@ fn context() -> Context {
 fn design(moduli: &[f64]) -> Artifact {
     let types = moduli.iter().map(|_| "cube".to_owned()).collect();
     let table = Table::default().texts_column("point_type", "", types).reals_column("Ec", "GPa", "", moduli.to_vec());
-    Artifact::new("design", 1, Group::new().with("design", Node::Table(table)))
+    Artifact::of(ArtifactKind::DESIGN, Group::new().with("design", Node::Table(table)))
 }
 
 #[test]
@@ -39,11 +40,11 @@ fn rows_are_told_apart_by_point_and_replicate() {
 
 #[test]
 fn a_point_sets_parameters_in_si_units() {
-    let base = BTreeMap::from([("mortar.Ec".to_owned(), 1.0), ("mortar.mu".to_owned(), 0.5)]);
+    let base: MaterialTable = toml::from_str("mortar = { Ec = '1 Pa', mu = 0.5 }").unwrap();
     let point = Point::from([("Ec".to_owned(), 16.0), ("null".to_owned(), 2.0)]);
-    let set = apply(&base, &point, &context()).unwrap();
-    assert_eq!(set.into_values().collect::<Vec<_>>(), [1.6e10, 0.5]);
-    let error = apply(&BTreeMap::new(), &point, &context()).unwrap_err();
+    let set = apply(&base.0, &point, &context()).unwrap();
+    assert_eq!(set.into_values().map(|found| found.value).collect::<Vec<_>>(), [1.6e10, 0.5]);
+    let error = apply(&Material::default(), &point, &context()).unwrap_err();
     assert!(error.message.contains("mortar.Ec"));
 }
 
@@ -53,7 +54,7 @@ fn gathering_converts_units_and_keeps_failures() {
         let group = Group::new()
             .with("failure", Node::Text(failure.to_owned()))
             .with("responses", Node::Table(response_table(&[("UCS", ucs, "Pa")])));
-        Arc::new(Artifact::new("run", 1, group))
+        Arc::new(Artifact::of(ArtifactKind::RUN, group))
     };
     let inputs = vec![
         ("design".to_owned(), Arc::new(design(&[10.0, 20.0]))),
