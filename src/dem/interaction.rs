@@ -122,7 +122,7 @@ pub struct ContactBond {
 impl ContactBond {
     /// A bond with its strengths (Pa), without scatter.
     pub fn new(tensile_strength: f64, shear_strength: f64) -> Self {
-        Self { tensile_strength, shear_strength, deviation: 0.0, shear_break: ShearBreak::default() }
+        Self { tensile_strength, shear_strength, scatter: Scatter::default(), shear_break: ShearBreak::default() }
     }
 }
 
@@ -276,7 +276,7 @@ impl ParallelBond {
             cohesion,
             friction_angle: 0.0,
             moment_factor: 1.0,
-            deviation: 0.0,
+            scatter: Scatter::default(),
         }
     }
 
