@@ -10,8 +10,11 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
+mod convert;
 mod power;
 mod read;
+
+pub use convert::Conversion;
 
 use power::Power;
 
@@ -78,6 +81,9 @@ pub enum UnitError {
     /// A symbol that is not known.
     #[error("`{0}` is not a unit that flow knows; known are {1}, with the prefixes G M k c m µ n where usual")]
     Unknown(String, String),
+    /// Two units of different kinds of quantity.
+    #[error("the two units measure different quantities")]
+    Differ,
     /// A unit of another kind of quantity.
     #[error("`{found}` is not a unit of {wanted}; write for example \"{example}\"")]
     OtherKind {

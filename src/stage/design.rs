@@ -21,7 +21,7 @@ use crate::unit::Unit;
 use design::report::power::Question;
 use design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Parameters of the task: all that decides the table.
 #[derive(Serialize, Deserialize)]
@@ -62,13 +62,6 @@ impl Stage for Design {
             }
             Err(complaint) => vec![complaint],
         }
-    }
-
-    fn settings(&self) -> Value {
-        json!({
-            "design": self.method().ok(), "factors": self.factors, "file": self.file,
-            "replicates": self.replicates, "order": self.order, "power": self.power,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -14,11 +14,11 @@ use math::elementary;
 use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `formula` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formula {
     /// The design whose rows are run; once, at the material, when not given.
@@ -156,10 +156,6 @@ impl Stage for Formula {
             }
         }
         found
-    }
-
-    fn settings(&self) -> Value {
-        json!({ "design": self.design, "material": self.material, "responses": self.responses })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

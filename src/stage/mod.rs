@@ -62,12 +62,25 @@ pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::Deserializer;
+use serde::{Deserializer, Serialize};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// One configured stage of a workflow.
-pub trait Stage: Send + Sync {
+/// The settings of a stage as canonical values.
+pub trait Settings {
+    /// All settings, defaults filled in, quantities as SI numbers: for recognising an unchanged stage at once, and for
+    /// `flow diff`, run records and the report. Every field of the config type is there: none can be forgotten.
+    fn settings(&self) -> Value;
+}
+
+impl<T: Serialize> Settings for T {
+    fn settings(&self) -> Value {
+        serde_json::to_value(self).unwrap_or_else(|e| panic!("BUG: settings that are no plain values: {e}"))
+    }
+}
+
+/// One configured stage of a workflow: its config type, which serde reads and writes.
+pub trait Stage: Settings + Send + Sync {
     /// The stages it takes as inputs, in a fixed order.
     fn inputs(&self) -> Vec<Port>;
 
@@ -76,9 +89,6 @@ pub trait Stage: Send + Sync {
 
     /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
     fn check(&self, context: &Context) -> Vec<Complaint>;
-
-    /// All settings as canonical values (SI numbers), for `flow diff` and for recognising an unchanged stage at once.
-    fn settings(&self) -> Value;
 
     /// What to do next, given all that is known; a pure function.
     ///

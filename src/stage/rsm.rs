@@ -8,14 +8,14 @@ use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, 
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use stats::selection::Direction;
 use stats::terms::Term;
 use std::collections::BTreeMap;
 
 /// Settings of an `rsm` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rsm {
     /// The stages whose runs are fitted: one per response, in the same order, or one for all.
@@ -82,12 +82,6 @@ impl Stage for Rsm {
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
-    }
-
-    fn settings(&self) -> Value {
-        let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
-        let what = json!({ "responses": self.responses, "terms": self.terms });
-        json!({ "fit": what, "select": select, "weights": self.weights, "predict": self.predict, "published": self.published })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// Settings of a `specimen` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Specimen {
     /// Width of a rectangle, across the axis of loading.
@@ -47,7 +47,7 @@ pub struct Specimen {
 }
 
 /// Settings of the aggregate.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AggregateConfig {
     /// Law of the gradation.
@@ -260,10 +260,6 @@ impl Stage for Specimen {
 
     fn check(&self, _context: &Context) -> Vec<Complaint> {
         self.recipe().err().unwrap_or_default()
-    }
-
-    fn settings(&self) -> Value {
-        self.recipe().map_or(Value::Null, |recipe| json!(recipe))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

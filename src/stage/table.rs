@@ -28,11 +28,11 @@ use list::Given;
 pub use list::List;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `table` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// The stages whose tables are printed.
@@ -159,15 +159,6 @@ impl Stage for Table {
             }
         }
         found
-    }
-
-    fn settings(&self) -> Value {
-        json!({
-            "of": self.of.list(), "table": self.table, "columns": self.columns, "where": self.only,
-            "compare": self.compare, "by": self.by, "caption": self.caption, "label": self.label, "notes": self.notes,
-            "digits": self.digits, "decimals": self.decimals, "symbols": self.symbols, "list": self.list,
-            "factors": self.factors, "materials": self.materials, "classes": self.classes, "published": self.published,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -13,7 +13,7 @@ use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table, Value
 use math::distribution::t_for_coverage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::sync::Arc;
 
 /// Settings of a `verify` stage.
@@ -66,10 +66,6 @@ impl Stage for Verify {
     fn check(&self, _context: &Context) -> Vec<Complaint> {
         let few = Complaint::new("replicates", "a standard deviation needs at least two specimens");
         if self.replicates < 2 { vec![few.hint("replicates = 5")] } else { Vec::new() }
-    }
-
-    fn settings(&self) -> Value {
-        json!(self)
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

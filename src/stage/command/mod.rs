@@ -23,11 +23,11 @@ use crate::unit;
 use read::Read;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `command` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Command {
     /// Program and arguments, such as `["python3", "engine.py", "input.json"]`; with `shell` one text for `sh -c`.
@@ -130,14 +130,6 @@ impl Stage for Command {
         }
         found.extend(self.read.iter().flat_map(|(name, read)| read.check(name)));
         found
-    }
-
-    fn settings(&self) -> Value {
-        json!({
-            "run": self.run, "shell": self.shell, "design": self.design, "material": self.material,
-            "files": self.files, "templates": self.templates, "environment": self.environment,
-            "time_limit": self.time_limit, "on_failure": self.on_failure, "read": self.read,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -35,7 +35,7 @@ use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use figure::palette::Map;
 use figure::{self, Figure as Picture, Style, column, text};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 pub use config::{Figure, Names, Show, Width};
@@ -132,14 +132,6 @@ impl Stage for Figure {
             found.push(self.without_effect("band"));
         }
         found
-    }
-
-    fn settings(&self) -> Value {
-        json!({
-            "show": self.show, "of": self.of.list(), "compare": self.compare.list(),
-            "response": self.response.list(), "factors": self.factors, "at": self.at, "names": self.names,
-            "band": self.band, "width": self.width.millimetres(), "points": self.points, "colors": self.colors,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -25,7 +25,7 @@ use config::Params;
 use dem::loading::curve::Sample;
 use dem::loading::uniaxial;
 use math::random::Stream;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::sync::Arc;
 
 impl Stage for Simulate {
@@ -51,13 +51,6 @@ impl Stage for Simulate {
         let mut found = rows::check_units(context);
         found.extend(self.faults(context));
         found
-    }
-
-    fn settings(&self) -> Value {
-        json!({
-            "specimen": self.specimen, "design": self.design, "material": self.material,
-            "test": self.spec(), "bonding": self.bond.bonding(), "packing": self.packing,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
