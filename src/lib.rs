@@ -8,7 +8,7 @@
 //! cli → report → run → { exec, plan, store }
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → math
 //! { run, plan, stage, store } → artifact
-//! { plan, stage } → unit
+//! { plan, stage, artifact } → unit
 //! ```
 //!
 //! | module | holds |

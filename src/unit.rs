@@ -205,6 +205,14 @@ pub fn parse_any(text: &str) -> Result<(f64, Dimension), UnitError> {
     Ok((si(text, value, unit)?, unit.dimension))
 }
 
+/// Reads a number with or without a unit of any kind, as the number and the text of its unit.
+///
+/// # Errors
+/// What is wrong with the number.
+pub fn split_any(text: &str) -> Result<(f64, &str), UnitError> {
+    finite(text.trim(), "16 GPa")
+}
+
 /// The number of SI units, which must be finite too.
 fn si(text: &str, value: f64, unit: Unit) -> Result<f64, UnitError> {
     let si = value * unit.factor;

@@ -15,9 +15,9 @@ const ORDER: &[(&str, &[&str])] = &[
     ("run", &["exec", "plan", "store", "stage", "artifact", "unit"]),
     ("exec", &[]),
     ("plan", &["stage", "artifact", "unit"]),
-    ("store", &["artifact"]),
+    ("store", &["artifact", "unit"]),
     ("stage", &["artifact", "unit"]),
-    ("artifact", &[]),
+    ("artifact", &["unit"]),
     ("unit", &[]),
 ];
 

@@ -10,12 +10,14 @@ mod field;
 mod key;
 mod kind;
 mod node;
+mod read;
 pub mod specimen;
 
 pub use field::{Field, Wanted, expect_kind, take};
 pub use key::{FirstBytes, Key};
 pub use kind::{Accepts, ArtifactKind};
 pub use node::{Array, Column, Group, Node, Table, Values};
+pub use read::Unread;
 
 use std::fmt;
 

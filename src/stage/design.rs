@@ -17,7 +17,6 @@ pub use config::Design;
 
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
 use crate::artifact::{Artifact, ArtifactKind, Table};
-use crate::unit::Unit;
 use design::report::power::Question;
 use design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
@@ -134,20 +133,7 @@ fn rows(table: &Table, factors: &[Factor], by_level: bool) -> Result<Vec<Vec<f64
         let column = table.column(name).ok_or_else(|| {
             StageError::new(format!("the file has no column `{name}`")).hint(format!("its columns are {}", known()))
         })?;
-        let values = table.reals(name).ok_or_else(|| {
-            StageError::new(format!("column `{name}` holds texts")).hint("a factor needs a number in every row")
-        })?;
-        let unit = |text: &str| Unit::parse(text).map_err(|e| StageError::new(format!("factor `{name}`: {e}")));
-        let (from, to) = (unit(&column.unit)?, unit(&factor.unit)?);
-        if by_level {
-            return Ok(values);
-        }
-        if from.dimension != to.dimension {
-            let message = format!("column `{name}` is in `{}`, the factor in `{}`", column.unit, factor.unit);
-            return Err(StageError::new(message).hint("name the unit in the head of the column: `Ec [GPa]`"));
-        }
-        let scale = from.factor / to.factor;
-        Ok(values.into_iter().map(move |v| if scale == 1.0 { v } else { v * scale }).collect())
+        Ok(column.numbers(if by_level { &column.unit } else { &factor.unit })?)
     });
     let columns: Vec<Vec<f64>> = columns.collect::<Result<_, StageError>>()?;
     Ok((0..table.rows()).map(|i| columns.iter().map(|c| c[i]).collect()).collect())

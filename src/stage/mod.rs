@@ -60,10 +60,10 @@ pub mod verify;
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
-use crate::artifact::{Accepts, Artifact, ArtifactKind};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserializer, Serialize};
 use serde::de::DeserializeOwned;
+use serde::{Deserializer, Serialize};
 use serde_json::Value;
 
 /// The settings of a stage as canonical values.
@@ -219,6 +219,18 @@ impl StageError {
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
+    }
+}
+
+impl From<Unread> for StageError {
+    fn from(unread: Unread) -> Self {
+        Self::new(unread.to_string())
+    }
+}
+
+impl From<Wanted> for StageError {
+    fn from(wanted: Wanted) -> Self {
+        Self::new(wanted.to_string())
     }
 }
 

@@ -10,7 +10,7 @@ pub use points::Rows;
 use super::ledger::{Briefs, KeptRuns};
 use super::{Complaint, Context, Failure, Input, Job, Known, Point, Source, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
-use crate::unit::Unit;
+use crate::unit::{Conversion, Unit};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -207,12 +207,8 @@ pub(super) fn responses(run: &Artifact) -> Result<Responses<'_>, StageError> {
         Some(_) | None => "",
     };
     let table = run.table("responses").ok_or_else(|| wrong("table `responses`"))?;
-    let texts = |name: &str| match table.column(name).map(|column| &column.values) {
-        Some(Values::Texts(texts)) => Ok(texts),
-        Some(_) | None => Err(wrong(&format!("texts `responses.{name}`"))),
-    };
-    let values = table.reals("value").ok_or_else(|| wrong("reals `responses.value`"))?;
-    let (names, units) = (texts("response")?, texts("unit")?);
+    let values = table.numbers("value", "")?;
+    let (names, units) = (table.texts("response")?, table.texts("unit")?);
     let found = names.iter().zip(values).zip(units).map(|((name, value), unit)| (name.as_str(), value, unit.as_str()));
     Ok((failure, found.collect()))
 }
@@ -223,31 +219,32 @@ fn response_column(
     shown: Option<&String>,
     results: &[Responses<'_>],
 ) -> Result<Table, StageError> {
-    let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("response `{name}`: {e}")));
     let mut last = None;
     let own = results.iter().flat_map(|(_, found)| found).find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
     let unit = shown.map_or(own, String::as_str);
-    let target = parse(unit)?;
     let mut values = Vec::with_capacity(results.len());
     for (failure, found) in results {
         let value = found.iter().find(|(n, _, _)| *n == name);
         values.push(match value {
             Some((_, value, from)) if failure.is_empty() => {
                 // Nearly always the unit of the row before.
-                let (_, from) = match &last {
-                    Some((text, unit)) if text == from => (*text, *unit),
-                    _ => *last.insert((*from, parse(from)?)),
+                let (_, conversion) = match &last {
+                    Some((text, conversion)) if text == from => (*text, *conversion),
+                    _ => *last.insert((*from, conversion(name, from, unit)?)),
                 };
-                if from.dimension != target.dimension {
-                    let message = format!("response `{name}` comes in `{own}` and cannot be shown in `{unit}`");
-                    return Err(StageError::new(message).hint("mend the unit of [response] in the workflow"));
-                }
-                value * (from.factor / target.factor)
+                conversion.of(*value)
             }
             Some(_) | None => f64::NAN,
         });
     }
     Ok(table.reals_column(name, unit, "", values))
+}
+
+fn conversion(name: &str, from: &str, unit: &str) -> Result<Conversion, StageError> {
+    Conversion::between(from, unit).map_err(|e| {
+        StageError::new(format!("response `{name}` comes in `{from}` and cannot be shown in `{unit}`: {e}"))
+            .hint("mend the unit of [response] in the workflow")
+    })
 }
 
 /// A `run` artifact's table of responses, in SI units.

@@ -125,7 +125,7 @@ impl Rsm {
         let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false };
         let columns = Columns::of(table, context, wanted)?;
         let varied = |name: &String| {
-            let values = table.reals(name).unwrap_or_default();
+            let values = table.shown(name).unwrap_or_default().0;
             values.iter().any(|v| *v != values[0])
         };
         let terms = match own {

@@ -218,7 +218,7 @@ impl Kind for Table {
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
-    /// 3: the main table of a result when none is named, and not the first by its name. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    /// 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
     const WORKS: &'static [Work] = &[Work { name: "table", version: 3, run: print }];
 }
 

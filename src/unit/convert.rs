@@ -31,16 +31,24 @@ impl Unit {
         let is_power = (ratio / math::elementary::pow(10.0, places) - 1.0).abs() < 1e-13;
         Ok(Conversion { ratio, places: is_power.then_some(places as i32) })
     }
+
+    /// A number of SI units as a number of this unit.
+    pub fn of_si(self, value: f64) -> f64 {
+        Self { factor: 1.0, ..self }.to(self).map_or(f64::NAN, |conversion| conversion.of(value))
+    }
 }
 
 impl Conversion {
+    /// Numbers stay as they are.
+    pub const NONE: Self = Self { ratio: 1.0, places: Some(0) };
+
     /// Between units as texts; equal texts need no reading.
     ///
     /// # Errors
     /// A unit cannot be read, or the two are of different dimensions.
     pub fn between(from: &str, to: &str) -> Result<Self, UnitError> {
         if from == to {
-            return Ok(Self { ratio: 1.0, places: Some(0) });
+            return Ok(Self::NONE);
         }
         Unit::parse(from)?.to(Unit::parse(to)?)
     }

@@ -32,8 +32,8 @@ pub(super) fn contacts(specimen: &Specimen, margin: f64) -> Vec<Contact> {
     heap.pairs(margin).into_iter().filter_map(contact).collect()
 }
 
-/// The column of a table of an artifact, or what is missing.
-pub(super) fn column(artifact: &Artifact, table: &str, name: &str) -> Result<Vec<f64>, String> {
-    let found = artifact.table(table).and_then(|table| table.reals(name));
-    found.ok_or_else(|| format!("the result holds no column `{name}` in a table `{table}`"))
+/// The column of a table of an artifact in a unit, or what is missing.
+pub(super) fn column(artifact: &Artifact, table: &str, name: &str, unit: &str) -> Result<Vec<f64>, String> {
+    let found = artifact.table(table).ok_or_else(|| format!("the result holds no table `{table}`"))?;
+    found.numbers(name, unit).map_err(|e| e.to_string())
 }

@@ -32,7 +32,7 @@ pub(super) fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
 
 /// The files of a run on a specimen.
 pub(super) fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec<File>, String> {
-    let strains = column(run, "snapshots/states", "axial_strain")?;
+    let strains = column(run, "snapshots/states", "axial_strain", "")?;
     let centres = states(run, strains.len(), specimen.radii.len())?;
     let mut files = Vec::new();
     let mut series = Vec::new();
@@ -124,16 +124,17 @@ fn forces(run: &Artifact, state: usize, centres: &[[f64; 2]]) -> Result<Option<G
     if run.table("forces").is_none() {
         return Ok(None);
     }
-    let read = |name: &str| column(run, "forces", name);
-    let of = read("state")?;
+    let read = |name: &str, unit: &str| column(run, "forces", name, unit);
+    let of = read("state", "")?;
     let rows: Vec<usize> = (0..of.len()).filter(|&row| of[row] == state as f64).collect();
     let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-    let (first, second) = (pick(&read("first")?), pick(&read("second")?));
+    let (first, second) = (pick(&read("first", "")?), pick(&read("second", "")?));
     let lines: Vec<[usize; 2]> = first.iter().zip(&second).map(|(&a, &b)| [a as usize, b as usize]).collect();
     if lines.iter().flatten().any(|&disc| disc >= centres.len()) {
         return Err("the forces name discs that the run does not have".to_owned());
     }
-    let (normal, shear, bonded) = (pick(&read("normal_force")?), pick(&read("shear_force")?), pick(&read("bonded")?));
+    let (normal, shear, bonded) =
+        (pick(&read("normal_force", "N")?), pick(&read("shear_force", "N")?), pick(&read("bonded", "")?));
     let mean = normal.iter().map(|force| force.abs()).sum::<f64>() / normal.len().max(1) as f64;
     Ok(Some(Grid {
         points: centres.to_vec(),
@@ -150,13 +151,13 @@ fn forces(run: &Artifact, state: usize, centres: &[[f64; 2]]) -> Result<Option<G
 
 /// The cracks up to an axial strain; none is no grid.
 fn cracks(run: &Artifact, until: f64) -> Result<Option<Grid>, String> {
-    let read = |name: &str| column(run, "cracks", name);
+    let read = |name: &str, unit: &str| column(run, "cracks", name, unit);
     let words = |name: &str| match run.table("cracks").and_then(|table| table.column(name)).map(|c| &c.values) {
         Some(Values::Texts(texts)) => Ok(texts.clone()),
         Some(_) | None => Err(format!("the cracks have no column `{name}`")),
     };
-    let (strain, x, y, size) = (read("axial_strain")?, read("x")?, read("y")?, read("size")?);
-    let (nx, ny) = (read("normal_x")?, read("normal_y")?);
+    let (strain, x, y, size) = (read("axial_strain", "")?, read("x", "m")?, read("y", "m")?, read("size", "m")?);
+    let (nx, ny) = (read("normal_x", "")?, read("normal_y", "")?);
     let (mode, group) = (words("mode")?, words("group")?);
     let open: Vec<usize> = (0..strain.len()).filter(|&crack| strain[crack] <= until).collect();
     if open.is_empty() {

@@ -4,7 +4,7 @@ use super::params::{FactorParam, TargetParam};
 use crate::artifact::{Artifact, Node, Table, Values};
 use crate::stage::StageError;
 use crate::stage::fitted::models;
-use crate::unit::Unit;
+use crate::unit::Conversion;
 use optim::Interval;
 use optim::misfit::ordinates;
 use optim::search::Run;
@@ -91,15 +91,9 @@ fn places(model: &Model, response: &str, factors: &[FactorParam]) -> Result<Vec<
 }
 
 fn converted(value: f64, from: &str, to: &str, what: &str) -> Result<f64, StageError> {
-    if from == to {
-        return Ok(value);
-    }
-    let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("`{what}`: {e}")));
-    let (own, wanted) = (parse(from)?, parse(to)?);
-    if own.dimension != wanted.dimension {
-        return Err(StageError::new(format!("`{what}` comes in `{from}` and is wanted in `{to}`")));
-    }
-    Ok(value * (own.factor / wanted.factor))
+    let conversion = Conversion::between(from, to)
+        .map_err(|e| StageError::new(format!("`{what}` comes in `{from}` and is wanted in `{to}`: {e}")))?;
+    Ok(conversion.of(value))
 }
 
 /// The responses of one run in the order of the targets, or why it has none.
@@ -135,8 +129,7 @@ pub(super) fn run(artifact: &Artifact, targets: &[TargetParam]) -> Result<Result
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
     let curve = artifact.table("curve").ok_or_else(missing)?;
-    let column = |name: &str| curve.reals(name).ok_or_else(missing);
-    let (strains, stresses) = (column("axial_strain")?, column("stress")?);
+    let (strains, stresses) = (curve.numbers("axial_strain", "")?, curve.numbers("stress", "Pa")?);
     Ok(ordinates(&strains, &stresses, &[strain]).map(|values| values[0]).map_err(|fault| fault.to_string()))
 }
 
@@ -170,23 +163,21 @@ fn failures(table: &Table) -> Vec<bool> {
 
 fn factor_values(table: &Table, factor: &FactorParam) -> Result<Vec<f64>, StageError> {
     let name = &factor.name;
-    match (table.column(name), table.reals(name)) {
-        (Some(column), Some(values)) => {
-            values.into_iter().map(|v| converted(v, &column.unit, &factor.unit, name)).collect()
+    match (table.column(name), factor.fallback) {
+        (Some(column), _) => Ok(column.numbers(&factor.unit)?),
+        (None, Some(fallback)) => Ok(vec![fallback; table.rows()]),
+        (None, None) => {
+            Err(StageError::new(format!("a table of `learn_from` does not say at what `{name}` its runs were"))
+                .hint("name the `material` that they held it at"))
         }
-        (None, _) if factor.fallback.is_some() => Ok(vec![factor.fallback.unwrap_or_default(); table.rows()]),
-        _ => Err(StageError::new(format!("a table of `learn_from` does not say at what `{name}` its runs were"))
-            .hint("name the `material` that they held it at")),
     }
 }
 
 fn response_values(table: &Table, target: &TargetParam) -> Result<Vec<f64>, StageError> {
     let name = &target.response;
-    match (table.column(name), table.reals(name)) {
-        (Some(column), Some(values)) => {
-            values.into_iter().map(|v| converted(v, &column.unit, &target.unit, name)).collect()
-        }
-        _ => Ok(vec![f64::NAN; table.rows()]),
+    match table.column(name) {
+        Some(column) => Ok(column.numbers(&target.unit)?),
+        None => Ok(vec![f64::NAN; table.rows()]),
     }
 }
 

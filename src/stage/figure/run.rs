@@ -3,6 +3,7 @@
 use super::super::StageError;
 use super::Params;
 use super::source::{Rows, Source, Sources};
+use crate::unit::Conversion;
 use figure::chains::{Chains, Link};
 use figure::cracks::{Crack, Cracks, Moment};
 use figure::curve::{Curve, StressStrain};
@@ -17,7 +18,7 @@ pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<Stress
     let mut curves = Vec::new();
     for (k, source) in sources.of.iter().enumerate() {
         let rows = source.rows(&["curve"])?;
-        let axial = rows.reals("axial_strain")?;
+        let axial = rows.reals("axial_strain", "")?;
         let cracks = match source.rows(&["cracks"]) {
             Ok(cracks) => counts(cracks, &axial)?,
             Err(_) => Vec::new(),
@@ -26,9 +27,9 @@ pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<Stress
         curves.push(Curve {
             name: params.series.get(k).cloned().unwrap_or_default(),
             lateral: if several { Vec::new() } else { lateral(rows) },
-            stress: rows.reals("stress")?.into_iter().map(|s| s / 1e6).collect(),
+            stress: rows.reals("stress", "MPa")?,
             cracks,
-            modulus: if several { None } else { response(*source, "E").map(|e| e / 1e9) },
+            modulus: if several { None } else { response(*source, "E", "GPa") },
             axial,
         });
     }
@@ -37,15 +38,17 @@ pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<Stress
 
 /// Lateral strain, negative when the specimen widens; empty when there is none.
 fn lateral(rows: Rows<'_>) -> Vec<f64> {
-    rows.reals("lateral_strain").map(|strain| strain.into_iter().map(|e| -e).collect()).unwrap_or_default()
+    rows.reals("lateral_strain", "").map(|strain| strain.into_iter().map(|e| -e).collect()).unwrap_or_default()
 }
 
-/// A response of a run in SI units.
-fn response(source: Source, name: &str) -> Option<f64> {
+/// A response of a run.
+fn response(source: Source, name: &str, unit: &str) -> Option<f64> {
     let rows = source.rows(&["responses"]).ok()?;
     let names = rows.texts("response").ok()?;
     let at = names.iter().position(|n| n == name)?;
-    rows.reals("value").ok()?.get(at).copied().filter(|v| v.is_finite())
+    let own = rows.texts("unit").ok()?;
+    let value = Conversion::between(&own[at], unit).ok()?.of(rows.reals("value", "").ok()?[at]);
+    Some(value).filter(|value| value.is_finite())
 }
 
 /// Words of the modes of a table of cracks, in the order in which they appear; tension first.
@@ -61,7 +64,7 @@ fn modes(cracks: Rows<'_>) -> Result<(Vec<String>, Vec<usize>), StageError> {
 /// Number of cracks of each mode up to each axial strain of the curve.
 fn counts(cracks: Rows<'_>, axial: &[f64]) -> Result<Vec<(String, Vec<f64>)>, StageError> {
     let (names, mode) = modes(cracks)?;
-    let strain = cracks.reals("axial_strain")?;
+    let strain = cracks.reals("axial_strain", "")?;
     let of_mode = |(k, name): (usize, String)| {
         let mut at: Vec<f64> = strain.iter().zip(&mode).filter(|(_, m)| **m == k).map(|(s, _)| *s).collect();
         at.sort_by(f64::total_cmp);
@@ -136,16 +139,11 @@ type CrackList = (Vec<String>, Vec<(f64, Crack)>);
 
 fn crack_list(cracks: Rows<'_>) -> Result<CrackList, StageError> {
     let (names, mode) = modes(cracks)?;
-    let read = |name: &str| cracks.reals(name);
-    let (strain, x, y, size) = (read("axial_strain")?, read("x")?, read("y")?, read("size")?);
-    let (nx, ny) = (read("normal_x")?, read("normal_y")?);
+    let strain = cracks.reals("axial_strain", "")?;
+    let (x, y, size) = (cracks.reals("x", "mm")?, cracks.reals("y", "mm")?, cracks.reals("size", "mm")?);
+    let (nx, ny) = (cracks.reals("normal_x", "")?, cracks.reals("normal_y", "")?);
     // The line of a crack is across its normal.
-    let crack = |i: usize| Crack {
-        at: [x[i] * MM, y[i] * MM],
-        angle: atan2(nx[i], -ny[i]),
-        length: size[i] * MM,
-        mode: mode[i],
-    };
+    let crack = |i: usize| Crack { at: [x[i], y[i]], angle: atan2(nx[i], -ny[i]), length: size[i], mode: mode[i] };
     Ok((names, (0..x.len()).map(|i| (strain[i], crack(i))).collect()))
 }
 
@@ -154,7 +152,7 @@ pub(super) fn cracks(sources: &Sources) -> Result<Cracks, StageError> {
     let source = sources.first()?;
     let (names, list) = crack_list(source.rows(&["cracks"])?)?;
     let curve = source.rows(&["curve"])?;
-    let (axial, stress) = (curve.reals("axial_strain")?, curve.reals("stress")?);
+    let (axial, stress) = (curve.reals("axial_strain", "")?, curve.reals("stress", "MPa")?);
     let pairs = stress.iter().copied().enumerate().filter(|(_, s)| s.is_finite());
     let peak = pairs.max_by(|a, b| a.1.total_cmp(&b.1)).ok_or_else(|| StageError::new("the curve has no stress"))?;
     let reached = |share: f64| {
@@ -184,7 +182,7 @@ pub(super) fn rose(sources: &Sources) -> Result<Rose, StageError> {
 
 /// The state of the largest stress among those that were kept.
 fn state_at_peak(source: Source) -> Result<(usize, Vec<[f64; 2]>), StageError> {
-    let stress = source.rows(&["snapshots/states"])?.reals("stress")?;
+    let stress = source.rows(&["snapshots/states"])?.reals("stress", "MPa")?;
     let peak = (0..stress.len()).max_by(|&a, &b| stress[a].total_cmp(&stress[b]).then(b.cmp(&a)));
     let peak = peak.ok_or_else(|| StageError::new("the run kept no state"))?;
     let centres = source.states().ok_or_else(|| source.lacks("snapshots/centres"))?;
@@ -196,10 +194,10 @@ pub(super) fn chains(sources: &Sources) -> Result<Chains, StageError> {
     let source = sources.first()?;
     let rows = source.rows(&["forces"]).map_err(|e| e.hint("write `forces = true` in the stage of the run"))?;
     let (peak, centres) = state_at_peak(source)?;
-    let read = |name: &str| rows.reals(name);
-    let (state, first, second, force) = (read("state")?, read("first")?, read("second")?, read("normal_force")?);
+    let (state, force) = (rows.reals("state", "")?, rows.reals("normal_force", "kN")?);
+    let (first, second) = (rows.reals("first", "")?, rows.reals("second", "")?);
     let place = |disc: f64| centres.get(disc as usize).map(|c| c.map(|v| v * MM));
-    let link = |i: usize| Some(Link { from: place(first[i])?, to: place(second[i])?, force: force[i] / 1e3 });
+    let link = |i: usize| Some(Link { from: place(first[i])?, to: place(second[i])?, force: force[i] });
     let links: Option<Vec<Link>> = (0..force.len()).filter(|&i| state[i] == peak as f64).map(link).collect();
     let links = links.ok_or_else(|| StageError::new("the forces name discs that the run does not have"))?;
     let points: Vec<[f64; 2]> = links.iter().flat_map(|l| [l.from, l.to]).collect();

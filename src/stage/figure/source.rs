@@ -129,8 +129,9 @@ impl Rows<'_> {
         self.table.rows()
     }
 
-    pub(super) fn reals(self, column: &str) -> Result<Vec<f64>, StageError> {
-        self.table.reals(column).ok_or_else(|| self.lacks(column, "numbers"))
+    /// The numbers of a column in the unit in which they are drawn.
+    pub(super) fn reals(self, column: &str, unit: &str) -> Result<Vec<f64>, StageError> {
+        Ok(self.table.numbers(column, unit)?)
     }
 
     pub(super) fn texts(self, column: &str) -> Result<Vec<String>, StageError> {

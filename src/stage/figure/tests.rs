@@ -316,11 +316,11 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
 fn the_numbers_are_those_of_the_inputs() {
     let ranges = made("show = 'range'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
     let data = ranges.table("data").unwrap();
-    assert_eq!(data.reals("value").unwrap(), [10.0, 2.0]);
-    assert_eq!(data.reals("empty column").unwrap(), [0.5, 0.5]);
+    assert_eq!(data.shown("value").unwrap().0, [10.0, 2.0]);
+    assert_eq!(data.shown("empty column").unwrap().0, [0.5, 0.5]);
 
     let means = made("show = 'main-effects'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
-    assert_eq!(means.table("data").unwrap().reals("mean").unwrap(), [30.0, 40.0, 34.0, 35.0, 36.0, 34.5, 35.0, 34.6]);
+    assert_eq!(means.table("data").unwrap().shown("mean").unwrap().0, [30.0, 40.0, 34.0, 35.0, 36.0, 34.5, 35.0, 34.6]);
 
     for (show, sizes, quantiles) in
         [("normal", [9.0, -3.0, 0.4], [0.97, -0.97, 0.0]), ("half-normal", [9.0, 3.0, 0.4], [1.38, 0.67, 0.21])]
@@ -329,7 +329,7 @@ fn the_numbers_are_those_of_the_inputs() {
         let data = plot.table("data").unwrap();
         let name = data.columns[1].name.clone();
         assert_eq!(
-            (data.reals(&name).unwrap(), data.reals("quantile").unwrap()),
+            (data.shown(&name).unwrap().0, data.shown("quantile").unwrap().0),
             (sizes.to_vec(), quantiles.to_vec()),
             "{show}"
         );
@@ -338,21 +338,21 @@ fn the_numbers_are_those_of_the_inputs() {
     let pairs = "show = 'agreement'\nof = 'a'\nresponse = 'UCS'\ncompare = 'b'";
     let agreement = made(pairs, &[results(1.0)], &[results(0.0)]).unwrap();
     let data = agreement.table("data").unwrap();
-    let (x, y) = (data.reals("published").unwrap(), data.reals("computed").unwrap());
+    let (x, y) = (data.shown("published").unwrap().0, data.shown("computed").unwrap().0);
     assert_eq!(x.len(), 6);
     assert!(x.iter().zip(&y).all(|(x, y)| y - x == 1.0));
 
     // Of the forces, those of the state with the largest stress: the odd ones, where its discs are.
     let chains = made("show = 'force-chains'\nof = 'a'", &[run()], &[]).unwrap();
     let data = chains.table("data").unwrap();
-    assert_eq!(data.reals("normal_force").unwrap()[..3], [-0.3, -0.1, 0.1]);
-    let first = ["x1", "x2", "y1"].map(|name| data.reals(name).unwrap()[0].round());
+    assert_eq!(data.shown("normal_force").unwrap().0[..3], [-0.3, -0.1, 0.1]);
+    let first = ["x1", "x2", "y1"].map(|name| data.shown(name).unwrap().0[0].round());
     assert_eq!(first, [-14.0, -13.0, 10.0]);
 
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['mu', 'Ec']";
     let field = made(contour, &[surfaces()], &[]).unwrap();
     let data = field.table("data").unwrap();
-    let z = data.reals("UCS").unwrap();
+    let z = data.shown("UCS").unwrap().0;
     // At mu = 0.4, Ec = 8: 1 + 16 − 1.2 + 1.6.
     assert!((z[0] - 17.4).abs() < 1e-12, "{}", z[0]);
 }

@@ -53,7 +53,7 @@ fn read(group: &Group) -> Result<Model, StageError> {
     let wrong = |e: crate::artifact::Wanted| unreadable(&e.to_string());
     let factors: Table = take(group, "model", "factors").map_err(wrong)?;
     let listed: Table = take(group, "model", "terms").map_err(wrong)?;
-    let column = |table: &Table, name: &str| table.reals(name).ok_or_else(|| unreadable(&format!("no reals `{name}`")));
+    let column = |table: &Table, name: &str| table.numbers(name, "").map_err(|e| unreadable(&e.to_string()));
     let [centre, half, low, high] = ["centre", "half", "low", "high"].map(|name| column(&factors, name));
     let (centre, half, low, high) = (centre?, half?, low?, high?);
     let names = texts(&factors, "factor")?;

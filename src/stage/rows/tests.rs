@@ -71,6 +71,6 @@ fn gathering_converts_units_and_keeps_failures() {
         stop: &stop,
     };
     let results = gathered(&job).unwrap();
-    let strengths = results.table("runs").unwrap().reals("UCS").unwrap();
+    let strengths = results.table("runs").unwrap().shown("UCS").unwrap().0;
     assert!((strengths[0] - 30.0).abs() < 1e-12 && strengths[1].is_nan());
 }
