@@ -9,6 +9,7 @@ use super::Exit;
 use super::common::{Campaign, system};
 use super::output::replace;
 use super::show::{csv_text, object, parts};
+use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash, Node};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
@@ -110,7 +111,7 @@ impl Export {
                 }
                 particles::files(name, &specimen, None)
             }
-            Form::Vtu | Form::Particles if artifact.is(ArtifactKind::RUN) && artifact.table("cracks").is_some() => {
+            Form::Vtu | Form::Particles if Run::from_artifact(artifact).is_ok_and(|run| run.cracks.is_some()) => {
                 let made = Made::of(store, &chosen.object)?;
                 if self.to == Form::Vtu {
                     return paraview::run(name, artifact, &made.specimen);

@@ -7,7 +7,8 @@
 
 use super::rows::{self, GATHER};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit::Unit;
 use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator, literal_matcher_from_pattern};
 use math::elementary;
@@ -219,10 +220,7 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     }
     let undefined = responses.iter().find(|(_, value, _)| !value.is_finite());
     let failure = undefined.map_or_else(String::new, |(name, value, _)| format!("`{name}` is {value}"));
-    let root = Group::new()
-        .with("failure", Node::Text(failure))
-        .with("responses", Node::Table(rows::response_table(&responses)));
-    Ok(Artifact::of(ArtifactKind::RUN, root))
+    Ok(Run::plain(&failure, Responses::of(&responses)).to_artifact())
 }
 
 /// The fault of a formula that names what a run does not have.

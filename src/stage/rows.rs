@@ -9,6 +9,7 @@ pub use points::Rows;
 
 use super::ledger::{Briefs, KeptRuns};
 use super::{Complaint, Context, Failure, Input, Job, Known, Point, Source, Stage, StageError, Step, Task, Work};
+use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::unit::{Conversion, Unit};
 use serde::{Deserialize, Serialize};
@@ -176,7 +177,7 @@ fn kept_runs(kept: &Artifact) -> Result<(&[i64], Briefs), StageError> {
 }
 
 /// What every run gave, in the order of the rows, whether it is at hand or kept.
-fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result<Vec<Responses<'a>>, StageError> {
+fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result<Vec<Outcome<'a>>, StageError> {
     let old = kept.into_iter().flat_map(|(places, briefs)| {
         let brief = |run: usize| briefs.get(run).ok_or_else(|| StageError::new("a kept run has no brief"));
         places.iter().enumerate().map(move |(run, place)| Ok((*place as usize, brief(run)?.responses())))
@@ -189,7 +190,7 @@ fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result
         match old.next_if(|(kept, _)| *kept == place) {
             Some((_, responses)) => all.push(responses),
             None => match new.next() {
-                Some((_, run)) => all.push(responses(run)?),
+                Some((_, run)) => all.push(Run::outcome(run)?),
                 None => break,
             },
         }
@@ -197,27 +198,11 @@ fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result
     Ok(all)
 }
 
-pub(super) type Responses<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
-
-/// Failure text and (name, value, unit) of every response of a run.
-pub(super) fn responses(run: &Artifact) -> Result<Responses<'_>, StageError> {
-    let wrong = |what: &str| StageError::new(format!("a run holds no {what}"));
-    let failure = match run.root.get("failure") {
-        Some(Node::Text(text)) => text.as_str(),
-        Some(_) | None => "",
-    };
-    let table = run.table("responses").ok_or_else(|| wrong("table `responses`"))?;
-    let values = table.numbers("value", "")?;
-    let (names, units) = (table.texts("response")?, table.texts("unit")?);
-    let found = names.iter().zip(values).zip(units).map(|((name, value), unit)| (name.as_str(), value, unit.as_str()));
-    Ok((failure, found.collect()))
-}
-
 fn response_column(
     table: Table,
     name: &str,
     shown: Option<&String>,
-    results: &[Responses<'_>],
+    results: &[Outcome<'_>],
 ) -> Result<Table, StageError> {
     let mut last = None;
     let own = results.iter().flat_map(|(_, found)| found).find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
@@ -245,15 +230,6 @@ fn conversion(name: &str, from: &str, unit: &str) -> Result<Conversion, StageErr
         StageError::new(format!("response `{name}` comes in `{from}` and cannot be shown in `{unit}`: {e}"))
             .hint("mend the unit of [response] in the workflow")
     })
-}
-
-/// A `run` artifact's table of responses, in SI units.
-pub fn response_table(responses: &[(&str, f64, &str)]) -> Table {
-    let texts = |pick: fn(&(&str, f64, &str)) -> String| responses.iter().map(pick).collect();
-    Table { about: "what the run gave".to_owned(), columns: Vec::new() }
-        .texts_column("response", "name", texts(|(name, _, _)| (*name).to_owned()))
-        .reals_column("value", "", "in the unit beside it", responses.iter().map(|(_, value, _)| *value).collect())
-        .texts_column("unit", "unit of the value", texts(|(_, _, unit)| (*unit).to_owned()))
 }
 
 #[cfg(test)]

@@ -1,13 +1,14 @@
 //! Responses for the optimiser: from surfaces, from single runs, from tables of runs.
 
 use super::params::{FactorParam, TargetParam};
+use crate::artifact::run::Run;
 use crate::artifact::{Artifact, Node, Table, Values};
 use crate::stage::StageError;
 use crate::stage::fitted::models;
 use crate::unit::Conversion;
 use optim::Interval;
 use optim::misfit::ordinates;
-use optim::search::Run;
+use optim::search::Run as Trial;
 use optim::surrogate::Trend;
 use stats::model::Model;
 use std::sync::Arc;
@@ -98,7 +99,7 @@ fn converted(value: f64, from: &str, to: &str, what: &str) -> Result<f64, StageE
 
 /// The responses of one run in the order of the targets, or why it has none.
 pub(super) fn run(artifact: &Artifact, targets: &[TargetParam]) -> Result<Result<Vec<f64>, String>, StageError> {
-    let (failure, found) = crate::stage::rows::responses(artifact)?;
+    let (failure, found) = Run::outcome(artifact)?;
     if !failure.is_empty() {
         return Ok(Err(failure.to_owned()));
     }
@@ -128,9 +129,10 @@ pub(super) fn run(artifact: &Artifact, targets: &[TargetParam]) -> Result<Result
 /// Stress of a run's curve at a strain, in Pa; the inner error when the curve ends before.
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
-    let curve = artifact.table("curve").ok_or_else(missing)?;
-    let (strains, stresses) = (curve.numbers("axial_strain", "")?, curve.numbers("stress", "Pa")?);
-    Ok(ordinates(&strains, &stresses, &[strain]).map(|values| values[0]).map_err(|fault| fault.to_string()))
+    let curve = Run::from_artifact(artifact)?.curve.ok_or_else(missing)?;
+    Ok(ordinates(&curve.axial_strain, &curve.stress, &[strain])
+        .map(|values| values[0])
+        .map_err(|fault| fault.to_string()))
 }
 
 /// The runs of a table, in the order of factors and targets; what a run lacks is NaN.
@@ -138,7 +140,7 @@ pub(super) fn runs(
     artifact: &Artifact,
     factors: &[FactorParam],
     targets: &[TargetParam],
-) -> Result<Vec<Run>, StageError> {
+) -> Result<Vec<Trial>, StageError> {
     let table =
         artifact.table("runs").ok_or_else(|| StageError::new("a stage of `learn_from` holds no table `runs`"))?;
     let points = factors.iter().map(|f| factor_values(table, f)).collect::<Result<Vec<_>, _>>()?;
@@ -149,7 +151,7 @@ pub(super) fn runs(
         let some = values.iter().any(|v| v.is_finite());
         let point = points.iter().map(|column| column[i]).collect();
         // A run that lacks every response without having failed says nothing.
-        (some || failed[i]).then_some(Run { point, responses: some.then_some(values) })
+        (some || failed[i]).then_some(Trial { point, responses: some.then_some(values) })
     };
     Ok((0..table.rows()).filter_map(row).collect())
 }

@@ -1,8 +1,8 @@
 //! Calibration through the stage, with a simulator and a library that live in memory.
 
 use super::*;
-use crate::artifact::{Artifact, ArtifactKind, ContentHash, Group, Node};
-use crate::stage::rows::response_table;
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Artifact, ContentHash};
 use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
 use math::random::Stream;
 use std::cell::RefCell;
@@ -35,10 +35,7 @@ impl Laboratory {
             Err(failure) if failure == "crash" => return Outcome::Failed(failure),
             Err(failure) => (Vec::new(), failure),
         };
-        let root = Group::new()
-            .with("failure", Node::Text(failure))
-            .with("responses", Node::Table(response_table(&responses)));
-        Outcome::Done(self.put(Artifact::of(ArtifactKind::RUN, root)))
+        Outcome::Done(self.put(Run::plain(&failure, Responses::of(&responses)).to_artifact()))
     }
 
     fn simulations(&self) -> usize {

@@ -18,7 +18,8 @@ mod read;
 
 use super::rows::{self, GATHER};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit;
 use read::Read;
 use schemars::JsonSchema;
@@ -181,17 +182,10 @@ fn execute(job: &Job) -> Result<Artifact, Failure> {
     };
     let responses: Vec<(&String, f64, &str)> = match (outcome, params.on_failure) {
         (Ok(responses), _) => responses,
-        (Err(reason), OnFailure::Record) => return Ok(artifact(&[], &reason)),
+        (Err(reason), OnFailure::Record) => return Ok(Run::plain(&reason, Responses::default()).to_artifact()),
         (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
     };
     let responses: Vec<(&str, f64, &str)> =
         responses.iter().map(|(name, v, unit)| (name.as_str(), *v, *unit)).collect();
-    Ok(artifact(&responses, ""))
-}
-
-fn artifact(responses: &[(&str, f64, &str)], failure: &str) -> Artifact {
-    let root = Group::new()
-        .with("failure", Node::Text(failure.to_owned()))
-        .with("responses", Node::Table(rows::response_table(responses)));
-    Artifact::of(ArtifactKind::RUN, root)
+    Ok(Run::plain("", Responses::of(&responses)).to_artifact())
 }

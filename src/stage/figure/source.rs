@@ -56,17 +56,6 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Centres of the discs in the states of a run, state after state.
-    pub(super) fn states(self) -> Option<Vec<[f64; 2]>> {
-        let Node::Group(group) = self.0.root.get("snapshots")? else { return None };
-        match group.get("centres") {
-            Some(Node::Array(Array { values: Values::Reals(values), shape, .. })) if shape.last() == Some(&2) => {
-                Some(values.as_chunks::<2>().0.to_vec())
-            }
-            _ => None,
-        }
-    }
-
     /// A plain array of numbers.
     pub(super) fn numbers(self, name: &str) -> Option<Vec<f64>> {
         match self.0.root.get(name) {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::artifact::run::Responses;
 use crate::stage::Factor;
 
 fn context() -> Context {
@@ -47,12 +48,8 @@ fn a_point_sets_parameters_in_si_units() {
 
 #[test]
 fn gathering_converts_units_and_keeps_failures() {
-    let run = |ucs: f64, failure: &str| {
-        let group = Group::new()
-            .with("failure", Node::Text(failure.to_owned()))
-            .with("responses", Node::Table(response_table(&[("UCS", ucs, "Pa")])));
-        Arc::new(Artifact::of(ArtifactKind::RUN, group))
-    };
+    let run =
+        |ucs: f64, failure: &str| Arc::new(Run::plain(failure, Responses::of(&[("UCS", ucs, "Pa")])).to_artifact());
     let inputs = vec![
         ("design".to_owned(), Arc::new(design(&[10.0, 20.0]))),
         ("run".to_owned(), run(3e7, "")),

@@ -87,7 +87,9 @@ impl Kind for Simulate {
     const ABOUT: &'static str = "a loading test on a specimen, once or per design row";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 1, run: simulate }, GATHER];
+    /// 2: the same numbers in another layout: states and their centres stand beside the curve, positions and normals are
+    /// `position_x`, `normal_x`, ….
+    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 2, run: simulate }, GATHER];
 }
 
 /// Samples between two reports of progress.
