@@ -38,7 +38,7 @@ pub enum Unread {
     },
     /// A unit of another kind of quantity, or one that is none.
     #[error(
-        "column `{name}` is in `{found}` and cannot be read in `{wanted}`: {why}; give the column's unit in its head, as in `Ec [GPa]`"
+        "column `{name}` is in {found} and cannot be read {wanted}: {why}; give the column's unit in its head, as in `Ec [GPa]`"
     )]
     Unit {
         /// The column.
@@ -124,8 +124,8 @@ impl Column {
         };
         let conversion = Conversion::between(&self.unit, unit).map_err(|why| Unread::Unit {
             name: self.name.clone(),
-            found: self.unit.clone(),
-            wanted: unit.to_owned(),
+            found: if self.unit.is_empty() { "no unit".to_owned() } else { format!("`{}`", self.unit) },
+            wanted: if unit.is_empty() { "as a pure number".to_owned() } else { format!("in `{unit}`") },
             why,
         })?;
         Ok(conversion.of_all(values))
@@ -154,7 +154,9 @@ mod tests {
         assert_eq!(message(table.numbers("x", "")), "the table has no column `x`; it has Ec, n, mode");
         assert!(message(table.numbers("mode", "")).starts_with("row 1: `mode` is `shear`, which is not a finite"));
         assert!(message(table.numbers("Ec", "mm")).starts_with("column `Ec` is in `GPa` and cannot be read in `mm`"));
-        assert!(message(table.numbers("Ec", "")).starts_with("column `Ec` is in `GPa` and cannot be read in ``"));
+        assert!(
+            message(table.numbers("Ec", "")).starts_with("column `Ec` is in `GPa` and cannot be read as a pure number")
+        );
         assert!(table.texts("n").is_err() && table.ints("mode").is_err());
     }
 }

@@ -15,6 +15,8 @@ mod commit;
 mod ledger;
 mod library;
 mod memo;
+#[cfg(test)]
+mod pins;
 mod record;
 mod stages;
 mod task;

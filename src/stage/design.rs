@@ -128,11 +128,7 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
 /// The columns of a file that are the factors, converted to the factors' units unless they are numbers of levels.
 fn rows(table: &Table, factors: &[Factor], by_level: bool) -> Result<Vec<Vec<f64>>, StageError> {
     let columns = factors.iter().map(|factor| {
-        let name = &factor.name;
-        let known = || table.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
-        let column = table.column(name).ok_or_else(|| {
-            StageError::new(format!("the file has no column `{name}`")).hint(format!("its columns are {}", known()))
-        })?;
+        let column = table.find(&factor.name)?;
         Ok(column.numbers(if by_level { &column.unit } else { &factor.unit })?)
     });
     let columns: Vec<Vec<f64>> = columns.collect::<Result<_, StageError>>()?;

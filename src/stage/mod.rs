@@ -27,7 +27,8 @@
 //!
 //! # A new kind
 //! One file with the config struct (serde, schemars, `deny_unknown_fields`; quantities as [`crate::unit::Quantity`]),
-//! `impl Stage`, `impl Kind` and its work functions, and one line in the list below. `Kind` says what artifacts it can
+//! `impl Stage`, `impl Kind` and its work functions, and one line in the list below (`census.rs` is such a file, for
+//! the tests). `Kind` says what artifacts it can
 //! give and which class it belongs to; an artifact that no other kind gives is declared in the same file
 //! ([`ArtifactKind::new`]). Options added later are skipped when at their default (`skip_serializing_if`), so that they
 //! rerun nothing. Parameters of tasks are plain SI numbers (the domain's own spec types), built from the config in `next`.
@@ -35,6 +36,8 @@
 pub mod agreement;
 pub mod anova;
 pub mod calibrate;
+#[cfg(test)]
+pub mod census;
 mod columns;
 pub mod command;
 mod context;
@@ -253,9 +256,9 @@ pub struct KindEntry {
 /// Makes [`KINDS`] and [`read`] from the list of config types:
 /// `kinds! { data::Data }` becomes a constant with one entry per type, and a function that tries each name in turn.
 macro_rules! kinds {
-    ($($config:ty),* $(,)?) => {
+    ($($(#[$attribute:meta])* $config:ty),* $(,)?) => {
         /// Every kind of stage.
-        pub const KINDS: &[KindEntry] = &[$(KindEntry {
+        pub const KINDS: &[KindEntry] = &[$($(#[$attribute])* KindEntry {
             name: <$config as Kind>::NAME,
             about: <$config as Kind>::ABOUT,
             gives: <$config as Kind>::GIVES,
@@ -266,7 +269,7 @@ macro_rules! kinds {
 
         /// Reads the table of a stage of the named kind; `None` when there is no such kind.
         pub fn read<'de, D: Deserializer<'de>>(kind: &str, table: D) -> Option<Result<Box<dyn Stage>, D::Error>> {
-            $(if kind == <$config as Kind>::NAME {
+            $($(#[$attribute])* if kind == <$config as Kind>::NAME {
                 return Some(<$config as serde::Deserialize>::deserialize(table).map(|stage| Box::new(stage) as _));
             })*
             let _ = table;
@@ -279,6 +282,8 @@ kinds! {
     agreement::Agreement,
     anova::Anova,
     calibrate::Calibrate,
+    #[cfg(test)]
+    census::Census,
     command::Command,
     data::Data,
     design::Design,

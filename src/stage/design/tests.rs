@@ -183,9 +183,9 @@ fn rows_of_a_file_are_converted_to_the_factors_units() {
     let factors = design.factors(&context());
     assert_eq!(rows(&table, &factors, false).unwrap(), [[10.0, 2.5], [20.0, 1.0]]);
     let message = |text: &[u8]| rows(&data::parse(text).unwrap(), &factors, false).unwrap_err().message;
-    assert!(message(b"Ec [mm],kn_ks\n1,2\n").contains("in `mm`, the factor in `GPa`"));
+    assert!(message(b"Ec [mm],kn_ks\n1,2\n").contains("is in `mm` and cannot be read in `GPa`"));
     assert!(message(b"Ec [GPa]\n1\n").contains("no column `kn_ks`"));
-    assert!(message(b"Ec [GPa],kn_ks\n1,x\n").contains("holds texts"));
+    assert!(message(b"Ec [GPa],kn_ks\n1,x\n").contains("row 1: `kn_ks` is `x`, which is not a finite number"));
     let numbers = data::parse(b"Ec,kn_ks\n1,3\n").unwrap();
     assert_eq!(rows(&numbers, &factors, true).unwrap(), [[1.0, 3.0]]);
 }

@@ -206,6 +206,7 @@ fn context() -> Context {
     add("Ec", "mortar.Ec", "E_c", &[10.0, 20.0]);
     add("mu", "mortar.mu", r"\mu", &[0.5, 1.0, 1.5]);
     add("null", "", "", &[1.0, 2.0, 3.0]);
+    context.factors.get_mut("Ec").unwrap().unit = "GPa".into();
     context.responses.insert("UCS".into(), Response { unit: "MPa".into(), symbol: r"\sigma_u".into() });
     context
 }
