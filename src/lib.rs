@@ -5,7 +5,8 @@
 //! below `src/`, so Cargo holds them to it; `tests/layers.rs` holds the modules of this crate to it.
 //!
 //! ```text
-//! cli → report → run → { exec, plan, store }
+//! cli → { report, export }; report → run → { exec, plan, store }
+//! export → stage
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → math
 //! { run, plan, stage, store } → artifact
 //! { plan, stage, artifact } → unit
@@ -14,6 +15,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`cli`] | what a person types and reads; the only place that prints |
+//! | [`export`] | results as files: CSV, pictures, ParaView, lists of particles |
 //! | [`report`] | a campaign as one HTML page |
 //! | [`run`] | the run loop, and the only state that changes during a run |
 //! | [`exec`] | threads that take work; knows neither tasks nor physics |
@@ -51,6 +53,7 @@
 pub mod artifact;
 pub mod cli;
 pub mod exec;
+pub mod export;
 pub mod plan;
 pub mod report;
 pub mod run;

@@ -5,7 +5,7 @@
 //! they were, and the objects in the store. Of a kept run nothing is opened: what is taken from it stands in the memo.
 
 use super::board::{Board, NodeId, TaskState};
-use super::memo;
+use super::files::{Files, unchanged};
 use crate::artifact::Key;
 use crate::plan::Workflow;
 use crate::stage::ledger::{Briefs, Kept, KeptRuns};
@@ -14,9 +14,6 @@ use crate::store::{Memo, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
-
-/// Files that were looked at, with their digests.
-pub(super) type Files = Vec<(String, String)>;
 
 /// The runs that earlier campaigns made.
 pub(super) struct Ledger {
@@ -43,7 +40,7 @@ impl Ledger {
         let Note { files, factors } = serde_json::from_str(&memo.note).ok()?;
         let (words, briefs) = memo.data.split_at_checked(8 * (factors.len() + 1) * memo.objects.len())?;
         let briefs = Briefs::from_bytes(briefs).filter(|briefs| briefs.len() == memo.objects.len())?;
-        if !memo::unchanged(workflow, &files) || !store.has_all(&memo.objects).ok()? {
+        if !unchanged(workflow, &files) || !store.has_all(&memo.objects).ok()? {
             return None;
         }
         let words = words.as_chunks::<8>().0.iter().map(|word| u64::from_le_bytes(*word)).collect();

@@ -12,6 +12,7 @@
 
 mod board;
 mod commit;
+mod files;
 mod ledger;
 mod library;
 mod memo;

@@ -2,7 +2,8 @@
 
 use super::Asked;
 use crate::artifact::{Artifact, Column, Table, Values};
-use crate::cli::show::{csv_text, rows_json, text as shown};
+use crate::cli::show::{rows_json, text as shown};
+use crate::export::csv_text;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::Arc;

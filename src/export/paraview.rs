@@ -19,7 +19,7 @@ use crate::artifact::run::{CrackMode, Run};
 use dem::genesis::specimen::Specimen;
 
 /// The files of a specimen.
-pub(super) fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
+pub fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
     let particles = Grid { on_points: bodies(specimen), ..points(specimen.centres.clone()) };
     let mut files = vec![
         (format!("{name}.particles.vtu"), particles.vtu().into_bytes()),
@@ -32,7 +32,7 @@ pub(super) fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
 }
 
 /// The files of a run on a specimen.
-pub(super) fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec<File>, String> {
+pub fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec<File>, String> {
     let run = Run::from_artifact(run).map_err(|e| e.to_string())?;
     let strains = run.states.as_ref().map(|states| states.axial_strain.clone()).ok_or("the run holds no states")?;
     let centres = states(&run, strains.len(), specimen.radii.len())?;

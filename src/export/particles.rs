@@ -9,15 +9,14 @@
 //! | `NAME.contacts.csv` | contact: its discs, group, gap, and whether it is bonded (of a run) |
 //! | `NAME.columns.csv` | column of these files: unit and meaning |
 
-use super::File;
 use super::bodies::{Contact, GROUPS, contacts};
+use super::{File, csv_text};
 use crate::artifact::Table;
-use crate::cli::show::csv_text;
 use dem::genesis::specimen::Specimen;
 use std::collections::BTreeMap;
 
 /// Parameters of a run by their paths in its task, as they stand there.
-pub(super) type Parameters = BTreeMap<String, String>;
+pub type Parameters = BTreeMap<String, String>;
 
 /// Columns of the groups: name, unit, meaning, the parameter's name in a task.
 const MICRO: [(&str, &str, &str, &str); 5] = [
@@ -38,7 +37,7 @@ const BONDING: [(&str, &str, &str, &str); 5] = [
 ];
 
 /// The files; without parameters, those of the specimen alone.
-pub(super) fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
+pub fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
     let gap = parameters.map(|p| number(p, "bonding", "gap")).transpose()?;
     let margin = gap.unwrap_or(0.0) * specimen.mean_radius();
     let contacts = contacts(specimen, margin);
