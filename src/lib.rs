@@ -5,15 +5,18 @@
 //! below `src/`, so Cargo holds them to it; `tests/layers.rs` holds the modules of this crate to it.
 //!
 //! ```text
-//! cli → report → run → { exec, plan, store }
+//! cli → { report, export }; report → run → { exec, plan, store }
+//! export → stage
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → math
 //! { run, plan, stage, store } → artifact
 //! { plan, stage } → expression → unit
+//! { plan, stage, artifact } → unit
 //! ```
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`cli`] | what a person types and reads; the only place that prints |
+//! | [`export`] | results as files: CSV, pictures, ParaView, lists of particles |
 //! | [`report`] | a campaign as one HTML page |
 //! | [`run`] | the run loop, and the only state that changes during a run |
 //! | [`exec`] | threads that take work; knows neither tasks nor physics |
@@ -51,6 +54,7 @@
 pub mod artifact;
 pub mod cli;
 pub mod exec;
+pub mod export;
 pub mod expression;
 pub mod plan;
 pub mod report;

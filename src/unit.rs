@@ -10,8 +10,11 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
+mod convert;
 mod power;
 mod read;
+
+pub use convert::Conversion;
 
 use power::Power;
 
@@ -114,6 +117,9 @@ pub enum UnitError {
     /// A symbol that is not known.
     #[error("`{0}` is not a unit that flow knows; known are {1}, with the prefixes G M k c m µ n where usual")]
     Unknown(String, String),
+    /// Two units of different kinds of quantity.
+    #[error("the two units measure different quantities")]
+    Differ,
     /// A unit of another kind of quantity.
     #[error("`{found}` is not a unit of {wanted}; write for example \"{example}\"")]
     OtherKind {
@@ -233,6 +239,14 @@ pub fn parse_any(text: &str) -> Result<(f64, Dimension), UnitError> {
     let (value, rest) = finite(text.trim(), "16 GPa")?;
     let unit = Unit::parse(rest)?;
     Ok((si(text, value, unit)?, unit.dimension))
+}
+
+/// Reads a number with or without a unit of any kind, as the number and the text of its unit.
+///
+/// # Errors
+/// What is wrong with the number.
+pub fn split_any(text: &str) -> Result<(f64, &str), UnitError> {
+    finite(text.trim(), "16 GPa")
 }
 
 /// The number of SI units, which must be finite too.

@@ -1,8 +1,9 @@
 //! From the tree to the workflow: every table read, every name resolved.
 
+use super::collect::{Check, MOST_FAULTS, steps};
 use super::fault::{Fault, Source};
 use super::file::{FactorTable, Head, ResponseTable};
-use super::node::{Entry, Node, Sources, Step, Table, Value};
+use super::node::{Node, Sources, Step, Table, Value};
 use super::read::read;
 use super::{Overrides, StageNode, Workflow, overlay, stages, syntax};
 use crate::stage::material::{Material, MaterialTable};
@@ -15,15 +16,6 @@ use std::sync::Arc;
 
 /// Keys of the root.
 const ROOT: [&str; 6] = ["workflow", "factor", "response", "material", "stage", "profile"];
-
-/// So many faults are told; much later ones are not even looked for.
-pub(super) const MOST_FAULTS: usize = 50;
-
-/// Longest name of a stage, factor, response or material.
-const LONGEST_NAME: usize = 64;
-
-/// What such a name is like.
-pub(super) const NAME_PATTERN: &str = "^[A-Za-z][A-Za-z0-9_-]{0,63}$";
 
 /// The checked workflow, or every fault of it in the order of the file.
 pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
@@ -76,16 +68,6 @@ fn outline(stages: &[StageNode]) -> Vec<Outline> {
     stages.iter().map(one).collect()
 }
 
-/// Collects faults.
-pub(super) struct Check<'a> {
-    /// For the places of faults.
-    pub(super) sources: &'a Sources,
-    /// The faults so far.
-    pub(super) faults: Vec<Fault>,
-    /// Section and name of factors, responses and materials that could not be read.
-    pub(super) lost: Vec<(&'static str, String)>,
-}
-
 impl Check<'_> {
     fn root_keys(&mut self, root: &Table) {
         for (name, entry) in root.in_order().into_iter().take(ROOT.len() + MOST_FAULTS + 1) {
@@ -133,30 +115,6 @@ impl Check<'_> {
         found
     }
 
-    /// The table of tables below `key`.
-    pub(super) fn tables<'t>(&mut self, root: &'t mut Table, key: &str) -> Option<&'t mut Table> {
-        let node = &mut root.0.get_mut(key)?.node;
-        let (span, found) = (node.span, node.describe());
-        if let Value::Table(table) = &mut node.value {
-            return Some(table);
-        }
-        let message = format!("wanted tables such as [{key}.NAME], found {found}");
-        self.faults.push(Fault::new(message).at(self.sources.place(span)));
-        None
-    }
-
-    /// Names stand in file names, on the command line and in figures.
-    pub(super) fn name(&mut self, name: &str, entry: &Entry) {
-        let inner = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
-        if begins && name.chars().all(inner) && name.len() <= LONGEST_NAME {
-            return;
-        }
-        let fault = Fault::new(format!("`{}` cannot be a name", super::node::shortened(name)));
-        let hint = format!("a letter first, then letters, digits, `_` and `-`, at most {LONGEST_NAME} in all");
-        self.faults.push(fault.at(self.sources.place(entry.key)).hint(hint));
-    }
-
     fn factor(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Factor> {
         let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| FactorTable::deserialize(reader))?;
         let before = self.faults.len();
@@ -199,17 +157,4 @@ impl Check<'_> {
             self.complain(node, &steps(["unit"]), Fault::new(e.to_string()));
         }
     }
-
-    /// A fault at `path` below `node`, or as near to it as the file goes; once, though two stages may find it.
-    pub(super) fn complain(&mut self, node: &Node, path: &[Step], fault: Fault) {
-        let fault = fault.at(self.sources.place(node.nearest(path).span));
-        if !self.faults.contains(&fault) {
-            self.faults.push(fault);
-        }
-    }
-}
-
-/// A path below a table, as names.
-pub(super) fn steps<'p>(path: impl IntoIterator<Item = &'p str>) -> Vec<Step> {
-    path.into_iter().map(|part| Step::Key(part.to_owned())).collect()
 }

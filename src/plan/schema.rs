@@ -1,7 +1,7 @@
 //! The JSON Schema of a workflow file (draft 2020-12), made from the types that read it, so that editors complete and
 //! check the file. What only the whole file shows (names of stages, kinds of artifacts, cycles) is beyond a schema.
 
-use super::check::NAME_PATTERN;
+use super::collect::NAME_PATTERN;
 use super::file::{FactorTable, Head, ResponseTable};
 use crate::stage::KINDS;
 use crate::stage::material::MaterialTable;

@@ -1,6 +1,6 @@
 //! What factors set: a microparameter of a material, or a number of a stage.
 
-use super::check::{Check, steps};
+use super::collect::{Check, steps};
 use super::fault::Fault;
 use super::node::{Node, Table};
 use crate::stage::material::{self, Microparameter, Value};

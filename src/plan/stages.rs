@@ -1,6 +1,6 @@
 //! The `[stage.NAME]` tables: each is read by its kind, then the ports are connected.
 
-use super::check::{Check, MOST_FAULTS, steps};
+use super::collect::{Check, MOST_FAULTS, steps};
 use super::fault::Fault;
 use super::node::{Entry, Node, Step, Table, Value};
 use super::read::read;

@@ -7,8 +7,7 @@
 //! keys give the same answer, later.
 
 use super::board::{Board, NodeId, TaskCount};
-use super::ledger::Files;
-use super::library::path_of;
+use super::files::{Files, unchanged};
 use crate::artifact::{ContentHash, Key};
 use crate::plan::Workflow;
 use crate::stage::Context;
@@ -102,14 +101,6 @@ pub(super) fn recall(workflow: &Workflow, store: &Store, key: &Key) -> Option<Kn
         return None;
     }
     Some(Known { content: ContentHash::from_hex(&note.content)?, objects: memo.objects })
-}
-
-/// Whether all these files are as they were.
-pub(super) fn unchanged(workflow: &Workflow, files: &Files) -> bool {
-    files.iter().all(|(path, digest)| {
-        let bytes = std::fs::read(path_of(workflow, path)).ok();
-        bytes.is_some_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
-    })
 }
 
 /// The tasks that the memo of a stage rests on: design row and key of each. For the reasons of a rerun.

@@ -1,7 +1,8 @@
 //! Where each stage of the workflow stands.
 
 use super::board::{Board, ByKey, NodeId, TaskCount, TaskState};
-use super::ledger::{Files, Ledger};
+use super::files::Files;
+use super::ledger::Ledger;
 use super::library::{Notes, Shelf};
 use super::memo::{self, Base};
 use super::task::Lost;

@@ -9,17 +9,18 @@ use super::rows::{self, GATHER};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
 };
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::expression::{Expression, Measure};
 use crate::unit::Unit;
 use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `formula` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formula {
     /// The design whose rows are run; once, at the material, when not given.
@@ -94,10 +95,6 @@ impl Stage for Formula {
         Sketch { varies: true, ..Sketch::default() }
     }
 
-    fn settings(&self) -> Value {
-        json!({ "design": self.design, "material": self.material, "responses": self.responses })
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         rows::fan_out(self, known)
     }
@@ -162,10 +159,7 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     }
     let undefined = responses.iter().find(|(_, value, _)| !value.is_finite());
     let failure = undefined.map_or_else(String::new, |(name, value, _)| format!("`{name}` is {value}"));
-    let root = Group::new()
-        .with("failure", Node::Text(failure))
-        .with("responses", Node::Table(rows::response_table(&responses)));
-    Ok(Artifact::of(ArtifactKind::RUN, root))
+    Ok(Run::plain(&failure, Responses::of(&responses)).to_artifact())
 }
 
 /// The fault of a formula that names what a run does not have.

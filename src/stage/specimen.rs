@@ -7,7 +7,7 @@ use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
 };
 use crate::artifact::specimen::Specimen as Stored;
-use crate::artifact::{Artifact, ArtifactKind, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::unit::{Density, Length};
 use dem::genesis::clump::{Clump, ClumpMass};
 use dem::genesis::gradation::{Gradation, GradationError};
@@ -19,10 +19,10 @@ use dem::genesis::specimen::{Aggregate, Quality, Recipe, Specimen as Made, Speci
 use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Settings of a `specimen` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Specimen {
     /// Width of a rectangle, across the axis of loading.
@@ -50,7 +50,7 @@ pub struct Specimen {
 }
 
 /// Settings of the aggregate.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AggregateConfig {
     /// Group of the aggregate, as the material names it.
@@ -285,10 +285,6 @@ impl Stage for Specimen {
         }
     }
 
-    fn settings(&self) -> Value {
-        self.recipe().map_or(Value::Null, |recipe| json!(recipe))
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let faults = |faults: Vec<Complaint>| {
             StageError::new(faults.iter().map(|fault| fault.message.as_str()).collect::<Vec<_>>().join("; "))
@@ -407,12 +403,10 @@ pub fn load(artifact: &Artifact) -> Result<Made, StageError> {
         }
         polygons[index].vertices.push(vertex);
     }
-    let column = |name: &str| stored.clumps.reals(name).ok_or_else(|| odd("clumps"));
-    let (mass, inertia, x, y) = (column("mass")?, column("inertia")?, column("x")?, column("y")?);
-    let polygon_of = match stored.clumps.column("polygon").map(|column| &column.values) {
-        Some(Values::Ints(polygons)) => polygons.clone(),
-        _ => return Err(odd("clumps")),
-    };
+    let clumps = &stored.clumps;
+    let (mass, inertia) = (clumps.numbers("mass", "kg/m")?, clumps.numbers("inertia", "kg*m")?);
+    let (x, y) = (clumps.numbers("x", "m")?, clumps.numbers("y", "m")?);
+    let polygon_of = clumps.ints("polygon")?;
     let mut clumps: Vec<Clump> = Vec::with_capacity(polygon_of.len());
     for (k, &polygon) in polygon_of.iter().enumerate() {
         let pebbles = (0..stored.clump_of.len()).filter(|&i| stored.clump_of[i] == k as i64).collect();

@@ -20,16 +20,17 @@ use super::rows::{self, GATHER};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
 };
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit;
 use read::Read;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `command` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Command {
     /// Program and arguments, such as `["python3", "engine.py", "input.json"]`; with `shell` one text for `sh -c`.
@@ -138,14 +139,6 @@ impl Stage for Command {
         Sketch { varies: true, ..Sketch::default() }
     }
 
-    fn settings(&self) -> Value {
-        json!({
-            "run": self.run, "shell": self.shell, "design": self.design, "material": self.material,
-            "files": self.files, "templates": self.templates, "environment": self.environment,
-            "time_limit": self.time_limit, "on_failure": self.on_failure, "read": self.read,
-        })
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         rows::fan_out(self, known)
     }
@@ -195,17 +188,10 @@ fn execute(job: &Job) -> Result<Artifact, Failure> {
     };
     let responses: Vec<(&String, f64, &str)> = match (outcome, params.on_failure) {
         (Ok(responses), _) => responses,
-        (Err(reason), OnFailure::Record) => return Ok(artifact(&[], &reason)),
+        (Err(reason), OnFailure::Record) => return Ok(Run::plain(&reason, Responses::default()).to_artifact()),
         (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
     };
     let responses: Vec<(&str, f64, &str)> =
         responses.iter().map(|(name, v, unit)| (name.as_str(), *v, *unit)).collect();
-    Ok(artifact(&responses, ""))
-}
-
-fn artifact(responses: &[(&str, f64, &str)], failure: &str) -> Artifact {
-    let root = Group::new()
-        .with("failure", Node::Text(failure.to_owned()))
-        .with("responses", Node::Table(rows::response_table(responses)));
-    Artifact::of(ArtifactKind::RUN, root)
+    Ok(Run::plain("", Responses::of(&responses)).to_artifact())
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::artifact::run::Responses;
 use crate::stage::Factor;
 use crate::stage::material::MaterialTable;
 
@@ -50,12 +51,8 @@ fn a_point_sets_parameters_in_si_units() {
 
 #[test]
 fn gathering_converts_units_and_keeps_failures() {
-    let run = |ucs: f64, failure: &str| {
-        let group = Group::new()
-            .with("failure", Node::Text(failure.to_owned()))
-            .with("responses", Node::Table(response_table(&[("UCS", ucs, "Pa")])));
-        Arc::new(Artifact::of(ArtifactKind::RUN, group))
-    };
+    let run =
+        |ucs: f64, failure: &str| Arc::new(Run::plain(failure, Responses::of(&[("UCS", ucs, "Pa")])).to_artifact());
     let inputs = vec![
         ("design".to_owned(), Arc::new(design(&[10.0, 20.0]))),
         ("run".to_owned(), run(3e7, "")),
@@ -74,6 +71,6 @@ fn gathering_converts_units_and_keeps_failures() {
         stop: &stop,
     };
     let results = gathered(&job).unwrap();
-    let strengths = results.table("runs").unwrap().reals("UCS").unwrap();
+    let strengths = results.table("runs").unwrap().shown("UCS").unwrap().0;
     assert!((strengths[0] - 30.0).abs() < 1e-12 && strengths[1].is_nan());
 }

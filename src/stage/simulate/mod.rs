@@ -27,7 +27,7 @@ use config::Params;
 use dem::loading::curve::Sample;
 use dem::loading::uniaxial;
 use math::random::Stream;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::sync::Arc;
 
 impl Stage for Simulate {
@@ -57,13 +57,6 @@ impl Stage for Simulate {
 
     fn sketch(&self) -> Sketch {
         Sketch { varies: true, ..Sketch::default() }
-    }
-
-    fn settings(&self) -> Value {
-        json!({
-            "specimen": self.specimen, "design": self.design, "material": self.material,
-            "test": self.spec(), "bonding": self.bond.bonding(), "packing": self.packing,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -102,7 +95,9 @@ impl Kind for Simulate {
     const ABOUT: &'static str = "a loading test on a specimen, once or per design row";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 1, run: simulate }, GATHER];
+    /// 2: the same numbers in another layout: states and their centres stand beside the curve, positions and normals are
+    /// `position_x`, `normal_x`, ….
+    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 2, run: simulate }, GATHER];
 }
 
 /// Samples between two reports of progress.

@@ -163,13 +163,13 @@ impl Table {
             factor.map_or_else(own, |factor| factor.unit.clone())
         };
         let units: Vec<String> = paths.iter().map(|path| unit_of(path)).collect();
-        let scales = units.iter().map(|unit| Unit::parse(unit).map(|unit| unit.factor));
-        let scales = scales.collect::<Result<Vec<f64>, _>>().map_err(|e| StageError::new(e.to_string()))?;
+        let shown = units.iter().map(|unit| Unit::parse(unit));
+        let shown = shown.collect::<Result<Vec<Unit>, _>>().map_err(|e| StageError::new(e.to_string()))?;
         let list = Given(Vec::new()).texts("parameter", paths.iter().map(|path| (*path).clone()).collect());
         let list = list.texts("unit", units);
         Ok(materials.iter().fold(list, |list, (name, material)| {
-            let value = |(path, scale): (&&String, &f64)| material.get(*path).map(|p| p.value / scale);
-            list.reals(name, "", paths.iter().zip(&scales).map(value).collect())
+            let value = |(path, unit): (&&String, &Unit)| material.get(*path).map(|p| unit.of_si(p.value));
+            list.reals(name, "", paths.iter().zip(&shown).map(value).collect())
         }))
     }
 
@@ -182,7 +182,7 @@ impl Table {
             rows.push((name.clone(), factor.map_or(String::new(), |f| f.unit.clone()), factor.and_then(range)));
         }
         let table = surfaces.table("residuals").ok_or_else(|| StageError::new("`of` names no fitted surfaces"))?;
-        let observed = table.reals("observed").unwrap_or_default();
+        let observed = table.numbers("observed", "").unwrap_or_default();
         let Some(Values::Texts(responses)) = table.column("response").map(|column| &column.values) else {
             return Err(StageError::new("the residuals do not name their responses"));
         };

@@ -1,6 +1,5 @@
 //! A specimen and a run on it as other programs want them: discs, groups, contacts.
 
-use crate::artifact::Artifact;
 use dem::genesis::relax::Heap;
 use dem::genesis::specimen::Specimen;
 
@@ -27,10 +26,4 @@ pub(super) fn contacts(specimen: &Specimen, margin: f64) -> Vec<Contact> {
         apart.then_some(Contact { ends: [i, j], groups: [a.min(b), a.max(b)], gap })
     };
     heap.pairs(margin).into_iter().filter_map(contact).collect()
-}
-
-/// The column of a table of an artifact, or what is missing.
-pub(super) fn column(artifact: &Artifact, table: &str, name: &str) -> Result<Vec<f64>, String> {
-    let found = artifact.table(table).and_then(|table| table.reals(name));
-    found.ok_or_else(|| format!("the result holds no column `{name}` in a table `{table}`"))
 }

@@ -9,10 +9,9 @@
 //! | `NAME.contacts.csv` | contact: its discs, group, gap, and whether it is bonded (of a run) |
 //! | `NAME.columns.csv` | column of these files: unit and meaning |
 
-use super::File;
 use super::bodies::{Contact, contacts};
+use super::{File, csv_text};
 use crate::artifact::Table;
-use crate::cli::show::csv_text;
 use dem::genesis::specimen::Specimen;
 use dem::loading::material::{BondKind, Contact as Values, Material};
 use dem::parameter::{Parameter, Quantity};
@@ -21,7 +20,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// Parameters of a run by their paths in its task, as they stand there.
-pub(super) type Parameters = BTreeMap<String, String>;
+pub type Parameters = BTreeMap<String, String>;
 
 /// Groups of a specimen that no run names.
 const GROUPS: [&str; 2] = ["discs", "aggregate"];
@@ -73,7 +72,7 @@ fn material(parameters: &Parameters) -> Result<Material, String> {
 }
 
 /// The files; without parameters, those of the specimen alone.
-pub(super) fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
+pub fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
     let named = Named::of(parameters)?;
     let margin = named.material.as_ref().map_or(0.0, |material| material.gap) * specimen.mean_radius();
     let contacts = contacts(specimen, margin);
