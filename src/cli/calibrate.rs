@@ -206,7 +206,8 @@ impl Calibrate {
 
 impl Asked {
     fn run(&self, stages: &[String], jobs: usize, watch: &dyn Watch, stop: &Arc<AtomicBool>) -> Report {
-        let settings = Settings { jobs, keep_going: false, dry: false, targets: stages.to_vec(), memos: true };
+        let settings =
+            Settings { jobs, keep_going: false, dry: false, targets: stages.to_vec(), again: Vec::new(), memos: true };
         run(&self.workflow, &self.store, &settings, watch, stop)
     }
 

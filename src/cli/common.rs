@@ -17,7 +17,8 @@ pub(super) struct Campaign {
     /// Apply the overrides of `[profile.NAME]`.
     #[arg(long, value_name = "NAME")]
     pub(super) profile: Option<String>,
-    /// Override one value: `stage.anova.alpha=0.01`. May be given more than once.
+    /// Override one value of the workflow: `stage.anova.alpha=0.01`, `material.base.mortar.Ec='"20 GPa"'`. May be given
+    /// more than once.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(super) sets: Vec<String>,
     #[command(flatten)]
@@ -69,6 +70,12 @@ impl Campaign {
             message::print(&faults, self.common.color);
             Exit::BadInput
         })?;
+        self.known(&workflow, stages)?;
+        Ok(workflow)
+    }
+
+    /// Whether all these stages are in the workflow; says which are not.
+    pub(super) fn known(&self, workflow: &Workflow, stages: &[String]) -> Result<(), Exit> {
         let known: Vec<&str> = workflow.stages.iter().map(|stage| stage.name.as_str()).collect();
         let unknown: Vec<&String> = stages.iter().filter(|name| !known.contains(&name.as_str())).collect();
         for name in &unknown {
@@ -76,7 +83,7 @@ impl Campaign {
             let meant = like.map_or_else(String::new, |like| format!("; did you mean `{like}`?"));
             err!("error: the workflow has no stage `{name}`{meant}\n  it has {}", known.join(", "));
         }
-        if unknown.is_empty() { Ok(workflow) } else { Err(Exit::BadInput) }
+        if unknown.is_empty() { Ok(()) } else { Err(Exit::BadInput) }
     }
 
     /// As [`Campaign::load`], for commands that run or plan: the files that the workflow names must be there, unless only

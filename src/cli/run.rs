@@ -34,6 +34,10 @@ pub(super) struct Run {
     /// Go on with what does not depend on a failed task.
     #[arg(long)]
     keep_going: bool,
+    /// Compute this stage again though its results are stored: a program or file that is in no key has changed. May be
+    /// given more than once.
+    #[arg(long, value_name = "STAGE")]
+    again: Vec<String>,
     /// Print one JSON document at the end.
     #[arg(long)]
     json: bool,
@@ -54,11 +58,18 @@ impl Run {
     fn report(&self) -> Result<Exit, Exit> {
         let started = SystemTime::now();
         let workflow = self.campaign.load_to_run(&self.stages)?;
+        self.campaign.known(&workflow, &self.again)?;
         let store = self.campaign.open()?;
         let stop = interruption();
         let jobs = self.jobs.unwrap_or_else(cores);
-        let settings =
-            Settings { jobs, keep_going: self.keep_going, dry: false, targets: self.stages.clone(), memos: true };
+        let settings = Settings {
+            jobs,
+            keep_going: self.keep_going,
+            dry: false,
+            targets: self.stages.clone(),
+            again: self.again.clone(),
+            memos: self.again.is_empty(),
+        };
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),

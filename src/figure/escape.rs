@@ -78,11 +78,16 @@ pub fn latex_label(text: &str) -> String {
 /// For CommonMark and its pipe tables. Lines become one.
 pub fn markdown(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
         match c {
-            '\\' | '`' | '*' | '_' | '{' | '}' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '$' | '&' | '!' => {
+            '\\' | '`' | '*' | '_' | '{' | '}' | '[' | ']' | '<' | '>' | '#' | '|' | '~' | '$' | '!' => {
                 out.push('\\');
                 out.push(c);
+            }
+            // It begins the name of a character.
+            '&' if rest.peek().is_some_and(|next| next.is_alphanumeric() || *next == '\\' || *next == '#') => {
+                out += "\\&"
             }
             c if c.is_whitespace() || c.is_control() => out.push(' '),
             c => out.push(c),

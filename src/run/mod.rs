@@ -12,9 +12,12 @@
 
 mod board;
 mod commit;
+mod files;
 mod ledger;
 mod library;
 mod memo;
+#[cfg(test)]
+mod pins;
 mod record;
 mod stages;
 mod task;
@@ -49,6 +52,8 @@ pub struct Settings {
     pub dry: bool,
     /// Stages that are wanted, with all they need; all stages when empty.
     pub targets: Vec<String>,
+    /// Stages whose tasks are computed although their results are stored.
+    pub again: Vec<String>,
     /// Believe what is remembered about unchanged stages; without it every task is looked up.
     pub memos: bool,
 }
@@ -200,7 +205,8 @@ fn panicked(panic: &(dyn Any + Send)) -> Failure {
 /// Decides what is done of `workflow` and what is left, by the decisions of [`run`], and starts nothing. `targets` are the
 /// stages that are wanted, all when empty; without `memos` every task is looked up.
 pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Report {
-    let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: targets.to_vec(), memos };
+    let settings =
+        Settings { jobs: 0, keep_going: true, dry: true, targets: targets.to_vec(), again: Vec::new(), memos };
     run(workflow, store, &settings, &Silent, &AtomicBool::new(false))
 }
 
@@ -327,6 +333,10 @@ impl Loop<'_, '_> {
                 self.board.failed(node, why);
                 continue;
             }
+            if ended.is_none() && self.forced(node) {
+                self.ready.insert(node);
+                continue;
+            }
             match self.store.find(&key) {
                 Ok(Some(record)) => open.extend(self.board.done(node, record.content, ended.is_none())),
                 Ok(None) => {
@@ -339,6 +349,12 @@ impl Loop<'_, '_> {
         }
     }
 
+    /// Whether a task is computed in this run, whatever is stored.
+    fn forced(&self, node: NodeId) -> bool {
+        let stage = &self.workflow.stages[self.board.stage(node)].name;
+        self.settings.again.contains(stage)
+    }
+
     fn start(&mut self) {
         let ended = self.stop.load(Ordering::Relaxed) || self.fatal.is_some();
         if self.settings.dry || ended || self.again || (self.failed && !self.settings.keep_going) {
@@ -346,7 +362,8 @@ impl Loop<'_, '_> {
         }
         while self.running < self.pool.count() {
             let Some(node) = self.ready.pop_first() else { return };
-            match task::Order::new(&mut self.board, node, self.store) {
+            let again = self.forced(node);
+            match task::Order::new(&mut self.board, node, self.store, again) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
                     Ok(()) => return,

@@ -11,12 +11,12 @@ use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError
 use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::unit::Unit;
 use schemars::JsonSchema;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::collections::HashSet;
 
 /// Settings of a `data` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Data {
     /// The CSV file, relative to the workflow.
@@ -39,10 +39,6 @@ impl Stage for Data {
 
     fn beside(&self, _context: &super::Context, found: &mut Beside) {
         found.file("file", &self.file);
-    }
-
-    fn settings(&self) -> Value {
-        json!({ "file": self.file })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -117,9 +113,9 @@ mod tests {
     fn units_numbers_and_missing_cells_are_read() {
         let table = parse(b"run,Ec [GPa],remark\n1,20,a\n2,,b\n").unwrap();
         assert_eq!(table.column("Ec").unwrap().unit, "GPa");
-        let moduli = table.reals("Ec").unwrap();
+        let moduli = table.shown("Ec").unwrap().0;
         assert!(moduli[0] == 20.0 && moduli[1].is_nan());
-        assert_eq!(table.reals("remark"), None);
+        assert!(table.shown("remark").is_err());
     }
 
     #[test]

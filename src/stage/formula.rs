@@ -3,22 +3,23 @@
 //! It costs microseconds, so a campaign's design, analysis and calibration can be tried before a simulation is paid for,
 //! and methods can be compared on known truths. A formula names factors (in their units) and parameters of the material by
 //! path with `_` for the dot (`mortar_Ec`, SI); it knows `+ - * / ^`, `abs sqrt exp ln log10 sin cos tan atan tanh min max`.
-//! The grammar and its choices stand in `formula/expression.rs`. Scatter is relative, normal, and a function of seed, point and replicate.
-
-mod expression;
+//! The grammar and its choices stand in `expression/read.rs`. Scatter is relative, normal, and a function of seed, point and replicate.
 
 use super::rows::{self, GATHER};
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
-use expression::Expression;
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
+};
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
+use crate::expression::{Expression, Measure};
 use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `formula` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formula {
     /// The design whose rows are run; once, at the material, when not given.
@@ -73,8 +74,7 @@ impl Stage for Formula {
             match Expression::parse(&response.value) {
                 Err(why) => found.push(Complaint::new(&at("value"), why)),
                 Ok(formula) => {
-                    for unknown in formula.names().into_iter().filter(|&name| !names.iter().any(|known| known == name))
-                    {
+                    for unknown in formula.names().iter().filter(|name| !names.contains(name)) {
                         let hint = format!("known are {}", names.join(", "));
                         found.push(Complaint::new(&at("value"), format!("`{unknown}` is not a value")).hint(hint));
                     }
@@ -88,8 +88,8 @@ impl Stage for Formula {
         found
     }
 
-    fn settings(&self) -> Value {
-        json!({ "design": self.design, "material": self.material, "responses": self.responses })
+    fn sketch(&self) -> Sketch {
+        Sketch { varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -99,7 +99,7 @@ impl Stage for Formula {
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
         let values = rows::values(self.material.as_ref(), point, known.context)?;
         let mut values: BTreeMap<String, f64> =
-            values.into_iter().map(|(path, value)| (path.replace('.', "_"), value)).collect();
+            values.into_iter().map(|(path, value)| (path.replace(['.', '-'], "_"), value)).collect();
         for (response, name) in self.named() {
             // a factor that sets nothing else still stands where a formula names it
             match point.get(&name) {
@@ -117,9 +117,8 @@ impl Formula {
     /// Responses and the names that their formulas use.
     fn named(&self) -> Vec<(String, String)> {
         let of = |(name, response): (&String, &Response)| {
-            let formula = Expression::parse(&response.value).ok();
-            let used = formula.iter().flat_map(Expression::names).map(|used| (name.clone(), used.to_owned()));
-            used.collect::<Vec<_>>()
+            let vars = Expression::parse(&response.value).map(|formula| formula.names().to_vec()).unwrap_or_default();
+            vars.into_iter().map(|var| (name.clone(), var)).collect::<Vec<_>>()
         };
         self.responses.iter().flat_map(of).collect()
     }
@@ -127,7 +126,8 @@ impl Formula {
     /// Every name that a formula may use.
     fn known_names(&self, context: &Context) -> Vec<String> {
         let material = self.material.as_ref().and_then(|name| context.materials.get(name));
-        let paths = material.into_iter().flat_map(|material| material.keys().map(|path| path.replace('.', "_")));
+        let paths =
+            material.into_iter().flat_map(|material| material.paths().map(|path| path.replace(['.', '-'], "_")));
         context.factors.keys().cloned().chain(paths).collect()
     }
 }
@@ -147,15 +147,17 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     let mut responses = Vec::new();
     for (name, response) in &params.responses {
         let formula = Expression::parse(&response.value).map_err(StageError::new)?;
-        let value = formula.value(|used| params.values.get(used).copied().ok_or_else(|| unset(name, used)))?;
+        let value = |var: &String| {
+            let value = params.values.get(var).copied().ok_or_else(|| unset(name, var));
+            value.map(Measure::number)
+        };
+        let values = formula.names().iter().map(value).collect::<Result<Vec<_>, _>>()?;
+        let value = formula.eval(&values).map_err(StageError::new)?.value;
         responses.push((name.as_str(), value * (1.0 + response.scatter * stream.normal()), response.unit.as_str()));
     }
     let undefined = responses.iter().find(|(_, value, _)| !value.is_finite());
     let failure = undefined.map_or_else(String::new, |(name, value, _)| format!("`{name}` is {value}"));
-    let root = Group::new()
-        .with("failure", Node::Text(failure))
-        .with("responses", Node::Table(rows::response_table(&responses)));
-    Ok(Artifact::of(ArtifactKind::RUN, root))
+    Ok(Run::plain(&failure, Responses::of(&responses)).to_artifact())
 }
 
 /// The fault of a formula that names what a run does not have.

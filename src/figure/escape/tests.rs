@@ -57,13 +57,15 @@ fn printed(text: &str) -> Option<String> {
 /// CommonMark as a reader takes it: what is printed, or nothing where a sign would have a meaning.
 fn rendered(text: &str) -> Option<String> {
     let (mut out, mut escaped) = (String::new(), false);
-    for c in text.chars() {
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
         match c {
+            '&' if !escaped && rest.peek().is_some_and(|next| next.is_alphanumeric() || *next == '#') => return None,
             '\\' if !escaped => {
                 escaped = true;
                 continue;
             }
-            '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '$' | '&' | '~' | '#' if !escaped => return None,
+            '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '$' | '~' | '#' if !escaped => return None,
             '\n' | '\r' => return None,
             c => out.push(c),
         }

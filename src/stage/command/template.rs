@@ -29,19 +29,19 @@ fn parts(text: &str) -> Result<Vec<Part<'_>>, String> {
 }
 
 /// The first name that stands for nothing, with what is known.
-pub(super) fn fault<'k>(text: &str, known: impl Fn() -> Vec<&'k str>) -> Option<StageError> {
+pub(super) fn fault(text: &str, known: impl Fn() -> Vec<String>) -> Option<StageError> {
     let parts = match parts(text) {
         Ok(parts) => parts,
         Err(why) => return Some(StageError::new(why)),
     };
     let names = known();
     parts.into_iter().find_map(|part| match part {
-        Part::Name(name, line) if !names.contains(&name) => Some(unknown(name, line, &names)),
+        Part::Name(name, line) if !names.iter().any(|known| known == name) => Some(unknown(name, line, &names)),
         Part::Name(..) | Part::Text(_) => None,
     })
 }
 
-fn unknown(name: &str, line: usize, known: &[&str]) -> StageError {
+fn unknown(name: &str, line: usize, known: &[String]) -> StageError {
     StageError::new(format!("line {line}: `{name}` is not a value of this run"))
         .hint(format!("known are {}", known.join(", ")))
 }
@@ -69,7 +69,9 @@ mod tests {
     fn names_are_replaced_and_unknown_ones_told_with_their_line() {
         let value = |name: &str| (name == "Ec").then(|| "16".to_owned());
         assert_eq!(filled("a {{ Ec }}\n{b} {{Ec}}", value).unwrap(), "a 16\n{b} 16");
-        let told = |text: &str| fault(text, || vec!["Ec", "seed"]).map(|error| (error.message, error.hint));
+        let told = |text: &str| {
+            fault(text, || vec!["Ec".to_owned(), "seed".to_owned()]).map(|error| (error.message, error.hint))
+        };
         assert_eq!(told("{{Ec}} {{seed}}"), None);
         let hint = Some("known are Ec, seed".to_owned());
         assert_eq!(told("{{Ec}}\n\n{{row}}"), Some(("line 3: `row` is not a value of this run".to_owned(), hint)));

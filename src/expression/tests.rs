@@ -1,17 +1,19 @@
 //! Values by hand, and every grammar that two readers could disagree about.
 
 use super::*;
+use crate::unit::{Unit, parse_any};
 use proptest::prelude::*;
 
 /// At a = 5, x = 2.
 fn value(text: &str) -> f64 {
     let formula = Expression::parse(text).unwrap_or_else(|why| panic!("{why}"));
-    let known = |name: &str| match name {
-        "a" => Ok(5.0),
-        "x" => Ok(2.0),
-        other => Err(other.to_owned()),
+    let known = |name: &String| match name.as_str() {
+        "a" => Measure::number(5.0),
+        "x" => Measure::number(2.0),
+        other => panic!("{other}"),
     };
-    formula.value(known).unwrap()
+    let values: Vec<Measure> = formula.names().iter().map(known).collect();
+    formula.eval(&values).unwrap().value
 }
 
 #[test]
@@ -101,6 +103,26 @@ fn what_is_unclear_is_refused() {
     assert_eq!(value(&flat), 20_000.0);
 }
 
+#[test]
+fn quantities_carry_their_dimension_through_a_formula() {
+    let measure = |text: &str| parse_any(text).map(|(value, dimension)| Measure::of(value, dimension)).unwrap();
+    let of = |text: &str, a: &str, b: &str| {
+        let formula = Expression::parse(text).unwrap();
+        let values = [measure(a), measure(b)];
+        formula.eval(&values[..formula.names().len()]).unwrap()
+    };
+    let unit = |text: &str| Unit::parse(text).unwrap().dimension;
+    assert_eq!(of("a / b", "30 MPa", "0.5"), Measure::of(60e6, unit("Pa")));
+    assert_eq!(of("a*b^2/(2*b)", "2 N/m^3", "4 m"), Measure::of(4.0, unit("N/m^2")));
+    assert_eq!(of("sqrt(a*b)", "4 Pa", "9 Pa"), Measure::of(6.0, unit("Pa")));
+    assert_eq!(of("ln(a/b)", "1 GPa", "1 GPa"), Measure::number(0.0));
+    let misfit = |text: &str, a: &str, b: &str| of(text, a, b).dimension.unwrap_err().to_string();
+    assert_eq!(misfit("a + b", "1 MPa", "2 m"), "Pa and m cannot be added or compared");
+    assert_eq!(misfit("a + b", "1 MPa", "2"), "Pa and a pure number cannot be added or compared");
+    assert_eq!(misfit("exp(a)/b", "1 MPa", "2"), "a function or an exponent needs a pure number, not Pa");
+    assert_eq!(misfit("b^a", "1 m", "2"), "a function or an exponent needs a pure number, not m");
+}
+
 /// A formula beside the value that it must have, each operation in brackets.
 fn formula() -> impl Strategy<Value = (String, f64)> {
     let leaf = (0_u32..100).prop_map(|n| (n.to_string(), f64::from(n)));
@@ -122,14 +144,16 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn any_formula_has_its_value((text, expected) in formula()) {
-        let found = Expression::parse(&text).unwrap().value(|name| Err(name.to_owned())).unwrap();
+        let found = Expression::parse(&text).unwrap().eval(&[]).unwrap().value;
         prop_assert_eq!(found.to_bits(), expected.to_bits(), "{}", text);
     }
 
     #[test]
     fn any_text_is_read_or_refused(text in "[ax0-9.e+*/^(), -]{0,40}") {
         if let Ok(formula) = Expression::parse(&text) {
-            let _ = formula.value(|_| Ok::<_, ()>(1.5));
+            let values = vec![Measure::number(1.5); formula.names().len()];
+            prop_assert!(formula.eval(&values).is_ok());
+            prop_assert!(formula.names().is_sorted());
         }
     }
 }

@@ -12,7 +12,7 @@
 //! one behind `*` or `/`, as in `2*-a^2`. In an exponent there is no such doubt: `a^-2`. `min` and `max` take one value
 //! or more. `1e-3` is a number, `2a` is nothing.
 
-use math::elementary;
+use super::{Measure, function_of_all, function_of_one};
 
 /// Longest formula that is read, in bytes.
 const LONGEST: usize = 10_000;
@@ -20,28 +20,22 @@ const LONGEST: usize = 10_000;
 /// Brackets, signs and powers within one another.
 const DEEPEST: usize = 64;
 
-/// A formula that was read.
+/// A formula as a tree.
 #[derive(Clone, Debug)]
-pub(super) struct Expression {
-    root: Term,
-    names: Vec<String>,
-}
-
-#[derive(Clone, Debug)]
-enum Term {
+pub(super) enum Term {
     Number(f64),
     /// Which of the names.
     Name(usize),
     Negative(Box<Term>),
     Binary(Binary, Box<Term>, Box<Term>),
     /// A function of one value.
-    One(fn(f64) -> f64, Box<Term>),
+    One(fn(Measure) -> Measure, Box<Term>),
     /// A function of all values, two by two from the left.
-    All(fn(f64, f64) -> f64, Vec<Term>),
+    All(fn(Measure, Measure) -> Measure, Vec<Term>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Binary {
+pub(super) enum Binary {
     Add,
     Subtract,
     Multiply,
@@ -49,86 +43,67 @@ enum Binary {
     Power,
 }
 
-/// Functions of one value whose results have the same bits everywhere.
-const ONE: [(&str, fn(f64) -> f64); 10] = [
-    ("abs", f64::abs),
-    ("sqrt", f64::sqrt),
-    ("exp", elementary::exp),
-    ("ln", elementary::ln),
-    ("log10", elementary::log10),
-    ("sin", elementary::sin),
-    ("cos", elementary::cos),
-    ("tan", elementary::tan),
-    ("atan", elementary::atan),
-    ("tanh", elementary::tanh),
-];
+/// Names of all functions.
+const FUNCTIONS: [&str; 12] = ["abs", "sqrt", "exp", "ln", "log10", "sin", "cos", "tan", "atan", "tanh", "min", "max"];
 
-/// Functions of one value or more. A value that is no number makes the result none, unlike that of [`f64::min`].
-const ALL: [(&str, fn(f64, f64) -> f64); 2] = [
-    ("min", |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.min(b) }),
-    ("max", |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }),
-];
-
-impl Expression {
-    /// Reads a formula.
-    ///
-    /// # Errors
-    /// What stands where, and what was expected.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
-        if text.len() > LONGEST {
-            return Err(format!("the formula has {} characters; at most {LONGEST} are read", text.len()));
-        }
-        let mut reader = Reader { text, at: 0, depth: 0, names: Vec::new() };
-        let read = reader.sum().and_then(|root| match reader.peek() {
-            None => Ok(root),
-            Some(_) => Err(reader.expected("an operator or the end")),
-        });
-        match read {
-            Ok(root) => Ok(Self { root, names: reader.names }),
-            Err(why) => Err(format!("`{text}` is no formula: {why}")),
-        }
+/// Reads a formula: its tree, and the names that it uses in alphabetical order.
+///
+/// # Errors
+/// What stands where, and what was expected.
+pub(super) fn formula(text: &str) -> Result<(Term, Vec<String>), String> {
+    if text.len() > LONGEST {
+        return Err(format!("it has {} characters; at most {LONGEST} are read", text.len()));
     }
-
-    /// The names that it uses, each once, in alphabetical order.
-    pub(super) fn names(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = self.names.iter().map(String::as_str).collect();
-        names.sort_unstable();
-        names
+    let mut reader = Reader { text, at: 0, depth: 0, names: Vec::new() };
+    let mut root = reader.sum()?;
+    if reader.peek().is_some() {
+        return Err(reader.expected("an operator or the end"));
     }
-
-    /// Its value, where `value` gives that of a name.
-    ///
-    /// # Errors
-    /// As `value` has them.
-    pub(super) fn value<E>(&self, value: impl Fn(&str) -> Result<f64, E>) -> Result<f64, E> {
-        let values = self.names.iter().map(|name| value(name)).collect::<Result<Vec<f64>, E>>()?;
-        Ok(self.root.value(&values))
-    }
+    let mut order: Vec<usize> = (0..reader.names.len()).collect();
+    order.sort_by(|a, b| reader.names[*a].cmp(&reader.names[*b]));
+    let mut places = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(place, &name)| places[name] = place);
+    root.rename(&places);
+    reader.names.sort_unstable();
+    Ok((root, reader.names))
 }
 
 impl Term {
-    fn value(&self, names: &[f64]) -> f64 {
+    /// Its value from those of the names.
+    pub(super) fn value(&self, names: &[Measure]) -> Measure {
         match self {
-            Self::Number(number) => *number,
+            Self::Number(number) => Measure::number(*number),
             Self::Name(name) => names[*name],
-            Self::Negative(term) => -term.value(names),
+            Self::Negative(term) => term.value(names).mapped(|value| -value),
             Self::Binary(operator, a, b) => operator.apply(a.value(names), b.value(names)),
             Self::One(function, term) => function(term.value(names)),
             Self::All(function, terms) => {
-                terms.iter().map(|term| term.value(names)).reduce(function).unwrap_or(f64::NAN)
+                let values = terms.iter().map(|term| term.value(names));
+                values.reduce(function).unwrap_or(Measure::number(f64::NAN))
             }
+        }
+    }
+
+    /// Gives the names other places.
+    fn rename(&mut self, places: &[usize]) {
+        match self {
+            Self::Number(_) => {}
+            Self::Name(name) => *name = places[*name],
+            Self::Negative(term) | Self::One(_, term) => term.rename(places),
+            Self::Binary(_, a, b) => [a, b].into_iter().for_each(|term| term.rename(places)),
+            Self::All(_, terms) => terms.iter_mut().for_each(|term| term.rename(places)),
         }
     }
 }
 
 impl Binary {
-    fn apply(self, a: f64, b: f64) -> f64 {
+    fn apply(self, a: Measure, b: Measure) -> Measure {
         match self {
-            Self::Add => a + b,
-            Self::Subtract => a - b,
-            Self::Multiply => a * b,
-            Self::Divide => a / b,
-            Self::Power => elementary::pow(a, b),
+            Self::Add => a.sum(b, a.value + b.value),
+            Self::Subtract => a.sum(b, a.value - b.value),
+            Self::Multiply => a.scaled(b, a.value * b.value, 1.0),
+            Self::Divide => a.scaled(b, a.value / b.value, -1.0),
+            Self::Power => a.raised(b),
         }
     }
 }
@@ -293,11 +268,9 @@ impl Reader<'_> {
     }
 
     fn call(&mut self, name: &str) -> Result<Term, String> {
-        let one = ONE.iter().find(|(known, _)| *known == name).map(|(_, function)| *function);
-        let all = ALL.iter().find(|(known, _)| *known == name).map(|(_, function)| *function);
+        let (one, all) = (function_of_one(name), function_of_all(name));
         if one.is_none() && all.is_none() {
-            let known: Vec<&str> = ONE.iter().map(|(n, _)| *n).chain(ALL.iter().map(|(n, _)| *n)).collect();
-            return Err(format!("there is no function `{name}`; there are {}", known.join(", ")));
+            return Err(format!("there is no function `{name}`; there are {}", FUNCTIONS.join(", ")));
         }
         self.at += 1;
         let mut terms = vec![self.deeper(Self::sum)?];
@@ -315,6 +288,3 @@ impl Reader<'_> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;
