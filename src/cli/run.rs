@@ -8,6 +8,7 @@ use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
 use crate::run::{Past, Report, Settings, Silent, StageStatus, TaskState, Watch, record, run};
+use crate::stage::command::leftover;
 use crate::store::Store;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -16,7 +17,7 @@ use signal_hook::iterator::Signals;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 /// Run what is missing of a campaign.
 #[derive(Args)]
@@ -61,6 +62,7 @@ impl Run {
         self.campaign.known(&workflow, &self.again)?;
         let store = self.campaign.open()?;
         let stop = interruption();
+        leftover::sweep().iter().for_each(|line| err!("warning: {line}"));
         let jobs = self.jobs.unwrap_or_else(cores);
         let settings = Settings {
             jobs,
@@ -122,7 +124,8 @@ impl Run {
     }
 }
 
-/// A flag that Ctrl-C, a termination request or the end of the terminal sets; a second one ends the process at once.
+/// A flag that Ctrl-C, a termination request or the end of the terminal sets; a second one, or tasks that do not end within
+/// a second, end the process at once.
 pub(super) fn interruption() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -131,14 +134,29 @@ pub(super) fn interruption() -> Arc<AtomicBool> {
         Ok(mut signals) => drop(std::thread::spawn(move || {
             for _ in signals.forever() {
                 if flag.swap(true, Ordering::Relaxed) {
-                    std::process::exit(Exit::Interrupted as i32);
+                    at_once();
                 }
                 err!("stopping: what is finished is kept; once more to stop at once");
+                std::thread::spawn(|| {
+                    std::thread::sleep(PATIENCE);
+                    err!("interrupted: a second run goes on; what ran did not end by itself and begins anew then");
+                    at_once();
+                });
             }
         })),
         Err(e) => err!("warning: Ctrl-C will not stop cleanly: {e}"),
     }
     stop
+}
+
+/// How long tasks may take to end by themselves. Statistics and packings look at the flag only now and then, and a store is
+/// sound whenever a campaign is killed.
+const PATIENCE: Duration = Duration::from_millis(850);
+
+/// Ends this process and the programs that it runs.
+fn at_once() -> ! {
+    leftover::end_own();
+    std::process::exit(Exit::Interrupted as i32)
 }
 
 /// Whether `nohup` (or the like) started this process: then the end of the terminal must not end the campaign.

@@ -61,8 +61,11 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
     Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
 }
 
-/// Reads the whole table, or says what is wrong with it.
-pub(super) fn parse(bytes: &[u8]) -> Result<Table, StageError> {
+/// Reads the whole table.
+///
+/// # Errors
+/// What is wrong with it, and where.
+pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
     let sheet = Sheet::read(bytes)?;
     if sheet.rows() == 0 {
         return Err(StageError::new("the file has no rows below its first line"));

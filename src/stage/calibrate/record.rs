@@ -112,7 +112,12 @@ fn prediction(params: &Params, solved: &[Solved]) -> Table {
         .texts_column("unit", "of the numbers beside it", rows.iter().map(|row| row.target.unit.clone()).collect())
         .reals_column("target", "", "wanted", reals(|row| row.target.value))
         .reals_column("expected", "", "at the solution", reals(|row| row.expected.mean))
-        .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|row| row.expected.low))
+        .reals_column(
+            "low",
+            "",
+            "lower end of the 95 % interval of the mean; missing where one run is all that is known",
+            reals(|row| row.expected.low),
+        )
         .reals_column("high", "", "upper end", reals(|row| row.expected.high))
         .reals_column("deviation_percent", "", "as in the misfit", reals(|row| row.deviation))
         .reals_column("reach_low", "", "least over the ranges", reals(|row| row.reach[0]))

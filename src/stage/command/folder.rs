@@ -1,5 +1,6 @@
 //! The folder of one run: filled before, watched while the program runs, removed after.
 
+use super::leftover::{self, Record};
 use super::{Params, template};
 use crate::stage::{Failure, Job, StageError};
 use rustix::process::{Pid, Signal, kill_process_group};
@@ -21,13 +22,16 @@ pub(super) fn is_plain(name: &str) -> bool {
 /// A run's own temporary folder; `stdout` and `stderr` lie beside what the program writes.
 pub(super) struct Folder {
     root: TempDir,
+    /// Says that the folder is in use, and by whom; it is dropped after the folder.
+    _record: Record,
 }
 
 impl Folder {
     /// Makes the folder with its files and filled templates.
     pub(super) fn fill(job: &Job, params: &Params) -> Result<Self, Failure> {
-        let root = tempfile::Builder::new().prefix("flow-run-").tempdir().map_err(|e| io("make a folder", e))?;
-        let folder = Self { root };
+        let root = tempfile::Builder::new().prefix(leftover::PREFIX).tempdir().map_err(|e| io("make a folder", e))?;
+        let record = Record::of(root.path());
+        let folder = Self { root, _record: record };
         for file in job.files {
             let bytes = job.file(&file.name)?;
             let (bytes, name) = match file.name.split_once(':') {
@@ -62,12 +66,43 @@ impl Folder {
         command.current_dir(self.root.path()).stdin(Stdio::null()).process_group(0);
         command.stdout(output("stdout")?).stderr(output("stderr")?);
         command.env_clear().envs(std::env::var_os("PATH").map(|path| ("PATH", path))).envs(&params.environment);
+        command.env(leftover::VARIABLE, self.root.path());
         let child = command.spawn().map_err(|e| {
             StageError::new(format!("`{}` cannot be started: {e}", params.run[0]))
                 .hint("is it installed and on the PATH?")
         })?;
-        let status = wait(child, job)?;
+        let status = self.wait(child, job)?;
         Ok(if status.success() { Ok(()) } else { Err(format!("`{}` ended with {status}", params.run.join(" "))) })
+    }
+
+    /// Waits for the end, the time limit or the interruption, whichever is first; leaves no process of the run behind.
+    fn wait(&self, mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
+        let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
+        let group = Pid::from_child(&child);
+        loop {
+            if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
+                // What it started and left running ends with it.
+                let _ = kill_process_group(group, Signal::KILL);
+                leftover::end_strays(self.root.path());
+                return Ok(status);
+            }
+            let late = job.time_limit.is_some_and(|limit| started.elapsed().as_secs_f64() > limit);
+            if late || job.stopped() {
+                let _ = kill_process_group(group, Signal::KILL);
+                let _ = child.wait();
+                leftover::end_strays(self.root.path());
+                return Err(match job.time_limit {
+                    Some(limit) if late => {
+                        StageError::new(format!("the program ran longer than its limit of {limit} s"))
+                            .hint("raise `time_limit`, or find out why it hangs")
+                            .into()
+                    }
+                    Some(_) | None => Failure::Stopped,
+                });
+            }
+            std::thread::sleep(pause);
+            pause = (pause * 2).min(Duration::from_millis(20));
+        }
     }
 
     /// A text file that the program left. Programs write logs in any encoding: bytes that are no UTF-8 are shown as `\xE9`,
@@ -96,32 +131,6 @@ impl Folder {
                 format!("it said: {}", lines.into_iter().rev().collect::<Vec<_>>().join(" | "))
             },
         )
-    }
-}
-
-/// Waits for the end, the time limit or the interruption, whichever is first; leaves no process of the run behind.
-fn wait(mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
-    let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
-    let group = Pid::from_child(&child);
-    loop {
-        if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
-            // What it started and left running ends with it.
-            let _ = kill_process_group(group, Signal::KILL);
-            return Ok(status);
-        }
-        let late = job.time_limit.is_some_and(|limit| started.elapsed().as_secs_f64() > limit);
-        if late || job.stopped() {
-            let _ = kill_process_group(group, Signal::KILL);
-            let _ = child.wait();
-            return Err(match job.time_limit {
-                Some(limit) if late => StageError::new(format!("the program ran longer than its limit of {limit} s"))
-                    .hint("raise `time_limit`, or find out why it hangs")
-                    .into(),
-                Some(_) | None => Failure::Stopped,
-            });
-        }
-        std::thread::sleep(pause);
-        pause = (pause * 2).min(Duration::from_millis(20));
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! For every row of the design (or once, without a design) the program runs in a folder of its own: files are copied
 //! there, templates are filled with the row's parameters, the command is started without a shell (unless asked for),
-//! with no standard input, with `PATH` and the declared environment and nothing else; then the responses are read from
+//! with no standard input, with `PATH`, the declared environment, `FLOW_RUN_FOLDER` (its folder) and nothing else; then the responses are read from
 //! what it left (CSV, JSON, or a pattern on a text file). Command, templates, files and parameters are in the key,
 //! the time limit is not.
 //!
@@ -15,6 +15,7 @@
 //! Running out of time or being stopped is never recorded, because it says nothing about the model.
 
 mod folder;
+pub mod leftover;
 mod read;
 mod template;
 
