@@ -65,7 +65,7 @@ impl Order {
                 Claim::Done(record) => return Ok(Finished { content: record.content, shared: true, seconds: 0.0 }),
                 Claim::Mine(claim) => return self.compute(claim, store, say, stop),
                 Claim::Theirs(waiting) => {
-                    say(Progress::note(format!("waits for {}", waiting.holder_now())));
+                    say(Progress::note(format!("waits for {}", waiting.holder)));
                     if !waiting.wait(|| stop.load(Ordering::Relaxed)) {
                         return Err(Failure::Stopped);
                     }
