@@ -2,9 +2,9 @@
 
 use super::super::{Complaint, Context, Parameter, StageError};
 use crate::unit::{Angle, Dimension, Pressure, Velocity};
-use dem::test::loading::{Loading, Rule, TestKind};
-use dem::test::material::{BondKind, Bonded, Bonding, Material, MaterialError, Unbonded};
-use dem::test::rig::Machine;
+use dem::loading::drive::{Loading, Rule, TestKind};
+use dem::loading::material::{BondKind, Bonded, Bonding, Material, MaterialError, Unbonded};
+use dem::loading::rig::Machine;
 use dem::{Convention, Masses};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -9,7 +9,7 @@
 //!
 //! The responses of `test = "uniaxial"` are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus
 //! around half of it; strain ratio there), of `"tension"` `sigma_t`, `E`, `nu`, of `"brazilian"` `sigma_t`; in SI units.
-//! Further ones are named in the record. What is computed and why: [`dem::test`].
+//! Further ones are named in the record. What is computed and why: [`dem::loading`].
 
 mod config;
 mod record;
@@ -18,27 +18,33 @@ pub use config::{BondConfig, PackingChoice, Simulate};
 
 use super::rows::{self, GATHER};
 use super::{
-    Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Stage, StageError, Step, Task, Work,
 };
-use crate::artifact::Artifact;
-use crate::artifact::specimen::Specimen as Stored;
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use config::Params;
-use dem::test::curve::Sample;
-use dem::test::uniaxial;
+use dem::loading::curve::Sample;
+use dem::loading::uniaxial;
 use math::random::Stream;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
 impl Stage for Simulate {
     fn inputs(&self) -> Vec<Port> {
-        let specimen = Port { key: "specimen", stages: vec![self.specimen.clone()], accepts: &[Stored::KIND] };
-        let design =
-            self.design.iter().map(|name| Port { key: "design", stages: vec![name.clone()], accepts: &["design"] });
+        let specimen = Port {
+            key: "specimen",
+            stages: vec![self.specimen.clone()],
+            accepts: Accepts::Only(&[ArtifactKind::SPECIMEN]),
+        };
+        let design = self.design.iter().map(|name| Port {
+            key: "design",
+            stages: vec![name.clone()],
+            accepts: Accepts::Only(&[ArtifactKind::DESIGN]),
+        });
         std::iter::once(specimen).chain(design).collect()
     }
 
-    fn gives(&self) -> &'static str {
-        if self.design.is_some() { "results" } else { "run" }
+    fn gives(&self) -> ArtifactKind {
+        if self.design.is_some() { ArtifactKind::RESULTS } else { ArtifactKind::RUN }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -86,6 +92,8 @@ fn own_packing(point: &Point, number: u64) -> u64 {
 impl Kind for Simulate {
     const NAME: &'static str = "simulate";
     const ABOUT: &'static str = "a loading test on a specimen, once or per design row";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
+    const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "simulate", version: 1, run: simulate }, GATHER];
 }
 

@@ -7,7 +7,7 @@
 //! x₀ + (1 − x₀)/10; the volume is smallest where a + 3b x² = 1.
 
 use crate::case::{Case, Family, Near};
-use dem::test::curve::{Macro, Sample, evaluate};
+use dem::loading::curve::{Macro, Sample, evaluate};
 use std::sync::LazyLock;
 
 const MODULUS: f64 = 40e9;

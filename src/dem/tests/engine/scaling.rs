@@ -11,10 +11,10 @@ use crate::case::{Case, Family, Near};
 use dem::genesis::packing::Packing;
 use dem::genesis::region::Region;
 use dem::genesis::specimen::Recipe;
+use dem::loading::curve::Macro;
+use dem::loading::drive::{Loading, TestKind};
+use dem::loading::material::{Bonded, Bonding, Material, Unbonded};
 use dem::space::Tuple;
-use dem::test::curve::Macro;
-use dem::test::loading::{Loading, TestKind};
-use dem::test::material::{Bonded, Bonding, Material, Unbonded};
 use dem::*;
 use std::sync::LazyLock;
 

@@ -1,6 +1,6 @@
 //! The tests against closed forms, on lattices where there are any and on small random specimens.
 
-use super::loading::{Loading, TestError, TestFailure, TestKind, TestRecord};
+use super::drive::{Loading, TestError, TestFailure, TestKind, TestRecord};
 use super::material::{Bonded, Bonding, Material, Unbonded};
 use super::uniaxial::{between_platens, platens};
 use crate::genesis::packing::Packing;

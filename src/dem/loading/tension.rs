@@ -13,9 +13,9 @@
 //! Source: Potyondy & Cundall 2004, doi:10.1016/j.ijrmms.2004.09.011, section 3.
 
 use super::curve::{Sample, evaluate};
+use super::drive::{Loading, TestError, TestRecord, drive};
 use super::gauge::Gauges;
 use super::judgement::Judgement;
-use super::loading::{Loading, TestError, TestRecord, drive};
 use super::material::Material;
 use super::rig::{mount, set_velocities};
 use super::uniaxial::judge;

@@ -15,9 +15,9 @@
 //! Source: ISRM suggested method (1978), doi:10.1016/0148-9062(78)90003-7; Hondros 1959 for the elastic stresses.
 
 use super::curve::{Macro, Sample, evaluate, peak};
+use super::drive::{Check, Loading, Run, TestError, TestRecord, drive};
 use super::gauge::Gauges;
 use super::judgement::Judgement;
-use super::loading::{Check, Loading, Run, TestError, TestRecord, drive};
 use super::material::Material;
 use super::uniaxial::{between_platens, judge, platens};
 use crate::genesis::region::{Point, Region};

@@ -10,7 +10,7 @@
 //! lateral      = side gauges over the middle half of the height, extension positive
 //! ```
 //!
-//! Peak, moduli, Poisson's ratios, crack stresses: [`super::curve`]. Stop rule, cracks, snapshots: [`super::loading`].
+//! Peak, moduli, Poisson's ratios, crack stresses: [`super::curve`]. Stop rule, cracks, snapshots: [`super::drive`].
 //!
 //! Whether it is quasi-static: [`super::judgement`].
 //!
@@ -18,9 +18,9 @@
 //! doi:10.1016/j.ijrmms.2004.09.011.
 
 use super::curve::{Macro, Sample, evaluate};
+use super::drive::{Loading, Run, TestError, TestRecord, drive};
 use super::gauge::Gauges;
 use super::judgement::{Judgement, LoadingWarning, rate_warnings};
-use super::loading::{Loading, Run, TestError, TestRecord, drive};
 use super::material::{Material, PLATEN};
 use super::rig::{mount, set_velocities};
 use crate::genesis::region::Region;
