@@ -5,7 +5,7 @@
 //! A store of an earlier flow has no marker; [`adopt`] makes one when nothing but what flow makes lies in the folder.
 
 use super::StoreError;
-use super::disk::Disk;
+use super::disk::{Disk, is_temporary};
 use super::folder::{Folder, Strange};
 use super::journal;
 use super::presence::is_listing;
@@ -43,6 +43,8 @@ pub(super) fn open(disk: &Disk) -> Result<(), StoreError> {
     }
     match other_names(disk, &folder)?.as_slice() {
         [] => mark(disk),
+        // Another process has made it in the meantime.
+        names if names.iter().any(|name| name == MARKER) => open(disk),
         names if names.iter().all(|name| is_ours(name)) => Err(refuse(
             root,
             format!(
@@ -73,10 +75,10 @@ pub(super) fn adopt(disk: &Disk) -> Result<(), StoreError> {
     mark(disk)
 }
 
-/// What lies in the root besides notes.
+/// What lies in the root besides notes and files that are being written.
 fn other_names(disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> {
     let mut names = Vec::new();
-    let listed = folder.list(|name, _| names.extend((!NOTES.contains(&name)).then(|| name.to_owned())));
+    let listed = folder.list(|name, _| names.extend((!is_note(name) && !is_temporary(name)).then(|| name.to_owned())));
     listed.map_err(|error| disk.fail("list", &disk.root, error))?;
     names.sort_unstable();
     Ok(names)
@@ -84,7 +86,7 @@ fn other_names(disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> 
 
 /// Whether flow makes something of this name in the root of a store.
 pub(super) fn is_ours(name: &str) -> bool {
-    FOLDERS.contains(&name) || FILES.contains(&name) || is_listing(name) || super::disk::is_temporary(name)
+    FOLDERS.contains(&name) || FILES.contains(&name) || is_listing(name) || is_temporary(name)
 }
 
 /// Whether this is a note for readers of the folder.
