@@ -13,9 +13,12 @@
 mod board;
 mod commit;
 mod elsewhere;
+mod files;
 mod ledger;
 mod library;
 mod memo;
+#[cfg(test)]
+mod pins;
 mod record;
 mod stages;
 mod task;
