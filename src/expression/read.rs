@@ -27,7 +27,9 @@ pub(super) enum Term {
     /// Which of the names.
     Name(usize),
     Negative(Box<Term>),
-    Binary(Binary, Box<Term>, Box<Term>),
+    /// Operations of one rank, from the left. A list and not a tree: a long sum must not take a deep stack.
+    Chain(Box<Term>, Vec<(Binary, Term)>),
+    Power(Box<Term>, Box<Term>),
     /// A function of one value.
     One(fn(Measure) -> Measure, Box<Term>),
     /// A function of all values, two by two from the left.
@@ -40,7 +42,6 @@ pub(super) enum Binary {
     Subtract,
     Multiply,
     Divide,
-    Power,
 }
 
 /// Names of all functions.
@@ -75,7 +76,10 @@ impl Term {
             Self::Number(number) => Measure::number(*number),
             Self::Name(name) => names[*name],
             Self::Negative(term) => term.value(names).mapped(|value| -value),
-            Self::Binary(operator, a, b) => operator.apply(a.value(names), b.value(names)),
+            Self::Chain(first, rest) => {
+                rest.iter().fold(first.value(names), |value, (operator, term)| operator.apply(value, term.value(names)))
+            }
+            Self::Power(base, exponent) => base.value(names).raised(exponent.value(names)),
             Self::One(function, term) => function(term.value(names)),
             Self::All(function, terms) => {
                 let values = terms.iter().map(|term| term.value(names));
@@ -90,7 +94,11 @@ impl Term {
             Self::Number(_) => {}
             Self::Name(name) => *name = places[*name],
             Self::Negative(term) | Self::One(_, term) => term.rename(places),
-            Self::Binary(_, a, b) => [a, b].into_iter().for_each(|term| term.rename(places)),
+            Self::Chain(first, rest) => {
+                first.rename(places);
+                rest.iter_mut().for_each(|(_, term)| term.rename(places));
+            }
+            Self::Power(a, b) => [a, b].into_iter().for_each(|term| term.rename(places)),
             Self::All(_, terms) => terms.iter_mut().for_each(|term| term.rename(places)),
         }
     }
@@ -103,9 +111,12 @@ impl Binary {
             Self::Subtract => a.sum(b, a.value - b.value),
             Self::Multiply => a.scaled(b, a.value * b.value, 1.0),
             Self::Divide => a.scaled(b, a.value / b.value, -1.0),
-            Self::Power => a.raised(b),
         }
     }
+}
+
+fn chain(first: Term, rest: Vec<(Binary, Term)>) -> Term {
+    if rest.is_empty() { first } else { Term::Chain(Box::new(first), rest) }
 }
 
 struct Reader<'t> {
@@ -149,21 +160,23 @@ impl Reader<'_> {
     }
 
     fn sum(&mut self) -> Result<Term, String> {
-        let mut term = self.product()?;
+        let first = self.product()?;
+        let mut rest = Vec::new();
         while let Some(sign) = self.take("+-") {
             let operator = if sign == '+' { Binary::Add } else { Binary::Subtract };
-            term = Term::Binary(operator, Box::new(term), Box::new(self.product()?));
+            rest.push((operator, self.product()?));
         }
-        Ok(term)
+        Ok(chain(first, rest))
     }
 
     fn product(&mut self) -> Result<Term, String> {
-        let mut term = self.signed()?;
+        let first = self.signed()?;
+        let mut rest = Vec::new();
         while let Some(sign) = self.take("*/") {
             let operator = if sign == '*' { Binary::Multiply } else { Binary::Divide };
-            term = Term::Binary(operator, Box::new(term), Box::new(self.signed()?));
+            rest.push((operator, self.signed()?));
         }
-        Ok(term)
+        Ok(chain(first, rest))
     }
 
     fn signed(&mut self) -> Result<Term, String> {
@@ -175,7 +188,7 @@ impl Reader<'_> {
                 let bracket = self.peek() == Some('(');
                 let term = self.deeper(Self::signed)?;
                 // -(a^2) is a bracket that holds a power, and no power itself.
-                let power = matches!(term, Term::Binary(Binary::Power, ..));
+                let power = matches!(term, Term::Power(..));
                 if power && !(bracket && self.closes(begin)) {
                     let found = self.text[begin..self.at].trim();
                     return Err(format!("a minus before a power at `{found}`; write -(a^2) or (-a)^2"));
@@ -206,7 +219,7 @@ impl Reader<'_> {
             Some('-') => Ok(Term::Negative(Box::new(reader.deeper(Self::power)?))),
             Some(_) | None => reader.power(),
         })?;
-        Ok(Term::Binary(Binary::Power, Box::new(base), Box::new(exponent)))
+        Ok(Term::Power(Box::new(base), Box::new(exponent)))
     }
 
     fn operand(&mut self) -> Result<Term, String> {
