@@ -147,13 +147,13 @@ data 1
 design 2
 figure 8
 fit 2
-formula 1
+formula 2
 gather 1
 range 2
 screening 2
 simulate 2
 specimen 1
-table 3
+table 4
 verify 1
 ";
 
