@@ -3,6 +3,7 @@
 //! * [`constraint`]: the box of the parameters and linear constraints in it; [`least_distance`] projects onto them
 //! * [`misfit`]: how far responses are from their targets
 //! * [`genetic`], [`annealing`], [`differential`], [`cma_es`]: minimise the misfit as one number
+//! * [`proportional`]: one parameter to which one response is proportional
 //! * [`surrogate`]: models every response over all runs, which is what noisy and dear simulations need
 //! * [`local`], [`polish`]: the descent from a found point that may follow the four of them
 //! * [`search`]: the loop around any of them, as a pure function of settings, seed and history
@@ -25,6 +26,7 @@ mod level;
 pub mod local;
 pub mod misfit;
 pub mod polish;
+pub mod proportional;
 pub mod search;
 pub mod solution_set;
 pub mod surrogate;
