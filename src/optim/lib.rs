@@ -8,6 +8,7 @@
 //! * [`local`], [`polish`]: the descent from a found point that may follow the four of them
 //! * [`search`]: the loop around any of them, as a pure function of settings, seed and history
 //! * [`solution_set`]: all the parameters that meet the targets when there is more than one answer
+//! * [`determination`]: how well the responses determine each parameter
 //!
 //! An optimiser hands out points and is told what came back. It never sees the model, a clock or a thread, so the
 //! same history gives the same points: a killed calibration is resumed by replaying what was told.
@@ -18,6 +19,7 @@
 pub mod annealing;
 pub mod cma_es;
 pub mod constraint;
+pub mod determination;
 pub mod differential;
 pub mod factor;
 pub mod genetic;
