@@ -5,15 +5,18 @@
 //! below `src/`, so Cargo holds them to it; `tests/layers.rs` holds the modules of this crate to it.
 //!
 //! ```text
-//! cli → report → run → { exec, plan, store }
+//! cli → { report, export }; report → run → { exec, plan, store }
+//! export → stage
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → math
 //! { run, plan, stage, store } → artifact
-//! { plan, stage } → unit
+//! { plan, stage } → expression → unit
+//! { plan, stage, artifact } → unit
 //! ```
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`cli`] | what a person types and reads; the only place that prints |
+//! | [`export`] | results as files: CSV, pictures, ParaView, lists of particles |
 //! | [`report`] | a campaign as one HTML page |
 //! | [`run`] | the run loop, and the only state that changes during a run |
 //! | [`exec`] | threads that take work; knows neither tasks nor physics |
@@ -23,7 +26,7 @@
 //! | [`artifact`] | what can be stored, as plain data with a content hash |
 //! | [`dem`] | the discrete-element engine, specimens and tests |
 //! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
-//! | [`math`], [`unit`] | random streams, elementary functions, distributions; quantities with units |
+//! | [`math`], [`unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
 //!
 //! The domains (`dem`, `design`, `stats`, `optim`, `figure`) are pure and know nothing of one another, of files or of TOML.
 //!
@@ -33,10 +36,26 @@
 //! 3. The text of a task whose inputs are known is hashed: its key. The store has a result for the key, or it runs.
 //! 4. A worker computes the artifact; the store writes it under the hash of its values and records key → object.
 //! 5. Keys use the content of inputs, so an equal result stops the wave; equal tasks are one, wherever they come from.
+//!
+//! # What may never happen
+//! * Two results for one task text. Nothing in a result comes from a clock, a host, a thread, an order of completion or a
+//!   locale. Sums keep their order; elementary functions are those of [`math`].
+//! * A result that depends on what else lies in the store, or on anything but the task text, its inputs and its files.
+//! * A file of the store that is changed or replaced. Files are written under another name, checked, and renamed; only
+//!   `flow store gc` deletes.
+//! * An object that is decoded before its size and digest were compared with its record.
+//! * A number that passes from a file, a command line or an artifact into a computation without its unit.
+//! * A domain crate that reads a file, prints, asks for the time or draws a random number without a seed it was given.
+//! * Printing anywhere but in [`cli`].
+//! * An external program that a workflow does not name.
+//! * Lost rows, failed runs or unmet targets that are not said where the numbers are read.
+//! * A panic on anything that a person, a file or a disk supplies. `panic!("BUG: …")` marks a broken invariant of ours.
 
 pub mod artifact;
 pub mod cli;
 pub mod exec;
+pub mod export;
+pub mod expression;
 pub mod plan;
 pub mod report;
 pub mod run;

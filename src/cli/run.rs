@@ -177,7 +177,9 @@ fn exit(report: &Report) -> Exit {
 fn unmet(workflow: &Workflow, report: &Report, store: &Store, exit: Exit) -> Exit {
     let mut exit = exit;
     for stage in &report.stages {
-        let (StageStatus::Done(content), Some(index)) = (&stage.status, workflow.position(&stage.name)) else { continue };
+        let (StageStatus::Done(content), Some(index)) = (&stage.status, workflow.position(&stage.name)) else {
+            continue;
+        };
         let why = store.get(content).ok().and_then(|artifact| workflow.stages[index].stage.unmet(&artifact));
         if let Some(why) = why {
             eprintln!("unmet: {}: {why}", stage.name);

@@ -12,6 +12,7 @@
 
 use super::particle::Group;
 use super::space::Space;
+use super::strength::Scatter;
 
 /// How a modulus becomes the stiffness of a linear contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
@@ -112,10 +113,17 @@ pub struct ContactBond {
     pub tensile_strength: f64,
     /// τ_s, Pa.
     pub shear_strength: f64,
-    /// Standard deviation of both strengths over their mean.
-    pub deviation: f64,
+    /// Scatter of both strengths.
+    pub scatter: Scatter,
     /// What happens to the shear force at a shear break.
     pub shear_break: ShearBreak,
+}
+
+impl ContactBond {
+    /// A bond with its strengths (Pa), without scatter.
+    pub fn new(tensile_strength: f64, shear_strength: f64) -> Self {
+        Self { tensile_strength, shear_strength, scatter: Scatter::default(), shear_break: ShearBreak::default() }
+    }
 }
 
 /// Stiffness of the bonding cement.
@@ -152,8 +160,8 @@ pub struct ParallelBond {
     pub friction_angle: f64,
     /// β: share of the moments in the stresses, 0 … 1.
     pub moment_factor: f64,
-    /// Standard deviation of both strengths over their mean.
-    pub deviation: f64,
+    /// Scatter of both strengths.
+    pub scatter: Scatter,
 }
 
 /// The bond that [`install_bonds`](super::Engine::install_bonds) puts into a contact.
@@ -259,6 +267,19 @@ impl Stiffness {
 }
 
 impl ParallelBond {
+    /// A bond of the full radius, with its modulus (Pa), k̄_n / k̄_s and strengths (Pa): no angle of friction, no scatter.
+    pub fn new(modulus: f64, ratio: f64, tensile_strength: f64, cohesion: f64) -> Self {
+        Self {
+            radius_multiplier: 1.0,
+            stiffness: BondStiffness::Modulus { modulus, ratio },
+            tensile_strength,
+            cohesion,
+            friction_angle: 0.0,
+            moment_factor: 1.0,
+            scatter: Scatter::default(),
+        }
+    }
+
     /// Section of the cement, m².
     pub fn section<S: Space>(&self, radii: [f64; 2]) -> f64 {
         S::section(self.radius_multiplier * radii[0].min(radii[1]))

@@ -1,76 +1,89 @@
 //! How well the responses determine each parameter.
 //!
-//! Solutions are equally good when no response tells them apart: when each lies within the interval of its expected
-//! value, which holds what the scatter of packings leaves unknown. The extent of a parameter is what it takes over all of
-//! them,
+//! A solution is as good as another when no response tells them apart: when the interval of its expected value, which
+//! holds what the scatter of packings and the number of runs leave unknown there, reaches the value y_j that the solution
+//! at hand is expected to give. The extent of a parameter is what it takes over all of them,
 //!
-//! min and max of u_k subject to y_j(u) ∈ [low_j, high_j] for every response j, and u in the domain,
+//! min and max of u_k subject to low_j(u) ≤ y_j ≤ high_j(u) for every response j, and u in the domain,
 //!
 //! the profile of the likelihood cut at these intervals. Each end is found by bisection: whether a point with u_k ≥ v
-//! meets all intervals is one projection onto them ([`super::solution_set`]). A parameter whose extent is
-//! its whole range is free: the targets say nothing of it. The intervals are those of the responses one by one; a
-//! parameter that several responses tie is wider here than jointly at the same level, never narrower.
+//! meets all conditions is one projection onto them ([`super::solution_set`]). A parameter whose extent is its whole range
+//! is free: the targets say nothing of it. Where a target is a band, all of it counts as y_j. The intervals are those
+//! of the responses one by one; a parameter that several responses tie is wider here than jointly at the same level, never
+//! narrower.
 //!
 //! Source: Venzon & Moolgavkar 1988, doi:10.2307/2347496 (profile intervals).
 
 use super::level::Level;
-use super::solution_set::Model;
 use super::{Interval, Problem};
+
+/// What is expected at a point in natural units, response by response; an end that is NaN is unknown.
+pub type Outlook<'a> = dyn Fn(&[f64]) -> Option<Vec<Interval>> + 'a;
 
 /// Halvings of a bisection: ends are known to a thousandth of the range.
 const HALVINGS: usize = 10;
 
 /// What each parameter takes over all equally good solutions, in the unit box: from the solution `at` and from others
-/// that are known to be as good. None where the model has no value there.
-pub fn extents(
-    problem: &Problem,
-    model: &Model,
-    at: &[f64],
-    expected: &[Interval],
-    others: &[Vec<f64>],
-) -> Option<Vec<[f64; 2]>> {
-    let responses = model(&problem.domain.natural(at))?;
-    let bands: Vec<[f64; 2]> = (0..responses.len()).map(|j| band(problem, responses[j], expected, j)).collect();
+/// that are known to be as good. None where nothing is expected there.
+pub fn extents(problem: &Problem, outlook: &Outlook, at: &[f64], others: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
+    let expected = outlook(&problem.domain.natural(at))?;
+    let bands: Vec<[f64; 2]> = (0..expected.len()).map(|j| band(problem, expected[j].mean, j)).collect();
     let extent = |k: usize| {
-        let end = |sign: f64| furthest(problem, model, (at, others), &bands, (k, sign));
+        let end = |sign: f64| furthest(problem, outlook, (at, others), &bands, (k, sign));
         [end(-1.0), end(1.0)]
     };
     Some((0..at.len()).map(extent).collect())
 }
 
-/// What response `j` may be: the interval of its expected value around what the model says, and all of its target's band
-/// when it lies within.
-fn band(problem: &Problem, y: f64, expected: &[Interval], j: usize) -> [f64; 2] {
-    let Interval { mean, low, high } = expected[j];
+/// What response `j` must reach: the value that the solution gives, and all of its target's band when that holds it.
+fn band(problem: &Problem, y: f64, j: usize) -> [f64; 2] {
     let target = &problem.misfit.targets()[j];
-    let (below, above) = if low.is_nan() || high.is_nan() { (0.0, 0.0) } else { (mean - low, high - mean) };
-    let (mut least, mut most) = (y - below, y + above);
     if target.low != target.high && (target.low..=target.high).contains(&y) {
-        (least, most) = (least.min(target.low), most.max(target.high));
+        [target.low, target.high]
+    } else {
+        [y, y]
     }
-    [least, most]
 }
 
-/// The furthest place of coordinate `k` in the direction of `sign` over the points that meet all bands.
+/// The furthest place of coordinate `k` in the direction of `sign` over the points whose intervals reach all bands.
 fn furthest(
     problem: &Problem,
-    model: &Model,
+    outlook: &Outlook,
     (at, others): (&[f64], &[Vec<f64>]),
     bands: &[[f64; 2]],
     (k, sign): (usize, f64),
 ) -> f64 {
-    // The coordinate stands beside the responses, as one more that must reach a wanted value.
+    // The two ends of every interval, and the coordinate as one more value that must reach what is wanted.
     let domain = &problem.domain;
     let coordinate = |u: f64| if sign > 0.0 { 1.0 + u } else { 2.0 - u };
-    let with_coordinate = |x: &[f64]| {
-        let mut y = model(x)?;
-        y.push(coordinate(domain.unit(x)[k]));
-        Some(y)
+    let ends = |x: &[f64]| {
+        let mut values = Vec::with_capacity(2 * bands.len() + 1);
+        for Interval { mean, low, high } in outlook(x)? {
+            values.push(if high.is_nan() { mean } else { high });
+            values.push(if low.is_nan() { mean } else { low });
+        }
+        values.push(coordinate(domain.unit(x)[k]));
+        Some(values)
+    };
+    let reached = |[low, high]: &[f64; 2]| [[*low, f64::INFINITY], [f64::NEG_INFINITY, *high]];
+    // An end of a band that is open asks for nothing.
+    let asks = |[low, high]: &[f64; 2]| low.is_finite() || high.is_finite();
+    let conditions: Vec<[f64; 2]> = bands.iter().flat_map(reached).collect();
+    let open: Vec<bool> = conditions.iter().map(|condition| !asks(condition)).collect();
+    let asked = |x: &[f64]| {
+        let all = ends(x)?;
+        Some(
+            all.into_iter()
+                .enumerate()
+                .filter(|(i, _)| !open.get(*i).is_some_and(|open| *open))
+                .map(|(_, y)| y)
+                .collect(),
+        )
     };
     let meets = |v: f64, from: &[f64]| {
-        let mut wanted = bands.to_vec();
+        let mut wanted: Vec<[f64; 2]> = conditions.iter().copied().filter(asks).collect();
         wanted.push([coordinate(v), f64::INFINITY]);
-        let level = Level { domain, model: &with_coordinate, wanted };
+        let level = Level { domain, model: &asked, wanted };
         level.nearest(from, from).filter(|u| level.is_met(u))
     };
     let known = others.iter().map(Vec::as_slice).chain([at]);
@@ -102,8 +115,9 @@ mod tests {
         Problem { domain: Domain::new(factors, &[]).expect("a box"), misfit, start: None }
     }
 
-    fn about(mean: f64, half: f64) -> Interval {
-        Interval { mean, low: mean - half, high: mean + half }
+    fn about(means: Vec<f64>, halves: &[f64]) -> Option<Vec<Interval>> {
+        let interval = |(mean, half): (f64, &f64)| Interval { mean, low: mean - half, high: mean + half };
+        Some(means.into_iter().zip(halves).map(interval).collect())
     }
 
     /// y₁ = a, y₂ = b + c/2 with b, c ∈ [0, 1]: a is known as well as y₁; b lies within 0.8 − c/2 ± 0.1, so from 0.2 to
@@ -111,34 +125,40 @@ mod tests {
     #[test]
     fn extents_of_a_linear_model_are_those_of_its_linear_programme() {
         let targets = vec![Target::exactly("y1", 0.5, 1.0), Target::exactly("y2", 0.8, 1.0)];
-        let model = |x: &[f64]| Some(vec![x[0], x[1] + 0.5 * x[2]]);
-        let at = [0.5, 0.55, 0.5, 0.5];
-        let found = extents(&problem(targets, 4), &model, &at, &[about(0.5, 0.02), about(0.8, 0.1)], &[]).unwrap();
+        let outlook = |x: &[f64]| about(vec![x[0], x[1] + 0.5 * x[2]], &[0.02, 0.1]);
+        let found = extents(&problem(targets, 4), &outlook, &[0.5, 0.55, 0.5, 0.5], &[]).unwrap();
         for (found, wanted) in found.iter().zip([[0.48, 0.52], [0.2, 0.9], [0.0, 1.0], [0.0, 1.0]]) {
             assert!((found[0] - wanted[0]).abs() < 2e-3 && (found[1] - wanted[1]).abs() < 2e-3, "{found:?} {wanted:?}");
         }
     }
 
-    /// a b = ¼ within 4 %: at the least a = 0.24, where b = 1.
+    /// a b = ¼ within 0.01: at the least a = 0.24, where b = 1.
     #[test]
     fn extents_follow_a_curved_set() {
-        let model = |x: &[f64]| Some(vec![x[0] * x[1]]);
+        let outlook = |x: &[f64]| about(vec![x[0] * x[1]], &[0.01]);
         let product = problem(vec![Target::exactly("y", 0.25, 1.0)], 2);
-        let found = extents(&product, &model, &[0.5, 0.5], &[about(0.25, 0.01)], &[]).unwrap();
-        for found in found {
+        for found in extents(&product, &outlook, &[0.5, 0.5], &[]).unwrap() {
             assert!((found[0] - 0.24).abs() < 2e-3 && found[1] == 1.0, "{found:?}");
         }
+    }
+
+    /// y = a + b/10, where nothing is known of b's effect but that it is within ± 0.2 over half the range: b is free.
+    #[test]
+    fn what_is_not_known_far_away_determines_nothing() {
+        let outlook = |x: &[f64]| about(vec![x[0] + 0.1 * x[1]], &[0.01 + 0.4 * (x[1] - 0.5).abs()]);
+        let found = extents(&problem(vec![Target::exactly("y", 0.5, 1.0)], 2), &outlook, &[0.45, 0.5], &[]).unwrap();
+        assert_eq!(found[1], [0.0, 1.0]);
     }
 
     /// Without an interval a determined parameter has none either; a band leaves what lies within it.
     #[test]
     fn unknown_intervals_and_bands_are_told_apart() {
-        let model = |x: &[f64]| Some(vec![x[0]]);
-        let unknown = Interval { mean: 0.5, low: f64::NAN, high: f64::NAN };
+        let outlook = |x: &[f64]| about(vec![x[0]], &[f64::NAN]);
         let exact = problem(vec![Target::exactly("y", 0.5, 1.0)], 1);
-        assert_eq!(extents(&exact, &model, &[0.5], &[unknown], &[]), Some(vec![[0.5, 0.5]]));
+        let found = extents(&exact, &outlook, &[0.5], &[]).unwrap();
+        assert!(found[0].iter().all(|u| (u - 0.5).abs() < 2e-6), "{found:?}");
         let least = problem(vec![Target::band("y", [0.3, f64::INFINITY], 1.0)], 1);
-        let found = extents(&least, &model, &[0.5], &[unknown], &[]).unwrap();
+        let found = extents(&least, &outlook, &[0.5], &[]).unwrap();
         assert!((found[0][0] - 0.3).abs() < 2e-3 && found[0][1] == 1.0, "{found:?}");
     }
 }

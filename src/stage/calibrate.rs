@@ -46,7 +46,7 @@ mod solve;
 mod tests;
 mod twin;
 
-pub use config::{Calibrate, Constraint, MethodName, ScaleName, Unmet};
+pub use config::{Calibrate, Constraint, MethodName, Unmet};
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
 pub use names::Names;
@@ -56,7 +56,7 @@ use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Ste
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use course::Course;
 use params::Params;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// One response in the wanted unit of the runs of a point, each with the simulator that made it, or why there is none;
@@ -69,8 +69,7 @@ pub(super) fn read_response(
 ) -> Result<Result<f64, String>, StageError> {
     let strain = response.strip_prefix(params::ORDINATE).and_then(|strain| strain.parse().ok());
     let (response, unit) = (response.to_owned(), unit.to_owned());
-    let target =
-        params::TargetParam { response, unit, low: None, high: None, weight: 1.0, tolerance: None, strain };
+    let target = params::TargetParam { response, unit, low: None, high: None, weight: 1.0, tolerance: None, strain };
     let parts: Vec<read::Part<'_>> = runs.iter().map(|&(stage, run)| read::Part { stage, run }).collect();
     Ok(read::evaluation(&parts, from, &[target])?.map(|values| values[0]))
 }
@@ -99,10 +98,6 @@ impl Stage for Calibrate {
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
         self.faults(context)
-    }
-
-    fn settings(&self) -> Value {
-        json!(self)
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

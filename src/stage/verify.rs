@@ -9,13 +9,15 @@
 
 use super::calibrate::{Unmet, read_response};
 use super::notes::short;
-use super::{Class, Complaint, Context, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table, Values};
+use super::{
+    Class, Complaint, Context, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work,
+};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use math::distribution::t_for_coverage;
 use optim::misfit::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -28,10 +30,10 @@ pub struct Verify {
     /// The stage whose simulation is run: its specimen, material and test.
     pub simulator: Option<String>,
     /// Several such stages, as the calibration has them.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub simulators: Vec<String>,
     /// The simulator that a response is taken from, when several give it; the first that does when not given.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default)]
     pub from: BTreeMap<String, String>,
     /// Fresh specimens per set.
     #[serde(default = "five")]
@@ -93,10 +95,6 @@ impl Stage for Verify {
         found
     }
 
-    fn settings(&self) -> Value {
-        json!(self)
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let input = known.one("solution")?;
         let artifact = known.load(input)?;
@@ -112,8 +110,11 @@ impl Stage for Verify {
         };
         let mut task = Task::new("verify", json!(params)).input("solution", input.content);
         for set in 0..table.rows() {
-            let value = |name: &String| table.reals(name).map(|values| (name.clone(), values[set]));
-            let point: Point = factors.iter().filter_map(value).filter(|(_, value)| value.is_finite()).collect();
+            let unit = |name: &String| known.context.factors.get(name).map_or("", |factor| factor.unit.as_str());
+            let value = |name: &String| Ok((name.clone(), table.numbers(name, unit(name))?[set]));
+            let mut point = factors.iter().map(value).collect::<Result<Point, StageError>>()?;
+            // What other sets hold and this one does not.
+            point.retain(|_, value| value.is_finite());
             for replicate in 0..self.replicates {
                 let index = set * self.replicates as usize + replicate as usize;
                 for (k, simulator) in simulators.iter().enumerate() {
@@ -130,12 +131,8 @@ impl Stage for Verify {
             return None;
         }
         let table = result.table("summary")?;
-        let texts = |name: &str| match table.column(name).map(|column| &column.values) {
-            Some(Values::Texts(texts)) => texts.clone(),
-            Some(_) | None => Vec::new(),
-        };
-        let (responses, inside) = (texts("response"), texts("target_inside"));
-        let (sets, means) = (table.reals("set")?, table.reals("mean")?);
+        let (responses, inside) = (table.texts("response").ok()?, table.texts("target_inside").ok()?);
+        let (sets, means) = (table.ints("set").ok()?, table.numbers("mean", "").ok()?);
         let missed = |i: usize| format!("set {}: the mean of `{}` is {}", sets[i], responses[i], short(means[i]));
         let missed: Vec<String> = (0..inside.len()).filter(|&i| inside[i] != "yes").map(missed).collect();
         (!missed.is_empty()).then(|| format!("{}, and the target is not in its interval", missed.join("; ")))
@@ -204,23 +201,19 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
 fn targets(solution: &Artifact) -> Result<Vec<Verified>, StageError> {
     let wrong = || StageError::new("the solution holds no table `prediction` with the targets");
     let table = solution.table("prediction").ok_or_else(wrong)?;
-    let texts = |name: &str| match table.column(name).map(|column| &column.values) {
-        Some(Values::Texts(texts)) => Ok(texts.clone()),
-        Some(_) | None => Err(wrong()),
+    let (sets, values) = (table.ints("set")?, table.numbers("target", "")?);
+    let end = |name: &str, open: f64| match table.numbers(name, "") {
+        Ok(ends) => ends.into_iter().map(|end| if end.is_nan() { open } else { end }).collect(),
+        Err(_) => values.clone(),
     };
-    let (sets, values) = (table.reals("set").ok_or_else(wrong)?, table.reals("target").ok_or_else(wrong)?);
-    let end = |name: &str, open: f64| match table.reals(name) {
-        Some(ends) => ends.into_iter().map(|end| if end.is_nan() { open } else { end }).collect(),
-        None => values.clone(),
-    };
-    let (low, high) = (end("at_least", f64::NEG_INFINITY), end("at_most", f64::INFINITY));
+    let (low, high): (Vec<f64>, Vec<f64>) = (end("at_least", f64::NEG_INFINITY), end("at_most", f64::INFINITY));
     let targets: Vec<[f64; 2]> = low.into_iter().zip(high).map(|(low, high)| [low, high]).collect();
-    let names = texts("response")?.into_iter().zip(texts("unit")?);
-    let one = |((&set, &ends), (response, unit)): ((&f64, &[f64; 2]), (String, String))| Verified {
-        set: set as i64,
-        target: Target::band(&response, ends, 1.0),
-        response,
-        unit,
+    let names = table.texts("response")?.iter().zip(table.texts("unit")?);
+    let one = |((&set, &ends), (response, unit)): ((&i64, &[f64; 2]), (&String, &String))| Verified {
+        set,
+        response: response.clone(),
+        unit: unit.clone(),
+        target: Target::band(response, ends, 1.0),
         values: Vec::new(),
     };
     Ok(sets.iter().zip(&targets).zip(names).map(one).collect())
@@ -284,8 +277,7 @@ fn run_table(
         .ints_column("set", "target set, from 1", (0..failures.len()).map(|i| (i / n) as i64 + 1).collect())
         .ints_column("specimen", "counted from 1", (0..failures.len()).map(|i| (i % n) as i64 + 1).collect());
     for name in &params.factors {
-        let values = source.reals(name).ok_or_else(|| StageError::new(format!("the solution lost `{name}`")))?;
-        let unit = source.column(name).map_or("", |column| column.unit.as_str());
+        let (values, unit) = source.shown(name)?;
         table = table.reals_column(name, unit, "", (0..failures.len()).map(|i| values[i / n]).collect());
     }
     let mut seen: Vec<&str> = Vec::new();

@@ -6,7 +6,7 @@ use super::names::Names;
 use super::params::{FactorParam, Params};
 use super::slope::Slope;
 use crate::artifact::Artifact;
-use crate::stage::{Context, StageError};
+use crate::stage::{Context, Scale, StageError};
 use crate::unit::Unit;
 use optim::misfit::{Denominator, Form};
 use optim::search::{Limits, Method};
@@ -25,17 +25,13 @@ pub struct Calibrate {
     /// The stage whose simulation is run: its specimen, material and test.
     pub simulator: Option<String>,
     /// Several such stages, all run at every point: a compression and a splitting test, say.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub simulators: Vec<String>,
     /// The simulator that a response is taken from, when several give it; the first that does when not given.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub from: BTreeMap<String, String>,
     /// Cheaper twins of the simulators, one or in their order: they are searched, and the simulators themselves run only
     /// to correct what was found.
-    #[serde(skip_serializing_if = "Names::is_empty")]
     pub coarse: Names,
     /// Most runs of the simulators themselves where there are coarse ones; 12 when not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub full_runs: Option<usize>,
     /// Stages whose runs the surrogate learns from.
     pub learn_from: Vec<String>,
@@ -46,28 +42,23 @@ pub struct Calibrate {
     /// Other ranges than those of the factors, in their units.
     pub ranges: BTreeMap<String, [f64; 2]>,
     /// Factors that are searched on another scale than their own.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub scales: BTreeMap<String, ScaleName>,
+    pub scales: BTreeMap<String, Scale>,
     /// Linear constraints on the factors.
     pub constraints: Vec<Constraint>,
     /// Target sets: what is wanted of each response, such as `{ UCS = "30 MPa", sigma_t = { at_least = "3 MPa" } }`.
     pub targets: Vec<BTreeMap<String, Goal>>,
     /// Factors that are not calibrated and their values, in their units: one table for all target sets, or one for each;
     /// several with one target set make as many sets.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<BTreeMap<String, f64>>,
     /// A stress–strain curve that every set must follow as well; needs a simulator.
     pub curve: Option<Curve>,
     /// Weight of the deviation of a response, 1 when not given.
     pub weights: BTreeMap<String, f64>,
     /// Relative deviation up to which a target counts as met; 0.02 when not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// What `flow run` makes of targets that are not met.
-    #[serde(skip_serializing_if = "Unmet::is_said")]
     pub unmet: Unmet,
     /// How deviations are combined: as the method's preset was published, else their sum, when not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub misfit: Option<Form>,
     /// What deviations are relative to.
     pub denominator: Denominator,
@@ -84,13 +75,10 @@ pub struct Calibrate {
     /// Settings of the surrogate.
     pub surrogate: Option<surrogate::Settings>,
     /// Settings of the proportional corrections.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub proportional: Option<Slope>,
     /// A first guess, in the factors' units; the middle of the range for factors that are not named.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub start: BTreeMap<String, f64>,
     /// Seeds of the optimiser, in place of the workflow's: every target set is searched once with each.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub seeds: Vec<u64>,
     /// Most evaluations of a set.
     pub evaluations: Option<usize>,
@@ -122,23 +110,6 @@ pub enum Unmet {
     Say,
     /// It is said, and `flow run` exits with 1.
     Fail,
-}
-
-impl Unmet {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
-    fn is_said(&self) -> bool {
-        *self == Self::Say
-    }
-}
-
-/// How the range of a factor is divided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum ScaleName {
-    /// By equal differences.
-    Linear,
-    /// By equal ratios.
-    Log,
 }
 
 /// Σ terms ≤ `at_most`, in the factors' units.
@@ -224,13 +195,14 @@ impl Calibrate {
         let factor = |name: &String| {
             let factor = context.factors.get(name).ok_or_else(|| StageError::new(format!("no [factor.{name}]")))?;
             let [low, high] = self.range(context, name).ok_or_else(|| no_range(name))?;
-            let (fallback, log) = (self.material_value(context, name), self.is_log(name));
+            let (fallback, log) = (self.material_value(context, name), self.is_log(context, name));
             Ok(FactorParam { name: name.clone(), unit: factor.unit.clone(), low, high, log, fallback })
         };
         let factors = self.factors.iter().map(factor).collect::<Result<_, StageError>>()?;
         Ok(Params {
             factors,
             sets: self.sets(context, measured)?,
+            held_units: self.held_units(context),
             form: self.form(),
             denominator: self.denominator,
             constraints: self.constraints.clone(),
@@ -256,17 +228,24 @@ impl Calibrate {
         self.ranges.get(name).copied().or(factor.range).or(ends)
     }
 
-    /// Whether a factor is searched by logarithms.
-    fn is_log(&self, name: &str) -> bool {
-        self.scales.get(name) == Some(&ScaleName::Log)
+    /// Whether a factor is searched by logarithms: as the stage says, else as the factor does.
+    fn is_log(&self, context: &Context, name: &str) -> bool {
+        let own = context.factors.get(name).is_some_and(|factor| factor.scale == Scale::Log);
+        self.scales.get(name).map_or(own, |scale| *scale == Scale::Log)
+    }
+
+    fn held_units(&self, context: &Context) -> BTreeMap<String, String> {
+        let held = self.held.iter().flat_map(BTreeMap::keys);
+        held.filter_map(|name| Some((name.clone(), context.factors.get(name)?.unit.clone()))).collect()
     }
 
     /// The value that the stage's material has for a factor, in the factor's unit.
     fn material_value(&self, context: &Context, name: &str) -> Option<f64> {
         let factor = context.factors.get(name)?;
-        let parameter = context.materials.get(self.material.as_ref()?)?.get(&factor.sets)?;
+        let values = context.materials.get(self.material.as_ref()?)?.resolve_alone();
+        let parameter = factor.sets.iter().find_map(|path| values.get(path))?;
         let unit = Unit::parse(&factor.unit).ok()?;
-        Some(parameter.value / unit.factor)
+        Some(unit.of_si(parameter.value))
     }
 }
 

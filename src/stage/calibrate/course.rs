@@ -65,7 +65,12 @@ impl Course {
     }
 
     /// Takes in all outcomes there are; the tasks that it must see next, none when every search is over.
-    pub(super) fn advance(&mut self, stage: &Calibrate, known: &Known, params: &Params) -> Result<Vec<Task>, StageError> {
+    pub(super) fn advance(
+        &mut self,
+        stage: &Calibrate,
+        known: &Known,
+        params: &Params,
+    ) -> Result<Vec<Task>, StageError> {
         let mut wanted = Vec::new();
         let count = self.sets.len();
         for (set, trail) in self.sets.iter_mut().enumerate() {

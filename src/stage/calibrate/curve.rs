@@ -10,7 +10,6 @@ use super::names::Names;
 use super::params::{ORDINATE, TargetParam};
 use crate::artifact::{Artifact, Table};
 use crate::stage::StageError;
-use crate::unit::Unit;
 use optim::misfit::{Form, ordinates};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,28 +19,20 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct Curve {
     /// Axial strains of the curve, shortening positive.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub strain: Vec<f64>,
     /// Axial stress at each, compression positive, such as `"12.5 MPa"`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub stress: Vec<Wanted>,
     /// The stage of kind `data` that holds the curve in place of these; several, one per target set.
-    #[serde(skip_serializing_if = "Names::is_empty")]
     pub of: Names,
     /// Names of its columns of strain and stress.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub columns: Option<[String; 2]>,
     /// Strains at which curves are compared; the points of an inline curve when left out.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub at: Vec<f64>,
     /// Number of points on the rising branch of the measured curve, in place of `at`.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<usize>,
     /// How the points weigh against each other.
-    #[serde(skip_serializing_if = "Weights::is_equal")]
     pub weights: Weights,
     /// Weight of the whole curve against other targets; 1 when not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<f64>,
 }
 
@@ -54,13 +45,6 @@ pub enum Weights {
     Equal,
     /// By their measured stress, so that first points near zero weigh little.
     Stress,
-}
-
-impl Weights {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
-    fn is_equal(&self) -> bool {
-        *self == Self::Equal
-    }
 }
 
 /// Points on the rising branch when nothing is said.
@@ -112,8 +96,9 @@ impl Curve {
             None => self.inline()?,
         };
         let strains = self.strains(&measured)?;
-        let stresses = ordinates(&measured.strain, &measured.stress, &strains)
-            .map_err(|fault| StageError::new(format!("curve: {fault}")).hint("`at` lies within the measured strains"))?;
+        let stresses = ordinates(&measured.strain, &measured.stress, &strains).map_err(|fault| {
+            StageError::new(format!("curve: {fault}")).hint("`at` lies within the measured strains")
+        })?;
         let total: f64 = stresses.iter().sum();
         let weight = |stress: f64| {
             let share = match self.weights {
@@ -165,7 +150,8 @@ impl Curve {
             return Ok(measured.strain.clone());
         }
         let points = measured.strain.iter().zip(&measured.stress);
-        let peak = points.clone().fold((f64::NAN, f64::NEG_INFINITY), |peak, (&e, &s)| if s > peak.1 { (e, s) } else { peak });
+        let peak =
+            points.clone().fold((f64::NAN, f64::NEG_INFINITY), |peak, (&e, &s)| if s > peak.1 { (e, s) } else { peak });
         let first = points.clone().take_while(|(_, stress)| **stress <= 0.0).map(|(strain, _)| *strain).last();
         let first = first.unwrap_or_else(|| measured.strain[0].min(0.0));
         if !(peak.1 > 0.0 && peak.0 > first) {
@@ -187,14 +173,8 @@ fn column(table: &Table, name: &str, unit: &str) -> Result<Vec<f64>, StageError>
         let known = format!("the columns are {}; name them with `columns`", names.join(", "));
         StageError::new(format!("curve: the data have no column of numbers `{name}`")).hint(known)
     };
-    let (found, values) = (table.column(name).ok_or_else(missing)?, table.reals(name).ok_or_else(missing)?);
-    let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("curve: column `{name}`: {e}")));
-    let (own, wanted) = (parse(&found.unit)?, parse(unit)?);
-    if own.dimension != wanted.dimension {
-        let (own, wanted) = (&found.unit, if unit.is_empty() { "a pure number" } else { unit });
-        return Err(StageError::new(format!("curve: column `{name}` is in `{own}`, and {wanted} is needed")));
-    }
-    Ok(values.into_iter().map(|value| value * (own.factor / wanted.factor)).collect())
+    let found = table.column(name).ok_or_else(missing)?;
+    found.numbers(unit).map_err(|fault| StageError::new(format!("curve: column `{name}`: {fault}")))
 }
 
 #[cfg(test)]
@@ -203,9 +183,12 @@ mod tests {
     use crate::artifact::{ArtifactKind, Group, Node};
 
     fn measured() -> Artifact {
-        let table = Table::default()
-            .reals_column("strain", "%", "", vec![0.0, 0.1, 0.2, f64::NAN, 0.4])
-            .reals_column("stress", "kPa", "", vec![0.0, 400.0, 600.0, 1.0, 100.0]);
+        let table = Table::default().reals_column("strain", "%", "", vec![0.0, 0.1, 0.2, f64::NAN, 0.4]).reals_column(
+            "stress",
+            "kPa",
+            "",
+            vec![0.0, 400.0, 600.0, 1.0, 100.0],
+        );
         Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table)))
     }
 

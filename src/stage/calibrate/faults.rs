@@ -61,7 +61,8 @@ impl Calibrate {
         let (coarse, simulators) = (self.coarse.list(), self.simulators());
         if !coarse.is_empty() && coarse.len() != simulators.len() {
             let message = format!("{} coarse stages for {} simulators", coarse.len(), simulators.len());
-            found.push(Complaint::new("coarse", message).hint("name a coarse twin for every simulator, in their order"));
+            found
+                .push(Complaint::new("coarse", message).hint("name a coarse twin for every simulator, in their order"));
         }
         for name in coarse.iter().filter(|name| simulators.contains(name)) {
             found.push(Complaint::new("coarse", format!("`{name}` is the simulator itself")));
@@ -128,7 +129,8 @@ impl Calibrate {
         for name in self.targets.iter().flat_map(BTreeMap::keys) {
             unknown("targets".to_owned(), "response", name, context.responses.keys().collect());
         }
-        for (key, names) in [("weights", self.weights.keys().collect::<Vec<_>>()), ("from", self.from.keys().collect())] {
+        for (key, names) in [("weights", self.weights.keys().collect::<Vec<_>>()), ("from", self.from.keys().collect())]
+        {
             for name in names {
                 unknown(key.to_owned(), "response", name, context.responses.keys().collect());
             }
@@ -211,4 +213,3 @@ fn json_name(method: MethodName) -> String {
         other => panic!("BUG: a method's name is a text, not {other:?}"),
     }
 }
-

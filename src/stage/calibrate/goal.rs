@@ -1,6 +1,6 @@
 //! What a workflow wants of a response: a value, or a band, with what else is said of it.
 
-use crate::unit::{Dimension, Unit, parse_any};
+use crate::unit::{Unit, split_any};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,24 +20,19 @@ impl Wanted {
     /// # Errors
     /// It is of another dimension or cannot be read.
     pub fn value_in(&self, unit: &str) -> Result<f64, String> {
-        let to = Unit::parse(unit).map_err(|e| e.to_string())?;
-        let (value, dimension) = match self {
-            Self::Number(value) => (*value, Dimension::NONE),
-            Self::Text(text) => parse_any(text).map_err(|e| e.to_string())?,
+        let (value, own) = match self {
+            Self::Number(value) => (*value, ""),
+            Self::Text(text) => split_any(text).map_err(|e| e.to_string())?,
         };
-        if dimension != to.dimension {
+        let wanted = Unit::parse(unit).map_err(|e| e.to_string())?;
+        let Ok(conversion) = Unit::parse(own).map_err(|e| e.to_string())?.to(wanted) else {
             let found = match self {
                 Self::Number(value) => value.to_string(),
                 Self::Text(text) => format!("\"{text}\""),
             };
             return Err(format!("{found} is not a value in `{unit}`; write for example \"30 {unit}\""));
-        }
-        // One exact step where the text has the unit itself: "59.67 MPa" is 59.67, not 59.67 · 10⁶ / 10⁶.
-        let plain = match self {
-            Self::Text(text) => text.trim().strip_suffix(unit).and_then(|number| number.trim().parse().ok()),
-            Self::Number(_) => None,
         };
-        Ok(plain.unwrap_or(value / to.factor))
+        Ok(conversion.of(value))
     }
 }
 
@@ -58,19 +53,19 @@ pub enum Goal {
 #[serde(deny_unknown_fields)]
 pub struct GoalTable {
     /// The wanted value.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub value: Option<Wanted>,
     /// The least that is good.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub at_least: Option<Wanted>,
     /// The most that is good.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub at_most: Option<Wanted>,
     /// Weight of the deviation in this set, in place of that in `weights`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub weight: Option<f64>,
     /// Relative deviation up to which the target counts as met, in place of the stage's `tolerance`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub tolerance: Option<f64>,
 }
 

@@ -105,6 +105,9 @@ pub(super) struct History {
 pub(super) struct Params {
     pub factors: Vec<FactorParam>,
     pub sets: Vec<SetParam>,
+    /// Units of the factors that sets hold.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub held_units: BTreeMap<String, String>,
     pub form: Form,
     pub denominator: Denominator,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -158,7 +161,8 @@ impl Params {
     pub(super) fn faults(&self) -> Vec<Error> {
         let domain = self.domain();
         let outside = |point: Option<Vec<f64>>| domain.as_ref().ok().and_then(|domain| domain.check(&point?).err());
-        let mut found: Vec<Error> = [self.preferred(), self.filled(&self.start)].into_iter().filter_map(outside).collect();
+        let mut found: Vec<Error> =
+            [self.preferred(), self.filled(&self.start)].into_iter().filter_map(outside).collect();
         found.extend(domain.err().unwrap_or_default());
         for set in 0..self.sets.len() {
             for fault in self.misfit(set).err().unwrap_or_default() {

@@ -1,13 +1,14 @@
 //! Responses for the optimiser: from surfaces, from single runs, from tables of runs.
 
 use super::params::{FactorParam, SetParam, TargetParam};
+use crate::artifact::run::Run;
 use crate::artifact::{Artifact, Table, Values};
 use crate::stage::StageError;
 use crate::stage::fitted::models;
-use crate::unit::Unit;
+use crate::unit::Conversion;
 use optim::Interval;
 use optim::misfit::ordinates;
-use optim::search::Run;
+use optim::search::Run as Trial;
 use optim::surrogate::Trend;
 use stats::model::Model;
 use std::collections::BTreeMap;
@@ -53,18 +54,20 @@ type Held = BTreeMap<String, f64>;
 
 /// What the surfaces expect at a point, each with the 95 % interval of its mean response; NaN for the ends where the
 /// fit has no residual to tell from.
-pub(super) fn expected(
+pub(super) fn outlook(
     artifact: &Artifact,
     factors: &[FactorParam],
     set: &SetParam,
-    point: &[f64],
-) -> Result<Vec<Interval>, StageError> {
-    let one = |(model, axes): &Surface| {
-        let told = model.predict(&on_axes(axes, point), COVERAGE);
-        let (low, high) = told.confidence.unwrap_or((f64::NAN, f64::NAN));
-        Interval { mean: told.value, low, high }
-    };
-    Ok(chosen(artifact, factors, &set.held, &set.targets)?.iter().map(one).collect())
+) -> Result<impl Fn(&[f64]) -> Option<Vec<Interval>> + use<>, StageError> {
+    let chosen = chosen(artifact, factors, &set.held, &set.targets)?;
+    Ok(move |point: &[f64]| {
+        let one = |(model, axes): &Surface| {
+            let told = model.predict(&on_axes(axes, point), COVERAGE);
+            let (low, high) = told.confidence.unwrap_or((f64::NAN, f64::NAN));
+            Interval { mean: told.value, low, high }
+        };
+        Some(chosen.iter().map(one).collect())
+    })
 }
 
 /// Coverage of the intervals.
@@ -126,15 +129,9 @@ fn axes(model: &Model, response: &str, factors: &[FactorParam], held: &Held) -> 
 }
 
 fn converted(value: f64, from: &str, to: &str, what: &str) -> Result<f64, StageError> {
-    if from == to {
-        return Ok(value);
-    }
-    let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("`{what}`: {e}")));
-    let (own, wanted) = (parse(from)?, parse(to)?);
-    if own.dimension != wanted.dimension {
-        return Err(StageError::new(format!("`{what}` comes in `{from}` and is wanted in `{to}`")));
-    }
-    Ok(value * (own.factor / wanted.factor))
+    let conversion = Conversion::between(from, to)
+        .map_err(|e| StageError::new(format!("`{what}` comes in `{from}` and is wanted in `{to}`: {e}")))?;
+    Ok(conversion.of(value))
 }
 
 /// One simulator's run at a point.
@@ -154,7 +151,7 @@ pub(super) fn evaluation(
 ) -> Result<Result<Vec<f64>, String>, StageError> {
     let mut found = Vec::new();
     for part in parts {
-        let (failure, responses) = crate::stage::rows::responses(part.run)?;
+        let (failure, responses) = Run::outcome(part.run)?;
         if !failure.is_empty() {
             let whose = if parts.len() > 1 { format!("{}: ", part.stage) } else { String::new() };
             return Ok(Err(format!("{whose}{failure}")));
@@ -201,9 +198,8 @@ fn no_response(response: &str, found: &[Given<'_>]) -> StageError {
 /// curve rises from zero, and beyond its last the stress is that of the last: the test ended on the falling branch.
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
-    let curve = artifact.table("curve").ok_or_else(missing)?;
-    let column = |name: &str| curve.reals(name).ok_or_else(missing);
-    let (mut strains, mut stresses) = (column("axial_strain")?, column("stress")?);
+    let curve = Run::from_artifact(artifact)?.curve.ok_or_else(missing)?;
+    let (mut strains, mut stresses) = (curve.axial_strain, curve.stress);
     let Some(&last) = strains.last() else { return Ok(Err("the stress–strain curve is empty".to_owned())) };
     if strains[0] > 0.0 {
         strains.insert(0, 0.0);
@@ -218,7 +214,7 @@ pub(super) fn runs(
     artifact: &Artifact,
     factors: &[FactorParam],
     targets: &[TargetParam],
-) -> Result<Vec<Run>, StageError> {
+) -> Result<Vec<Trial>, StageError> {
     let table =
         artifact.table("runs").ok_or_else(|| StageError::new("a stage of `learn_from` holds no table `runs`"))?;
     let points = factors.iter().map(|f| factor_values(table, f)).collect::<Result<Vec<_>, _>>()?;
@@ -229,7 +225,7 @@ pub(super) fn runs(
         let some = values.iter().any(|v| v.is_finite());
         let point = points.iter().map(|column| column[i]).collect();
         // A run that lacks every response without having failed says nothing.
-        (some || failed[i]).then_some(Run { point, responses: some.then_some(values) })
+        (some || failed[i]).then_some(Trial { point, responses: some.then_some(values) })
     };
     Ok((0..table.rows()).filter_map(row).collect())
 }
@@ -243,22 +239,20 @@ fn failures(table: &Table) -> Vec<bool> {
 
 fn factor_values(table: &Table, factor: &FactorParam) -> Result<Vec<f64>, StageError> {
     let name = &factor.name;
-    match (table.column(name), table.reals(name)) {
-        (Some(column), Some(values)) => {
-            values.into_iter().map(|v| converted(v, &column.unit, &factor.unit, name)).collect()
+    match (table.column(name), factor.fallback) {
+        (Some(column), _) => Ok(column.numbers(&factor.unit)?),
+        (None, Some(fallback)) => Ok(vec![fallback; table.rows()]),
+        (None, None) => {
+            Err(StageError::new(format!("a table of `learn_from` does not say at what `{name}` its runs were"))
+                .hint("name the `material` that they held it at"))
         }
-        (None, _) if factor.fallback.is_some() => Ok(vec![factor.fallback.unwrap_or_default(); table.rows()]),
-        _ => Err(StageError::new(format!("a table of `learn_from` does not say at what `{name}` its runs were"))
-            .hint("name the `material` that they held it at")),
     }
 }
 
 fn response_values(table: &Table, target: &TargetParam) -> Result<Vec<f64>, StageError> {
     let name = &target.response;
-    match (table.column(name), table.reals(name)) {
-        (Some(column), Some(values)) => {
-            values.into_iter().map(|v| converted(v, &column.unit, &target.unit, name)).collect()
-        }
-        _ => Ok(vec![f64::NAN; table.rows()]),
+    match table.column(name) {
+        Some(column) => Ok(column.numbers(&target.unit)?),
+        None => Ok(vec![f64::NAN; table.rows()]),
     }
 }

@@ -4,7 +4,7 @@ use super::effort::LEVELS;
 use super::outlook::{self, Met};
 use super::params::{FactorParam, Params, TargetParam};
 use super::solve::{Line, Solved};
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use crate::stage::notes::short;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,7 +50,8 @@ fn columns(mut table: Table, params: &Params, rows: &[(usize, &[f64], &[f64])]) 
     }
     for name in held(params) {
         let value = |set: usize| params.sets[set].held.get(name).copied().unwrap_or(f64::NAN);
-        table = table.reals_column(name, "", "held", rows.iter().map(|(set, ..)| value(*set)).collect());
+        let unit = params.held_units.get(name).map_or("", String::as_str);
+        table = table.reals_column(name, unit, "held", rows.iter().map(|(set, ..)| value(*set)).collect());
     }
     for TargetParam { response, unit, .. } in responses(params) {
         let value = |(set, _, values): &(usize, &[f64], &[f64])| {
@@ -102,13 +103,10 @@ fn seeded(table: Table, params: &Params, sets: Vec<usize>) -> Table {
 /// What `flow run` says of targets that are not met; none when all are.
 pub(super) fn unmet(solution: &Artifact) -> Option<String> {
     let table = solution.table("prediction")?;
-    let texts = |name: &str| match table.column(name).map(|column| &column.values) {
-        Some(Values::Texts(texts)) => texts.clone(),
-        Some(_) | None => Vec::new(),
-    };
-    let (responses, met, reach, units) = (texts("response"), texts("met"), texts("reach"), texts("unit"));
-    let (sets, expected) = (table.reals("set")?, table.reals("expected")?);
-    let several = sets.iter().any(|set| *set != 1.0);
+    let texts = |name: &str| table.texts(name).ok();
+    let (responses, met, reach, units) = (texts("response")?, texts("met")?, texts("reach")?, texts("unit")?);
+    let (sets, expected) = (table.ints("set").ok()?, table.numbers("expected", "").ok()?);
+    let several = sets.iter().any(|set| *set != 1);
     let mut missed = Vec::new();
     for i in (0..met.len()).filter(|&i| met[i] != Met::Yes.word()) {
         let whose = if several { format!("set {}: ", sets[i]) } else { String::new() };
@@ -123,8 +121,11 @@ fn effort(params: &Params, solved: &[Solved]) -> Table {
     let count = |pick: fn(&Solved) -> Option<usize>| {
         solved.iter().map(|s| pick(s).map_or(f64::NAN, |count| count as f64)).collect::<Vec<_>>()
     };
-    let table = named("evaluations until all responses lay near their targets; none where they never did")
-        .ints_column("set", "target set, from 1", numbered(0..solved.len()));
+    let table = named("evaluations until all responses lay near their targets; none where they never did").ints_column(
+        "set",
+        "target set, from 1",
+        numbered(0..solved.len()),
+    );
     let mut table = seeded(table, params, (0..solved.len()).collect())
         .texts_column("method", "", solved.iter().map(|_| method(params)).collect())
         .ints_column("evaluations", "in all", solved.iter().map(|s| s.evaluations as i64).collect())
@@ -195,7 +196,9 @@ fn shown(params: &Params, all: &[(usize, &Line)]) -> Vec<i64> {
     for &(set, line) in all {
         let seen = by_index.entry((line.coarse, line.evaluation)).or_default();
         let alike = |(other, like): &&(usize, &Line)| {
-            same(like, line) && params.sets[*other].held == params.sets[set].held && index(*other, like) == index(set, line)
+            same(like, line)
+                && params.sets[*other].held == params.sets[set].held
+                && index(*other, like) == index(set, line)
         };
         let owner = seen.iter().find(alike).map_or(set, |(other, _)| *other);
         rows.push(((index(set, line) * sets + owner) * simulators) as i64 + 1);

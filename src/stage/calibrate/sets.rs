@@ -28,7 +28,8 @@ impl Calibrate {
         let mut sets = Vec::new();
         for i in 0..self.count() {
             let nothing = BTreeMap::new();
-            let mut targets = self.set(context, of_set(&self.targets, i).unwrap_or(&nothing)).map_err(StageError::new)?;
+            let mut targets =
+                self.set(context, of_set(&self.targets, i).unwrap_or(&nothing)).map_err(StageError::new)?;
             if let Some(curve) = &self.curve {
                 let own = of_set(measured, i).map(|artifact| &**artifact);
                 if own.is_some() || curve.of.is_empty() {

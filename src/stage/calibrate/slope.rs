@@ -18,19 +18,14 @@ use std::collections::BTreeMap;
 #[serde(default, deny_unknown_fields)]
 pub struct Slope {
     /// Runs of a set: the first, and those corrected by the one before; 2 when not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub runs: Option<usize>,
     /// The slope itself, response over factor in their units.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub slope: Option<f64>,
     /// The stage whose table holds slopes by held factors.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub slopes: Option<String>,
     /// That table; `runs` when not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub table: Option<String>,
     /// The column of slopes; `slope` when not given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub column: Option<String>,
 }
 
@@ -103,7 +98,7 @@ fn columns(table: &Table) -> String {
 }
 
 fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, StageError> {
-    table.reals(name).ok_or_else(|| {
+    table.shown(name).map(|(values, _)| values).map_err(|_| {
         StageError::new(format!("`slopes`: there is no column of numbers `{name}`"))
             .hint(format!("the columns are {}", columns(table)))
     })

@@ -6,7 +6,7 @@ use super::twin::{self, Twin, full_limits, full_method};
 use super::{read, record};
 use crate::artifact::Artifact;
 use crate::stage::{Failure, Job, Progress, StageError};
-use optim::determination::extents;
+use optim::determination::{Outlook, extents};
 use optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
 use optim::solution_set::{SolutionSet, explore};
 use optim::surrogate::Model;
@@ -69,8 +69,9 @@ pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
             None => {
                 let mut found = on_surfaces(job, &params, problem, &knowledge, seed)?;
                 if let Some(surfaces) = surfaces.first() {
-                    found.expected = read::expected(surfaces, &params.factors, &params.sets[set], &found.point)?;
-                    found.determine(&|x| knowledge.trend.as_ref().and_then(|trend| trend(x)));
+                    let outlook = read::outlook(surfaces, &params.factors, &params.sets[set])?;
+                    found.expected = outlook(&found.point).unwrap_or_default();
+                    found.determine(&outlook);
                 }
                 found
             }
@@ -124,7 +125,8 @@ fn on_surfaces(
     let point = problem.domain.natural(&chosen.unwrap_or(found.point));
     let responses = surfaces(&point).unwrap_or_default();
     let exact = |&y: &f64| Interval { mean: y, low: f64::NAN, high: f64::NAN };
-    let (expected, misfit): (Vec<Interval>, f64) = (responses.iter().map(exact).collect(), problem.misfit.of(&responses));
+    let (expected, misfit): (Vec<Interval>, f64) =
+        (responses.iter().map(exact).collect(), problem.misfit.of(&responses));
     let State { evaluations, failed, .. } = state;
     let effort = Effort::of(&problem, &history, &[]);
     let (coarse, observed, scatter) = (0, None, vec![f64::NAN; expected.len()]);
@@ -218,7 +220,9 @@ fn simulated(
     let expected = match models {
         Some(_) => recommended.responses,
         // One run says nothing of its own scatter.
-        None => recommended.responses.iter().map(|y| Interval { mean: y.mean, low: f64::NAN, high: f64::NAN }).collect(),
+        None => {
+            recommended.responses.iter().map(|y| Interval { mean: y.mean, low: f64::NAN, high: f64::NAN }).collect()
+        }
     };
     let preference = params.preferred().map(|point| problem.domain.unit(&point));
     let model = |x: &[f64]| models.as_ref().map(|models| models.expected_at(x));
@@ -230,6 +234,7 @@ fn simulated(
     let failed = failed + coarse.iter().filter(|told| told.responses.is_none()).count();
     let (coarse, point, misfit) = (coarse.len(), problem.domain.natural(&recommended.point), recommended.misfit);
     let history = lines;
+    let domain = problem.domain.clone();
     let mut solved = Solved {
         problem,
         stop,
@@ -247,7 +252,11 @@ fn simulated(
         history,
         effort,
     };
-    solved.determine(&model);
+    let outlook = |x: &[f64]| {
+        let models = models.as_ref()?;
+        Some(models.at(domain.unit(x)).responses)
+    };
+    solved.determine(&outlook);
     Ok(solved)
 }
 
@@ -276,11 +285,11 @@ fn too_few(problem: &Problem, runs: &[Told]) -> String {
 }
 
 impl Solved {
-    /// Finds what each factor takes over all equally good solutions of a model.
-    fn determine(&mut self, model: &optim::solution_set::Model) {
+    /// Finds what each factor takes over all equally good solutions.
+    fn determine(&mut self, outlook: &Outlook) {
         let Some(set) = &self.set else { return };
         let at = self.problem.domain.unit(&self.point);
-        let found = extents(&self.problem, model, &at, &self.expected, &set.sample);
+        let found = extents(&self.problem, outlook, &at, &set.sample);
         let natural = |found: Vec<[f64; 2]>| {
             let end = |k: usize| self.problem.domain.natural(&found.iter().map(|ends| ends[k]).collect::<Vec<_>>());
             end(0).into_iter().zip(end(1)).map(|(low, high)| [low, high]).collect()
@@ -289,12 +298,7 @@ impl Solved {
     }
 }
 
-fn history(
-    problem: &Problem,
-    runs: &[Told],
-    recommended: &[Option<Recommendation>],
-    coarse: bool,
-) -> Vec<Line> {
+fn history(problem: &Problem, runs: &[Told], recommended: &[Option<Recommendation>], coarse: bool) -> Vec<Line> {
     let mut best = f64::INFINITY;
     let line = |(i, run): (usize, &Told)| {
         let misfit = run.responses.as_ref().map_or(f64::NAN, |y| problem.misfit.of(y));
