@@ -62,15 +62,13 @@ pub fn mount(
 }
 
 fn clump(clump: &crate::genesis::clump::Clump) -> Clump<D2> {
-    let mut inertia = [[0.0; 3]; 3];
-    inertia[2][2] = clump.inertia;
     Clump {
         pebbles: clump.pebbles.clone(),
         centre: clump.centre,
         velocity: [0.0; 2],
         spin: [0.0],
         mass: clump.mass,
-        inertia,
+        inertia: clump.inertia,
     }
 }
 

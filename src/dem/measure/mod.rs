@@ -11,6 +11,7 @@ pub use balance::unbalanced_ratio;
 pub use cracks::{Crack, Mode};
 pub(crate) use energy::stored;
 pub use energy::{Energy, energy};
+pub(crate) use fabric::{Dyads, mean_dyad};
 pub use fabric::{Coordination, Link, coordination, fabric, links};
 pub use strain::{displacement_gradient, velocity_gradient};
 pub use stress::{Region, cell_stress, stress};
