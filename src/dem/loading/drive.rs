@@ -246,7 +246,7 @@ pub fn drive(
         if run.samples.len().is_multiple_of(ENERGY_EVERY) {
             run.energies.push((axial, energy(engine)));
         }
-        if watch(&sample) == Watch::Stop {
+        if !engine.heed(watch(&sample)) {
             run.interrupted = true;
             break;
         }
