@@ -85,7 +85,7 @@ fn clumps(specimen: &Specimen) -> Table {
             "inertia",
             "kg*m",
             "about the centre of mass, per metre of thickness",
-            clumps.iter().map(|clump| clump.inertia).collect(),
+            clumps.iter().map(|clump| clump.inertia[2][2]).collect(),
         )
 }
 

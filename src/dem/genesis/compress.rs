@@ -110,7 +110,11 @@ impl StressTarget {
     }
 
     /// Brings the heap to the stress; balls are taken out where floaters are deleted.
-    pub(super) fn compress<S: Space>(&self, heap: &mut Heap<S>, watch: &dyn Fn() -> Watch) -> Result<Compressed, PackingError> {
+    pub(super) fn compress<S: Space>(
+        &self,
+        heap: &mut Heap<S>,
+        watch: &dyn Fn() -> Watch,
+    ) -> Result<Compressed, PackingError> {
         let mut done = Compressed::default();
         let started = heap.relax(Until { margin: 0.5, ..self.until(heap) }, watch);
         done.iterations += started.iterations;
@@ -153,7 +157,12 @@ impl StressTarget {
     }
 
     /// Scales all radii until the stress at rest is the target.
-    fn servo<S: Space>(&self, heap: &mut Heap<S>, done: &mut Compressed, watch: &dyn Fn() -> Watch) -> Result<(), PackingError> {
+    fn servo<S: Space>(
+        &self,
+        heap: &mut Heap<S>,
+        done: &mut Compressed,
+        watch: &dyn Fn() -> Watch,
+    ) -> Result<(), PackingError> {
         let target = self.relative();
         let mut rest = heap.relax(self.until(heap), watch);
         let mut last: Option<(f64, f64)> = None;
@@ -184,7 +193,11 @@ impl StressTarget {
             rest = heap.relax(self.until(heap), watch);
             found = Pressure::of(heap);
         }
-        Err(PackingError::Unsettled { target: self.stress, reached: found.stress * self.modulus, scalings: MOST_SCALINGS })
+        Err(PackingError::Unsettled {
+            target: self.stress,
+            reached: found.stress * self.modulus,
+            scalings: MOST_SCALINGS,
+        })
     }
 }
 
@@ -192,7 +205,8 @@ impl StressTarget {
 /// balls make flatter, but no less than a fifth of the affine one.
 fn stride(found: &Pressure, target: f64, last: Option<(f64, f64)>) -> f64 {
     let missing = target - found.stress;
-    let secant = last.filter(|&(_, stress)| stress > SLACK * target).map(|(change, stress)| (found.stress - stress) / change);
+    let secant =
+        last.filter(|&(_, stress)| stress > SLACK * target).map(|(change, stress)| (found.stress - stress) / change);
     let slope = secant.map_or(found.slope, |secant| secant.clamp(0.2 * found.slope, found.slope));
     (missing / slope).clamp(-STRIDE, STRIDE)
 }

@@ -111,7 +111,8 @@ fn branch<S: Space>(heap: &Heap<S>, overlap: &Overlap<S>) -> f64 {
 fn amplitude(fabric: &[[f64; 3]; 3], dimension: usize) -> f64 {
     let trace: f64 = (0..dimension).map(|k| fabric[k][k]).sum();
     let deviator = |a: usize, b: usize| fabric[a][b] - if a == b { trace / dimension as f64 } else { 0.0 };
-    let square: f64 = (0..dimension).flat_map(|a| (0..dimension).map(move |b| (a, b))).map(|(a, b)| deviator(a, b).powi(2)).sum();
+    let square: f64 =
+        (0..dimension).flat_map(|a| (0..dimension).map(move |b| (a, b))).map(|(a, b)| deviator(a, b).powi(2)).sum();
     if dimension == 2 { (8.0 * square).sqrt() } else { 7.5 * (1.5 * square).sqrt() }
 }
 
@@ -130,7 +131,8 @@ mod tests {
         let step = side / f64::from(n);
         let place = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
         let centres = (0..n * n).map(|k| [place(k % n), place(k / n)]).collect();
-        let heap = Heap::<D2> { region: Region::Rectangle { width: side, height: side }, centres, radii: vec![1.0; 36] };
+        let heap =
+            Heap::<D2> { region: Region::Rectangle { width: side, height: side }, centres, radii: vec![1.0; 36] };
         let fabric = Fabric::of(&heap);
         assert!((fabric.coordination - 2.0 * 60.0 / 36.0).abs() < 1e-12);
         assert_eq!(fabric.floaters, 0);

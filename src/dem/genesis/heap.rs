@@ -91,7 +91,8 @@ impl<S: Space> Heap<S> {
             let square = apart.dot(apart);
             if square < reach * reach {
                 let distance = square.sqrt();
-                let along = |k: usize| if distance > 0.0 { apart.at(k) / distance } else { f64::from(u8::from(k == 0)) };
+                let along =
+                    |k: usize| if distance > 0.0 { apart.at(k) / distance } else { f64::from(u8::from(k == 0)) };
                 let normal = Vector::<S>::build(along);
                 visit(Overlap { first: i, second: Some(j), depth: reach - distance, normal, stiffness });
             }

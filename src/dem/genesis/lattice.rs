@@ -16,7 +16,7 @@
 
 use super::heap::Heap;
 use super::region::Region;
-use crate::space::{Space, Vector, Tuple};
+use crate::space::{Space, Tuple, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Kind of lattice.
@@ -100,7 +100,8 @@ impl Lattice {
             for y in 0..counts[1] {
                 for x in 0..counts[0] {
                     let cell = [x, y, z];
-                    let at = |place: &[f64; 3]| Vector::<S>::build(|k| start[k] + edge[k] * (cell[k] as f64 + place[k]));
+                    let at =
+                        |place: &[f64; 3]| Vector::<S>::build(|k| start[k] + edge[k] * (cell[k] as f64 + place[k]));
                     centres.extend(places.iter().map(at).filter(|&x| inside(x)));
                 }
             }

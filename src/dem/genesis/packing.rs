@@ -183,7 +183,9 @@ pub enum PackingError {
         unbalanced: f64,
     },
     /// The stress was not reached.
-    #[error("packing: the stress is {reached:.3e} Pa after {scalings} scalings of the radii, not {target:.3e} Pa; widen the tolerance")]
+    #[error(
+        "packing: the stress is {reached:.3e} Pa after {scalings} scalings of the radii, not {target:.3e} Pa; widen the tolerance"
+    )]
     Unsettled {
         /// Stress asked for (Pa).
         target: f64,
@@ -402,7 +404,8 @@ impl<S: Space> Packed<S> {
 fn renumbered<S: Space>(heap: &Heap<S>) -> Heap<S> {
     let edges = heap.region.edges();
     let cell = |x: f64, length: f64| ((x / length + 0.5).clamp(0.0, 0.999_999) * 1024.0) as u32;
-    let code = |c: &Vector<S>| (0..S::DIMENSION).fold(0, |code, k| code | spread(cell(c.at(k), edges[k]), S::DIMENSION) << k);
+    let code =
+        |c: &Vector<S>| (0..S::DIMENSION).fold(0, |code, k| code | spread(cell(c.at(k), edges[k]), S::DIMENSION) << k);
     let mut order: Vec<usize> = (0..heap.radii.len()).collect();
     order.sort_by_key(|&i| code(&heap.centres[i]));
     heap.chosen(&order)

@@ -109,7 +109,9 @@ pub enum SpecimenWarning {
         rounds: usize,
     },
     /// Deep overlaps.
-    #[error("the largest overlap is {0:.2} of a radius; above 0.35 contacts are not small: raise the porosity or lower the stress")]
+    #[error(
+        "the largest overlap is {0:.2} of a radius; above 0.35 contacts are not small: raise the porosity or lower the stress"
+    )]
     Overlap(f64),
     /// Not isotropic.
     #[error(
@@ -186,10 +188,7 @@ impl Quality {
             (self.empty_classes > 0, SpecimenWarning::EmptyClasses(self.empty_classes)),
             (floaters as f64 > MOST_FLOATING * self.balls as f64, SpecimenWarning::Floaters { floaters, held, rounds }),
             (fabric.largest_overlap > DEEPEST, SpecimenWarning::Overlap(fabric.largest_overlap)),
-            (
-                stress.abs().max(normals) > MOST_ANISOTROPY + noise,
-                SpecimenWarning::Anisotropy { stress, normals },
-            ),
+            (stress.abs().max(normals) > MOST_ANISOTROPY + noise, SpecimenWarning::Anisotropy { stress, normals }),
             ((self.radius_factor - 1.0).abs() > MOST_CHANGE, SpecimenWarning::Radii(self.radius_factor)),
         ];
         rules.into_iter().filter(|rule| rule.0).map(|rule| rule.1).collect()

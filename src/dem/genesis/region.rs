@@ -75,9 +75,27 @@ impl Region {
         }
     }
 
-    /// Whether the outline is round across the load or in its plane.
-    pub fn is_round(&self) -> bool {
-        self.walls().round.is_some()
+    /// Name of the shape.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Rectangle { .. } => "rectangle",
+            Self::Disc { .. } => "disc",
+            Self::Box { .. } => "box",
+            Self::Cylinder { .. } => "cylinder",
+            Self::ThickDisc { .. } => "thick-disc",
+        }
+    }
+
+    /// The outline of a shape with these edges along x, y and z (m); none of another name.
+    pub fn named(name: &str, [x, y, z]: [f64; 3]) -> Option<Self> {
+        let all = [
+            Self::Rectangle { width: x, height: y },
+            Self::Disc { diameter: x },
+            Self::Box { width: x, height: y, depth: z },
+            Self::Cylinder { diameter: x, height: y },
+            Self::ThickDisc { diameter: x, depth: z },
+        ];
+        all.into_iter().find(|region| region.name() == name)
     }
 
     /// Volume (m³), or area in the plane (m²).

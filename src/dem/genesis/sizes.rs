@@ -231,7 +231,8 @@ fn by_volume<S: Space>(low: f64, high: f64, u: f64) -> f64 {
 
 /// Number of balls per volume between two radii that are uniform by volume.
 fn number_density<S: Space>(low: f64, high: f64) -> f64 {
-    let power = if S::DIMENSION == 2 { 1.0 / low - 1.0 / high } else { 0.5 * (1.0 / (low * low) - 1.0 / (high * high)) };
+    let power =
+        if S::DIMENSION == 2 { 1.0 / low - 1.0 / high } else { 0.5 * (1.0 / (low * low) - 1.0 / (high * high)) };
     power / (S::volume(1.0) * (high - low))
 }
 

@@ -109,7 +109,9 @@ pub enum SpecimenError {
         expected: &'static str,
     },
     /// Polygons in a solid.
-    #[error("specimen: aggregate is made of polygons and needs a plane outline (a rectangle or a disc), not a solid one")]
+    #[error(
+        "specimen: aggregate is made of polygons and needs a plane outline (a rectangle or a disc), not a solid one"
+    )]
     SolidAggregate,
     /// Aggregate that rounds to nothing.
     #[error(

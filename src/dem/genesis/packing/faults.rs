@@ -119,7 +119,13 @@ fn size_faults<S: Space>(sizes: &Sizes, faults: &mut Vec<PackingError>) {
         Size::Stated => {}
     }
     let ratio_fault = |ratio: f64, faults: &mut Vec<PackingError>| {
-        need(faults, (1.0..=WIDEST).contains(&ratio), "radius ratio", ratio, "between 1 and 20 (largest over smallest)");
+        need(
+            faults,
+            (1.0..=WIDEST).contains(&ratio),
+            "radius ratio",
+            ratio,
+            "between 1 and 20 (largest over smallest)",
+        );
     };
     let list = |name, problem| PackingError::List { name, problem };
     match &sizes.law {
@@ -141,7 +147,10 @@ fn size_faults<S: Space>(sizes: &Sizes, faults: &mut Vec<PackingError>) {
             } else if !strictly || !(diameters[0] > 0.0) {
                 faults.push(list("sieve diameters", "they must be positive and increase"));
             } else if !rises(passing) || passing[0] != 0.0 || passing[passing.len() - 1] != 1.0 {
-                faults.push(list("sieve passing", "shares must not decrease, from 0 at the first sieve to 1 at the last"));
+                faults.push(list(
+                    "sieve passing",
+                    "shares must not decrease, from 0 at the first sieve to 1 at the last",
+                ));
             } else {
                 ratio_fault(diameters[diameters.len() - 1] / diameters[0], faults);
             }

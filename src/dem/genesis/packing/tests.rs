@@ -58,7 +58,8 @@ fn published_packings_keep_their_bits() {
         let heap = pack(&packing, &region, 1).heap;
         let bytes = heap.centres.iter().flatten().chain(&heap.radii).flat_map(|x| x.to_bits().to_le_bytes());
         // FNV-1a.
-        let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |h, byte| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+        let hash =
+            bytes.fold(0xcbf2_9ce4_8422_2325_u64, |h, byte| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
         assert_eq!(hash, expected, "{region:?}");
     }
 }
@@ -118,7 +119,8 @@ fn a_packing_to_a_stress_has_it() {
 #[test]
 fn floaters_are_deleted_or_kept_as_asked() {
     let sizes = Sizes::uniform(3e-3, 1.66);
-    let with = |floaters| Packing::Stress { sizes: sizes.clone(), target: StressTarget { floaters, ..target(3e6, 0.16) } };
+    let with =
+        |floaters| Packing::Stress { sizes: sizes.clone(), target: StressTarget { floaters, ..target(3e6, 0.16) } };
     let [kept, deleted] = [Floaters::Keep, Floaters::Delete].map(|floaters| pack(&with(floaters), &SPECIMEN, 1));
     let count = sizes.count::<D2>(0.02, 0.16) as usize;
     assert!(kept.heap.radii.len() == count && Fabric::of(&kept.heap).floaters > 0 && kept.floater_growth == 1.0);
