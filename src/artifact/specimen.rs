@@ -1,6 +1,7 @@
 //! A specimen as it is stored.
 
-use super::{Array, ArtifactKind, Field, Node, Table, Values};
+use super::{ArtifactKind, Table};
+use ndarray::Array2;
 
 crate::artifact! {
     /// A specimen: balls in a vessel, aggregate as polygons and rigid clumps, stress-free as it stands.
@@ -15,8 +16,8 @@ crate::artifact! {
         pub depth: f64, "m";
         /// density of the balls that are no pebbles
         pub density: f64, "kg/m^3";
-        /// centres of the balls from the centre of the specimen
-        pub centres: Points, "m";
+        /// centres of the balls from the centre of the specimen: two coordinates in the plane, three in the solid
+        pub centres: Array2<f64>, "m";
         /// radii of the balls
         pub radii: Vec<f64>, "m";
         /// group of each ball, by its number below
@@ -35,34 +36,5 @@ crate::artifact! {
         pub quality: Table, "";
         /// what should be known before its results are believed
         pub warnings: Vec<String>, "";
-    }
-}
-
-/// Points of the plane or of the solid: an array of shape (n, 2) or (n, 3).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Points {
-    /// 2 or 3.
-    pub dimension: usize,
-    /// Coordinates, point by point.
-    pub coordinates: Vec<f64>,
-}
-
-impl Field for Points {
-    fn to_node(&self, unit: &str, about: &str) -> Node {
-        Node::Array(Array {
-            shape: vec![self.coordinates.len() / self.dimension, self.dimension],
-            unit: unit.to_owned(),
-            about: about.to_owned(),
-            values: Values::Reals(self.coordinates.clone()),
-        })
-    }
-
-    fn from_node(node: &Node) -> Result<Self, &'static str> {
-        match node {
-            Node::Array(Array { values: Values::Reals(values), shape, .. }) if matches!(shape[..], [n, 2 | 3] if n * shape[1] == values.len()) => {
-                Ok(Self { dimension: shape[1], coordinates: values.clone() })
-            }
-            _ => Err("points of the plane or the solid"),
-        }
     }
 }

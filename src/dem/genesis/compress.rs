@@ -100,6 +100,8 @@ const SLACK: f64 = 0.05;
 const HARDEST: f64 = 4.0;
 /// Growth of the radii of a slack heap, far from the porosity at which balls jam and near it.
 const BLIND: [f64; 2] = [4e-3, 5e-4];
+/// Width of a bracket of the radii, over the relative stress, that is no longer believed.
+const NARROWEST: f64 = 1e-3;
 /// Largest change of the radii in one scaling.
 const STRIDE: f64 = 2e-2;
 
@@ -164,11 +166,9 @@ impl StressTarget {
         watch: &dyn Fn() -> Watch,
     ) -> Result<(), PackingError> {
         let target = self.relative();
-        let mut rest = heap.relax(self.until(heap), watch);
-        let mut last: Option<(f64, f64)> = None;
-        let mut found = Pressure::of(heap);
-        let mut blind = blind(heap);
+        let mut search = Search::default();
         for _ in 0..MOST_SCALINGS {
+            let rest = heap.relax(self.until(heap), watch);
             done.iterations += rest.iterations;
             done.unbalanced = rest.unbalanced;
             if watch() == Watch::Stop {
@@ -178,37 +178,59 @@ impl StressTarget {
                 let Rest { iterations, unbalanced } = rest;
                 return Err(PackingError::Restless { iterations, unbalanced });
             }
+            let found = Pressure::of(heap);
+            search.reached = found.stress;
             if (found.stress - target).abs() <= self.tolerance * target {
                 return Ok(());
             }
-            let slack = found.stress <= SLACK * target;
-            // Slack after it was held: the last step was too long, and so would the next one be.
-            if slack && last.is_some_and(|(change, _)| change < 0.0) {
-                blind *= 0.5;
-            }
-            let change = if slack { blind } else { stride(&found, target, last) };
-            last = Some((change, found.stress));
+            let change = search.next(&found, target, blind(heap));
             heap.scale(1.0 + change);
             done.factor *= 1.0 + change;
-            rest = heap.relax(self.until(heap), watch);
-            found = Pressure::of(heap);
         }
-        Err(PackingError::Unsettled {
-            target: self.stress,
-            reached: found.stress * self.modulus,
-            scalings: MOST_SCALINGS,
-        })
+        let reached = search.reached * self.modulus;
+        Err(PackingError::Unsettled { target: self.stress, reached, scalings: MOST_SCALINGS })
     }
 }
 
-/// Next relative change of the radii: that of the affine slope, or of the secant of the last change, which the moving
-/// balls make flatter, but no less than a fifth of the affine one.
-fn stride(found: &Pressure, target: f64, last: Option<(f64, f64)>) -> f64 {
-    let missing = target - found.stress;
-    let secant =
-        last.filter(|&(_, stress)| stress > SLACK * target).map(|(change, stress)| (found.stress - stress) / change);
-    let slope = secant.map_or(found.slope, |secant| secant.clamp(0.2 * found.slope, found.slope));
-    (missing / slope).clamp(-STRIDE, STRIDE)
+/// What is known of the stress as a function of the radii: sum of the changes so far, the last state, and between which
+/// sums the target lies.
+#[derive(Debug, Default)]
+struct Search {
+    at: f64,
+    last: Option<(f64, f64)>,
+    low: Option<f64>,
+    high: Option<f64>,
+    reached: f64,
+}
+
+impl Search {
+    /// Next relative change of the radii: that of the affine slope, or of the secant of the last change, which the moving
+    /// balls make flatter, but no less than a fifth of the affine one. Where that leaves the bracket, its middle.
+    fn next(&mut self, found: &Pressure, target: f64, blind: f64) -> f64 {
+        let slack = found.stress <= SLACK * target;
+        let last = self.last.filter(|_| !slack).filter(|&(_, stress)| stress > SLACK * target);
+        let secant = last.map(|(at, stress)| (found.stress - stress) / (self.at - at));
+        let slope = secant.map_or(found.slope, |secant| secant.clamp(0.2 * found.slope, found.slope));
+        let change = if slack { blind } else { ((target - found.stress) / slope).clamp(-STRIDE, STRIDE) };
+        *(if found.stress < target { &mut self.low } else { &mut self.high }) = Some(self.at);
+        if let (Some(low), Some(high)) = (self.low, self.high) {
+            let room = high - low;
+            if room < NARROWEST * target {
+                // The packing has changed on the way: what was known of it holds no more.
+                (self.low, self.high) = (None, None);
+            } else if !(low + 0.05 * room..=high - 0.05 * room).contains(&(self.at + change)) {
+                let middle = 0.5 * (low + high) - self.at;
+                return self.step(middle, found.stress);
+            }
+        }
+        self.step(change, found.stress)
+    }
+
+    fn step(&mut self, change: f64, stress: f64) -> f64 {
+        self.last = Some((self.at, stress));
+        self.at += change;
+        change
+    }
 }
 
 /// Growth of the radii while nothing holds: large while the porosity is far above that of jamming.

@@ -169,6 +169,14 @@ pub enum PackingError {
         /// Largest overlap over the smaller radius.
         overlap: f64,
     },
+    /// A ball left the vessel.
+    #[error(
+        "packing: ball {ball} was squeezed out of the vessel; raise the porosity of the cloud, or lower the stress"
+    )]
+    Escaped {
+        /// Its index.
+        ball: usize,
+    },
     /// Stopped by the watcher before its end.
     #[error("packing: stopped before its end")]
     Stopped,
@@ -207,6 +215,8 @@ const GROWTH: f64 = 1.02;
 /// Relative deviation of the radii at the stress from the stated ones that is left when the number gives way.
 const NEAR_STATED: f64 = 5e-4;
 const MOST_RECOUNTS: usize = 6;
+/// Shares of their radius through which balls grow that are put into a packing.
+const INSERTION: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 
 impl Packing {
     /// Uniform radii with a mean that gives way to the porosity; no floaters are left.
@@ -241,6 +251,9 @@ impl Packing {
             Self::Stress { sizes, target } => to_stress::<S>(sizes, target, region, stream, watch)?,
             Self::Lattice { lattice, radius } => as_lattice::<S>(*lattice, *radius, region),
         };
+        if let Some(ball) = packed.heap.centres.iter().position(|&x| region.depth::<S>(x) < 0.0) {
+            return Err(PackingError::Escaped { ball });
+        }
         let overlap = Fabric::of(&packed.heap).largest_overlap;
         if overlap > 0.5 {
             return Err(PackingError::Dense { porosity: 1.0 - packed.heap.ball_volume() / region.volume(), overlap });
@@ -347,7 +360,7 @@ fn to_stress<S: Space>(
             }
             heap.scale(1.0 / all.factor);
             all.factor = 1.0;
-            recount(&mut heap, sizes, wanted, stream);
+            recount(&mut heap, sizes, wanted, stream, watch);
         }
     }
     Ok(Packed {
@@ -362,8 +375,9 @@ fn to_stress<S: Space>(
     })
 }
 
-/// Takes random balls out, or puts some of the law at random places, until there are `wanted`.
-fn recount<S: Space>(heap: &mut Heap<S>, sizes: &Sizes, wanted: usize, stream: &mut Stream) {
+/// Takes random balls out, or puts some of the law at random places, until there are `wanted`. New balls grow in steps,
+/// so that none is squeezed through its neighbours or a wall.
+fn recount<S: Space>(heap: &mut Heap<S>, sizes: &Sizes, wanted: usize, stream: &mut Stream, watch: &dyn Fn() -> Watch) {
     let count = heap.radii.len();
     if wanted < count {
         let mut order: Vec<usize> = (0..count).collect();
@@ -374,9 +388,14 @@ fn recount<S: Space>(heap: &mut Heap<S>, sizes: &Sizes, wanted: usize, stream: &
         return;
     }
     let more = sizes.draw::<S>(wanted - count, stream);
-    let places = scatter::<S>(&more, &heap.region, stream);
-    heap.radii.extend(more);
-    heap.centres.extend(places);
+    heap.centres.extend(scatter::<S>(&more, &heap.region, stream));
+    heap.radii.extend(&more);
+    for share in INSERTION {
+        for (radius, full) in heap.radii[count..].iter_mut().zip(&more) {
+            *radius = share * full;
+        }
+        heap.relax(AT_REST, watch);
+    }
 }
 
 fn as_lattice<S: Space>(lattice: Lattice, radius: f64, region: &Region) -> Packed<S> {

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Settings of a `specimen` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Specimen {
     /// Width of a rectangle or box, across the axis of loading.
@@ -51,7 +51,7 @@ pub struct Specimen {
     pub gives_way: GivesWay,
     /// Density of the balls.
     pub density: Density,
-    /// Group of the balls, as the material names it.
+    /// Group of the balls, as the material names it; a material of one group fits whatever its name.
     #[serde(default = "balls")]
     pub group: String,
     /// Several groups and their shares of the volume, instead of `group`: `{ quartz = 0.3, feldspar = 0.7 }`.
@@ -81,7 +81,7 @@ pub enum SizeName {
 }
 
 /// A sieve curve.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SieveConfig {
     /// Increasing diameters.
@@ -91,7 +91,7 @@ pub struct SieveConfig {
 }
 
 /// Radii in stated numbers.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ClassesConfig {
     /// Radii.
@@ -101,7 +101,7 @@ pub struct ClassesConfig {
 }
 
 /// Packing to a stress, or as a lattice.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PackingConfig {
     /// Mean stress of the packing.
@@ -250,7 +250,8 @@ impl Specimen {
         }
     }
 
-    fn shares(&self) -> Vec<Share> {
+    /// Groups of the balls and their shares.
+    pub(super) fn shares(&self) -> Vec<Share> {
         match &self.groups {
             None => vec![Share { name: self.group.clone(), share: 1.0 }],
             Some(groups) => groups.iter().map(|(name, &share)| Share { name: name.clone(), share }).collect(),

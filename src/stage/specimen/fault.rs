@@ -35,6 +35,7 @@ fn packing_key(fault: &PackingError) -> &'static str {
         PackingError::Dimension { .. } => "packing.lattice",
         PackingError::Loose { .. }
         | PackingError::Dense { .. }
+        | PackingError::Escaped { .. }
         | PackingError::Stopped
         | PackingError::Restless { .. }
         | PackingError::Unsettled { .. } => "",

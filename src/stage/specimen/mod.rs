@@ -23,7 +23,7 @@ pub use config::{ClassesConfig, PackingConfig, SieveConfig, SizeName, Specimen};
 pub use stored::{Loaded, load};
 
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
 };
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Artifact, ArtifactKind};
@@ -31,7 +31,7 @@ use dem::genesis::packing::PackingError;
 use dem::genesis::specimen::{Recipe, SpecimenError};
 use dem::{D2, D3, Space};
 use math::random::Stream;
-use serde_json::{Value, json};
+use serde_json::json;
 
 impl Specimen {
     fn task(&self, seed: u64, number: u64) -> Result<Task, Vec<Complaint>> {
@@ -53,8 +53,10 @@ impl Stage for Specimen {
         self.recipe().err().unwrap_or_default()
     }
 
-    fn settings(&self) -> Value {
-        self.recipe().map_or(Value::Null, |recipe| json!(recipe))
+    fn sketch(&self) -> Sketch {
+        let aggregate = self.aggregate.iter().map(|aggregate| aggregate.group.clone());
+        let groups = self.shares().into_iter().map(|share| share.name).chain(aggregate).collect();
+        Sketch { groups, varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

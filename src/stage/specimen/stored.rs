@@ -2,8 +2,8 @@
 
 use super::super::StageError;
 use super::report::report;
-use crate::artifact::specimen::{Points, Specimen as Stored};
-use crate::artifact::{Artifact, Table, Values};
+use crate::artifact::specimen::Specimen as Stored;
+use crate::artifact::{Artifact, Table};
 use dem::genesis::clump::{Clump, plane_inertia};
 use dem::genesis::polygon::Polygon;
 use dem::genesis::quality::Quality;
@@ -11,6 +11,7 @@ use dem::genesis::region::Region;
 use dem::genesis::specimen::Specimen;
 use dem::space::Tuple;
 use dem::{D2, D3, Group, Space, Vector};
+use ndarray::Array2;
 
 /// A specimen of either space.
 #[derive(Clone, Debug)]
@@ -46,14 +47,13 @@ pub(super) fn store<S: Space>(made: &Specimen<S>, quality: &Quality) -> Stored {
         .reals_column("x", "m", "centre of mass", of(&|clump| clump.centre.at(0)))
         .reals_column("y", "m", "centre of mass", of(&|clump| clump.centre.at(1)));
     let corners = made.polygons.iter().enumerate().flat_map(|(index, p)| p.vertices.iter().map(move |_| index as i64));
-    let coordinates = made.centres.iter().flat_map(|x| (0..S::DIMENSION).map(move |k| x.at(k)));
     Stored {
         outline: made.region.name().to_owned(),
         width,
         height,
         depth,
         density: made.density,
-        centres: Points { dimension: S::DIMENSION, coordinates: coordinates.collect() },
+        centres: Array2::from_shape_fn((made.centres.len(), S::DIMENSION), |(i, k)| made.centres[i].at(k)),
         radii: made.radii.clone(),
         group_of: made.groups.iter().map(|group| i64::from(group.0)).collect(),
         groups: made.group_names.clone(),
@@ -74,7 +74,7 @@ pub fn load(artifact: &Artifact) -> Result<Loaded, StageError> {
     let stored = Stored::from_artifact(artifact).map_err(|wanted| StageError::new(wanted.to_string()))?;
     let region = Region::named(&stored.outline, [stored.width, stored.height, stored.depth]);
     let region = region.ok_or_else(|| odd("outline"))?;
-    match (region.dimension(), stored.centres.dimension) {
+    match (region.dimension(), stored.centres.ncols()) {
         (2, 2) => Ok(Loaded::Plane(specimen::<D2>(stored, region)?)),
         (3, 3) => Ok(Loaded::Solid(specimen::<D3>(stored, region)?)),
         _ => Err(odd("outline and balls")),
@@ -88,8 +88,7 @@ fn odd(what: &str) -> StageError {
 fn specimen<S: Space>(stored: Stored, region: Region) -> Result<Specimen<S>, StageError> {
     let (polygons, clumps) = (polygons(&stored)?, clumps::<S>(&stored)?);
     let Stored { centres, radii, group_of, groups: group_names, density, clump_of, .. } = stored;
-    let centres: Vec<Vector<S>> =
-        centres.coordinates.chunks_exact(S::DIMENSION).map(|x| Vector::<S>::build(|k| x[k])).collect();
+    let centres: Vec<Vector<S>> = centres.rows().into_iter().map(|x| Vector::<S>::build(|k| x[k])).collect();
     if [centres.len(), group_of.len(), clump_of.len()].iter().any(|&count| count != radii.len()) {
         return Err(odd("balls"));
     }
@@ -114,12 +113,10 @@ fn polygons(stored: &Stored) -> Result<Vec<Polygon>, StageError> {
 }
 
 fn clumps<S: Space>(stored: &Stored) -> Result<Vec<Clump<S>>, StageError> {
-    let column = |name: &str| stored.clumps.reals(name).ok_or_else(|| odd("clumps"));
-    let (mass, inertia, x, y) = (column("mass")?, column("inertia")?, column("x")?, column("y")?);
-    let polygon_of = match stored.clumps.column("polygon").map(|column| &column.values) {
-        Some(Values::Ints(polygons)) => polygons.clone(),
-        _ => return Err(odd("clumps")),
-    };
+    let table = &stored.clumps;
+    let (mass, inertia) = (table.numbers("mass", "kg/m")?, table.numbers("inertia", "kg*m")?);
+    let (x, y) = (table.numbers("x", "m")?, table.numbers("y", "m")?);
+    let polygon_of = table.ints("polygon")?;
     let mut clumps = Vec::with_capacity(polygon_of.len());
     for (k, &polygon) in polygon_of.iter().enumerate() {
         let pebbles = (0..stored.clump_of.len()).filter(|&i| stored.clump_of[i] == k as i64).collect();
