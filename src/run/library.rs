@@ -9,7 +9,7 @@ use crate::plan::Workflow;
 use crate::stage::beside::plain;
 use crate::stage::ledger::Kept;
 use crate::stage::rows::Rows;
-use crate::stage::{FileInput, Library, Outcome, StageError, Task};
+use crate::stage::{FileInput, Library, Memory, Outcome, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -20,6 +20,8 @@ pub(super) struct Shelf<'a> {
     pub(super) board: &'a Board,
     /// What is remembered of the runs of the stage that asks.
     pub(super) ledger: Option<&'a Ledger>,
+    /// What the stage that asks remembers of its last step.
+    pub(super) memory: &'a Memory,
     pub(super) notes: RefCell<Notes>,
 }
 
@@ -57,6 +59,10 @@ impl Library for Shelf<'_> {
             }
             TaskState::Open | TaskState::Running => None,
         }
+    }
+
+    fn memory(&self) -> Option<&Memory> {
+        Some(self.memory)
     }
 
     fn file(&self, name: &str, path: &str) -> Result<FileInput, StageError> {
