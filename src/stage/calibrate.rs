@@ -30,7 +30,9 @@ mod tests;
 
 pub use config::{Calibrate, Constraint, Curve, MethodName, Wanted};
 
-use super::{Class, Complaint, Context, Kind, Known, Outcome, Point, Port, Stage, StageError, Step, Task, Work};
+use super::{
+    Class, Complaint, Context, Kind, Known, Outcome, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
+};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use optim::search::{Search, State};
 use params::{Params, Told};
@@ -61,6 +63,10 @@ impl Stage for Calibrate {
                 accepts: Accepts::Only(&[ArtifactKind::RESULTS]),
             },
         ]
+    }
+
+    fn sketch(&self) -> Sketch {
+        Sketch { material: self.material.clone(), simulator: self.simulator.clone(), ..Sketch::default() }
     }
 
     fn gives(&self) -> ArtifactKind {
