@@ -15,7 +15,7 @@ mod given;
 mod read;
 
 pub use assemble::{Bonding, Need, measures};
-pub use dem::parameter::Parameter as Microparameter;
+pub use dem::parameter::{Parameter as Microparameter, Quantity};
 pub use given::{GivenMaterial, given};
 pub use read::MaterialTable;
 
