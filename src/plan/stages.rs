@@ -6,9 +6,11 @@ use super::node::{Entry, Node, Step, Table, Value};
 use super::read::read;
 use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
+use crate::artifact::{Accepts, ArtifactKind};
 use crate::stage::beside::Beside;
+use crate::stage::simulate::Simulate;
 use crate::stage::vary::Template;
-use crate::stage::{Complaint, Context, KINDS, Port, Stage};
+use crate::stage::{Complaint, Context, KINDS, Kind, Port, Stage};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -45,9 +47,10 @@ pub(super) fn read_all(
     }
     let materials = root.get("material").cloned();
     let table = check.tables(root, "stage")?;
-    let stages = configure(check, table, context);
+    let mut stages = configure(check, table, context);
     context.sketches = stages.iter().map(|stage| (stage.name.clone(), stage.stage.sketch())).collect();
     examine(check, table, &stages, materials.as_ref(), context);
+    given_materials(&mut stages, context);
     look(check, table, &stages, context, looked);
     same_but_for_case(check, table);
     let inputs = connect(check, table, &stages);
@@ -83,6 +86,17 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &mut Context) ->
         stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
     }
     stages
+}
+
+/// A stage whose material is no `[material.NAME]` takes it from the stage of that name.
+fn given_materials(stages: &mut [Configured], context: &Context) {
+    let kinds = Accepts::Only(&[ArtifactKind::RUN, ArtifactKind::SOLUTION]);
+    for stage in stages.iter_mut().filter(|stage| stage.kind == Simulate::NAME) {
+        let material = stage.stage.sketch().material.filter(|name| !context.materials.contains_key(name));
+        if let Some(name) = material.filter(|name| context.sketches.contains_key(name)) {
+            stage.ports.push(Port { key: "material", stages: vec![name], accepts: kinds });
+        }
+    }
 }
 
 /// Lets every stage look at its settings, now that it can see what the others say of themselves.

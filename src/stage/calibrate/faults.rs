@@ -27,7 +27,7 @@ impl Calibrate {
         }
         let counts = [
             ("specimens", self.specimens.unwrap_or(1), 1, 1_000_000),
-            ("solutions", self.solutions as u64, 0, 100_000),
+            ("solutions", self.solutions.map_or(0, |count| count as u64), 0, 100_000),
             ("evaluations", self.evaluations.map_or(1, |count| count as u64), 1, 10_000_000),
         ];
         for (key, count, least, most) in counts.into_iter().filter(|(_, n, least, most)| n < least || n > most) {
