@@ -2,7 +2,7 @@
 
 use super::material::AGGREGATE;
 use crate::measure::Mode;
-use crate::{D2, Engine, Other};
+use crate::{Engine, Other, Space, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Contact group of a crack.
@@ -15,24 +15,29 @@ pub enum CrackGroup {
 }
 
 /// A broken bond.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CrackEvent {
+#[derive(Clone, Copy, Debug)]
+pub struct CrackEvent<S: Space> {
     /// Axial strain of the specimen.
     pub strain: f64,
     /// Tension or shear.
     pub mode: Mode,
     /// Contact group.
     pub group: CrackGroup,
-    /// Place (m).
-    pub position: [f64; 2],
+    /// Contact point (m).
+    pub position: Vector<S>,
     /// Unit normal of the contact; the crack lies across it.
-    pub normal: [f64; 2],
+    pub normal: Vector<S>,
     /// Length of the crack, the bond's diameter (m).
     pub size: f64,
 }
 
 /// Adds the cracks since (step, strain), their strains interpolated by step.
-pub(super) fn note_cracks(engine: &Engine<D2>, cracks: &mut Vec<CrackEvent>, (step, strain): (u64, f64), now: f64) {
+pub(super) fn note_cracks<S: Space>(
+    engine: &Engine<S>,
+    cracks: &mut Vec<CrackEvent<S>>,
+    (step, strain): (u64, f64),
+    now: f64,
+) {
     let steps = (engine.steps() - step).max(1) as f64;
     for crack in &engine.cracks()[cracks.len()..] {
         let share = (crack.step - step) as f64 / steps;

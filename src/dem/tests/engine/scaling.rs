@@ -12,8 +12,11 @@ use dem::genesis::packing::Packing;
 use dem::genesis::region::Region;
 use dem::genesis::specimen::Recipe;
 use dem::loading::curve::Macro;
-use dem::loading::drive::{Loading, TestKind};
+use dem::loading::kind::TestKind;
 use dem::loading::material::{Bonded, Bonding, Material, Unbonded};
+use dem::loading::piece::Piece;
+use dem::loading::settings::Loading;
+use dem::loading::speed::Speed;
 use dem::space::Tuple;
 use dem::*;
 use std::sync::LazyLock;
@@ -53,8 +56,8 @@ fn uniaxial(factor: f64, speed: f64) -> Macro {
     };
     let aggregate = Unbonded { modulus: mortar.modulus, stiffness_ratio: 2.5, friction: 0.5 };
     let material = Material { mortar, aggregate, interface: mortar, bonding: Bonding::default() };
-    let test = Loading { speed, ..Loading::new(TestKind::Uniaxial) };
-    test.run(&specimen, &material, 1, &mut |_| Watch::Continue).unwrap().values
+    let test = Loading { speed: Speed::Each(speed), ..Loading::new(TestKind::Uniaxial) };
+    test.run(&Piece::from(&specimen), &material, 1, &mut |_| Watch::Continue).unwrap().values
 }
 
 /// Strength and E follow strengths and moduli, strains and ν do not; exactly where the speed follows the wave speed, and
