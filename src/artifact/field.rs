@@ -99,9 +99,11 @@ impl<const D: usize> Field for Vec<[f64; D]> {
 /// Declares an artifact: its struct, its kind and version, and the conversions both ways.
 ///
 /// ```
+/// use flow::artifact::ArtifactKind;
+/// const CURVE: ArtifactKind = ArtifactKind::new("curve", 1);
 /// flow::artifact! {
 ///     /// A stress–strain curve.
-///     pub struct Curve = "curve" 1 {
+///     pub struct Curve = CURVE {
 ///         /// Axial strain, shortening positive.
 ///         pub strain: Vec<f64>, "";
 ///         /// Axial stress, compression positive.
@@ -114,11 +116,11 @@ impl<const D: usize> Field for Vec<[f64; D]> {
 /// ```
 ///
 /// The doc comment of a field is its description in the file, the text after it its unit. The expansion is the
-/// struct itself, `KIND`, `VERSION`, `to_artifact` and `from_artifact`; a missing or wrong field reads
+/// struct itself, `KIND`, `to_artifact` and `from_artifact`; a missing or wrong field reads
 /// `curve.strain: wanted reals, found text`.
 #[macro_export]
 macro_rules! artifact {
-    ($(#[$attribute:meta])* $visible:vis struct $name:ident = $kind:literal $version:literal {
+    ($(#[$attribute:meta])* $visible:vis struct $name:ident = $kind:path {
         $($(#[doc = $about:literal])* $field_visible:vis $field:ident : $type:ty, $unit:literal;)*
     }) => {
         $(#[$attribute])*
@@ -126,17 +128,15 @@ macro_rules! artifact {
         $visible struct $name { $($(#[doc = $about])* $field_visible $field: $type,)* }
 
         impl $name {
-            /// The kind's name, which ports accept it by.
-            pub const KIND: &'static str = $kind;
-            /// Version of the layout.
-            pub const VERSION: u32 = $version;
+            /// The kind, by which ports accept it.
+            pub const KIND: $crate::artifact::ArtifactKind = $kind;
 
             /// The storable form.
             pub fn to_artifact(&self) -> $crate::artifact::Artifact {
                 let mut root = $crate::artifact::Group::new();
                 $(root.put(stringify!($field),
                     $crate::artifact::Field::to_node(&self.$field, $unit, concat!($($about),*).trim()));)*
-                $crate::artifact::Artifact::new($kind, $version, root)
+                $crate::artifact::Artifact::of($kind, root)
             }
 
             /// Reads the storable form.
@@ -144,8 +144,8 @@ macro_rules! artifact {
             /// # Errors
             /// The field that is missing or has another type, or the kind or version that does not fit.
             pub fn from_artifact(artifact: &$crate::artifact::Artifact) -> Result<Self, $crate::artifact::Wanted> {
-                $crate::artifact::expect_kind(artifact, $kind, $version)?;
-                Ok(Self { $($field: $crate::artifact::take(&artifact.root, $kind, stringify!($field))?,)* })
+                $crate::artifact::expect_kind(artifact, $kind)?;
+                Ok(Self { $($field: $crate::artifact::take(&artifact.root, $kind.name(), stringify!($field))?,)* })
             }
         }
     };
@@ -155,13 +155,13 @@ macro_rules! artifact {
 ///
 /// # Errors
 /// The kind or version that was wanted and found.
-pub fn expect_kind(artifact: &super::Artifact, kind: &str, version: u32) -> Result<(), Wanted> {
-    if artifact.kind == kind && artifact.version == version {
+pub fn expect_kind(artifact: &super::Artifact, kind: super::ArtifactKind) -> Result<(), Wanted> {
+    if artifact.is(kind) && artifact.version == kind.version() {
         return Ok(());
     }
     Err(Wanted {
         place: artifact.kind.clone(),
-        wanted: format!("{kind} version {version}"),
+        wanted: format!("{kind} version {}", kind.version()),
         found: format!("{} version {}", artifact.kind, artifact.version),
     })
 }

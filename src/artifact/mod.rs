@@ -8,11 +8,13 @@
 
 mod field;
 mod key;
+mod kind;
 mod node;
 pub mod specimen;
 
 pub use field::{Field, Wanted, expect_kind, take};
 pub use key::{FirstBytes, Key};
+pub use kind::{Accepts, ArtifactKind};
 pub use node::{Array, Column, Group, Node, Table, Values};
 
 use std::fmt;
@@ -29,7 +31,17 @@ pub struct Artifact {
 }
 
 impl Artifact {
-    /// An artifact of `kind` with the given values.
+    /// An artifact of a declared kind with the given values.
+    pub fn of(kind: ArtifactKind, root: Group) -> Self {
+        Self::new(kind.name(), kind.version(), root)
+    }
+
+    /// Whether it is of this kind, whatever its version.
+    pub fn is(&self, kind: ArtifactKind) -> bool {
+        self.kind == kind.name()
+    }
+
+    /// An artifact as a file names it.
     pub fn new(kind: &str, version: u32, root: Group) -> Self {
         Self { kind: kind.to_owned(), version, root }
     }

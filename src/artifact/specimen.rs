@@ -1,10 +1,10 @@
 //! A plane specimen as it is stored.
 
-use super::Table;
+use super::{ArtifactKind, Table};
 
 crate::artifact! {
     /// A specimen: discs in a vessel, aggregate as polygons and rigid clumps, stress-free as it stands.
-    pub struct Specimen = "specimen" 1 {
+    pub struct Specimen = ArtifactKind::SPECIMEN {
         /// `rectangle` or `disc`
         pub outline: String, "";
         /// extent across the axis of loading (diameter of a disc)

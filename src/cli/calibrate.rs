@@ -14,7 +14,9 @@ use crate::artifact::Artifact;
 use crate::exec::cores;
 use crate::plan::{Workflow, nearest};
 use crate::run::{Report, Settings, Silent, StageStatus, Watch, decide, run};
-use crate::stage::calibrate::Wanted;
+use crate::stage::Kind;
+use crate::stage::calibrate::{Calibrate as Calibration, Wanted};
+use crate::stage::verify::Verify;
 use crate::store::Store;
 use clap::Args;
 use std::collections::BTreeMap;
@@ -113,14 +115,14 @@ impl Calibrate {
     fn calibration(&self, workflow: &Workflow) -> Result<String, String> {
         let takes = |index: usize, key: &str| workflow.stages[index].inputs.iter().any(|(port, _)| *port == key);
         let at_once = |&index: &usize| takes(index, "surfaces") && !takes(index, "simulator");
-        let all = (0..workflow.stages.len()).filter(|&index| workflow.stages[index].kind == "calibrate");
+        let all = (0..workflow.stages.len()).filter(|&index| workflow.stages[index].kind == Calibration::NAME);
         let fit: Vec<usize> = all.clone().filter(at_once).collect();
         let names =
             |list: &[usize]| list.iter().map(|&i| workflow.stages[i].name.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = &self.stage {
             return match workflow.position(name) {
                 Some(index) if fit.contains(&index) => Ok(name.clone()),
-                Some(index) if workflow.stages[index].kind == "calibrate" => Err(format!(
+                Some(index) if workflow.stages[index].kind == Calibration::NAME => Err(format!(
                     "`{name}` calibrates by simulations, and an answer at once needs surfaces alone\n  \
                      name one with `surfaces` and without `simulator`, or run it: {}",
                     self.campaign.command("run", &[name])
@@ -267,7 +269,7 @@ fn wanted(workflow: &Workflow, targets: &[String]) -> Result<String, Vec<String>
 /// The stages that verify a calibration.
 fn verifications(workflow: &Workflow, stage: &str) -> Result<Vec<String>, String> {
     let verifies = |(port, input): &(&str, usize)| *port == "solution" && workflow.stages[*input].name == stage;
-    let all = workflow.stages.iter().filter(|node| node.kind == "verify" && node.inputs.iter().any(verifies));
+    let all = workflow.stages.iter().filter(|node| node.kind == Verify::NAME && node.inputs.iter().any(verifies));
     let found: Vec<String> = all.map(|node| node.name.clone()).collect();
     if found.is_empty() {
         return Err(format!(

@@ -9,7 +9,7 @@ use super::Exit;
 use super::common::{Campaign, system};
 use super::output::replace;
 use super::show::{csv_text, object, parts};
-use crate::artifact::{Artifact, ContentHash, Node};
+use crate::artifact::{Artifact, ArtifactKind, ContentHash, Node};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
 use crate::stage::specimen;
@@ -103,26 +103,25 @@ impl Export {
         match self.to {
             Form::Files => Ok(files(name, artifact)),
             Form::Csv => Ok(tables(name, artifact)),
-            Form::Vtu | Form::Particles => match artifact.kind.as_str() {
-                "specimen" => {
-                    let specimen = load(artifact)?;
-                    if self.to == Form::Vtu {
-                        return Ok(paraview::specimen(name, &specimen));
-                    }
-                    particles::files(name, &specimen, None)
+            Form::Vtu | Form::Particles if artifact.is(ArtifactKind::SPECIMEN) => {
+                let specimen = load(artifact)?;
+                if self.to == Form::Vtu {
+                    return Ok(paraview::specimen(name, &specimen));
                 }
-                "run" if artifact.table("cracks").is_some() => {
-                    let made = Made::of(store, &chosen.object)?;
-                    if self.to == Form::Vtu {
-                        return paraview::run(name, artifact, &made.specimen);
-                    }
-                    particles::files(name, &made.specimen, Some(&made.parameters))
+                particles::files(name, &specimen, None)
+            }
+            Form::Vtu | Form::Particles if artifact.is(ArtifactKind::RUN) && artifact.table("cracks").is_some() => {
+                let made = Made::of(store, &chosen.object)?;
+                if self.to == Form::Vtu {
+                    return paraview::run(name, artifact, &made.specimen);
                 }
-                _ if self.stages.is_empty() => Ok(Vec::new()),
-                kind => Err(format!(
-                    "`{kind}` holds neither a specimen nor a run; single runs of a stage are named as in orthogonal[12]"
-                )),
-            },
+                particles::files(name, &made.specimen, Some(&made.parameters))
+            }
+            Form::Vtu | Form::Particles if self.stages.is_empty() => Ok(Vec::new()),
+            Form::Vtu | Form::Particles => Err(format!(
+                "`{}` holds neither a specimen nor a run; single runs of a stage are named as in orthogonal[12]",
+                artifact.kind
+            )),
         }
     }
 }

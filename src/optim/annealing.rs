@@ -14,13 +14,23 @@
 //! in the second, descends ([`super::local`]) from what it found, and starts anew when frozen, as in Xiang et al. 2013.
 //! Several chains may run side by side on parallel machines; each has its own random stream and state.
 //!
-//! Sources: Ingber 1989, doi:10.1016/0895-7177(89)90202-1; Szu & Hartley 1987, doi:10.1016/0375-9601(87)90796-1;
-//! Xiang et al. 2013, doi:10.32614/RJ-2013-002. The preset `wang2017` is Wang & Cao's improved annealing of 2017:
-//! T₀ = 100, k = 0.95, chains of 100, exponential cooling, stop at a misfit of 10 %. With an objective of order 1 those
+//! The preset `wang2017` is the improved annealing of Wang & Cao 2017 (doi:10.1155/2017/6401835) as printed: a random
+//! first point, then chains of 100 moves (their steps 3 to 8), all parameters at once by the Cauchy-like moves of their
+//! eq. 7 and 9, accepted by their eq. 2 and 10 with s = 1, cooled by their eq. 4 and 5 from T₀ = 100 with k = 0.95
+//! (their Table 3; the text has 0.99). The energy is the greatest relative deviation (their eq. 8), which is why
+//! [`Settings::published_form`] and [`Settings::published_misfit`] are the maximum and 10 %. The stored text has lost its
+//! equations; those of Ingber, whom it cites for both changes, are taken for them. With an energy of order 1 such
 //! temperatures accept nearly every move, so the published search is close to a random walk.
+//!
+//! A failed run has an infinite energy: it costs its evaluation, and is left for whatever comes next.
+//!
+//! Sources: Ingber 1989, doi:10.1016/0895-7177(89)90202-1; Szu & Hartley
+//! 1987, doi:10.1016/0375-9601(87)90796-1; Metropolis et al. 1953, doi:10.1063/1.1699114; Xiang et al. 2013,
+//! doi:10.32614/RJ-2013-002.
 
 use super::constraint::Domain;
 use super::local::Local;
+use super::misfit::Form;
 use super::{Optimiser, Stop, Trial};
 use math::elementary::{exp, pow, tan};
 use math::random::Stream;
@@ -88,6 +98,14 @@ impl Settings {
         Self { preset: Preset::Wang2017, ..Self::default() }
     }
 
+    /// How the preset's authors combine deviations, if they say.
+    pub fn published_form(&self) -> Option<Form> {
+        match self.preset {
+            Preset::Descending => None,
+            Preset::Wang2017 => Some(Form::Maximum),
+        }
+    }
+
     /// The misfit at which the preset's authors stop, if they do.
     pub fn published_misfit(&self) -> Option<f64> {
         match self.preset {
@@ -110,6 +128,7 @@ impl Settings {
             descend: self.descend.unwrap_or(!published),
             scaled: !published,
             one_at_a_time: !published,
+            counts_first: !published,
         }
     }
 }
@@ -125,6 +144,8 @@ struct Plan {
     descend: bool,
     scaled: bool,
     one_at_a_time: bool,
+    /// Whether the first point, which no move made, is one of the first chain.
+    counts_first: bool,
 }
 
 /// The algorithm's state.
@@ -136,10 +157,12 @@ pub struct Annealing {
 
 impl Annealing {
     /// A fresh search.
-    pub fn new(settings: &Settings, domain: &Domain, seed: u64) -> Self {
+    pub fn new(settings: &Settings, domain: &Domain, seed: u64, start: Option<&[f64]>) -> Self {
         let plan = settings.plan(domain.len());
         let chain = |i| Chain::new(plan.clone(), domain, Stream::new(seed, "annealing", i));
-        Self { chains: (0..settings.chains.unwrap_or(1).max(1) as u64).map(chain).collect(), asked: Vec::new() }
+        let mut chains: Vec<Chain> = (0..settings.chains.unwrap_or(1).max(1) as u64).map(chain).collect();
+        chains[0].start = start.map(<[f64]>::to_vec);
+        Self { chains, asked: Vec::new() }
     }
 }
 
@@ -172,6 +195,8 @@ struct Chain {
     plan: Plan,
     domain: Domain,
     random: Stream,
+    /// A first guess.
+    start: Option<Vec<f64>>,
     current: Option<(Vec<f64>, f64)>,
     /// Lowest point since the last start, and whether it was found after the last descent.
     lowest: (Vec<f64>, f64, bool),
@@ -191,6 +216,7 @@ impl Chain {
             plan,
             domain: domain.clone(),
             random,
+            start: None,
             current: None,
             lowest: (Vec::new(), f64::INFINITY, false),
             descent: None,
@@ -210,7 +236,7 @@ impl Chain {
             return descent.ask();
         }
         match self.current.clone() {
-            None => vec![self.domain.sample(&mut self.random)],
+            None => vec![self.start.take().unwrap_or_else(|| self.domain.sample(&mut self.random))],
             Some((from, _)) => vec![self.moved(&from)],
         }
     }
@@ -228,6 +254,7 @@ impl Chain {
             return;
         }
         let trial = &trials[0];
+        let counts = self.current.is_some() || self.plan.counts_first;
         let accepted = match &self.current {
             None => true,
             Some((_, misfit)) => self.accepts(trial.misfit - misfit),
@@ -241,7 +268,7 @@ impl Chain {
         if self.cooled == 0 && trial.misfit.is_finite() {
             self.seen.push(trial.misfit);
         }
-        self.done += 1;
+        self.done += usize::from(counts);
         if self.done >= self.plan.chain {
             self.cool();
         }

@@ -46,11 +46,12 @@ fn ackley(x: &[f64]) -> f64 {
 /// A box of equal ranges around no particular centre, and one response whose misfit is the value itself.
 pub(crate) fn standard(function: &Standard, dimension: usize) -> Problem {
     let (low, high) = function.range;
-    let factor = |i: usize| Factor { name: format!("x{i}"), low, high };
+    let factor = |i: usize| Factor::linear(&format!("x{i}"), low, high);
     let domain = Domain::new((0..dimension).map(factor).collect(), &[]).expect("a box");
     // |y + 1 − 1| / 1 = y: the target must not be zero.
-    let target = Target { response: "value".into(), value: 1.0, weight: 1.0 };
-    Problem { domain, misfit: Misfit::new(vec![target], Form::Sum, Denominator::Target).expect("a target") }
+    let target = Target::exactly("value", 1.0, 1.0);
+    let misfit = Misfit::new(vec![target], Form::Sum, Denominator::Target).expect("a target");
+    Problem { domain, misfit, start: None }
 }
 
 /// The five target sets of Su et al. 2021, section 6.3: peak strength MPa, modulus GPa, Poisson's ratio.
@@ -71,12 +72,13 @@ pub(crate) fn su2021(set: usize, form: Form, denominator: Denominator) -> Proble
         ("Ecj", 5.0, 15.0),
         ("kn_ks_j", 1.0, 4.0),
     ];
-    let factor = |(name, low, high): (&str, f64, f64)| Factor { name: name.into(), low, high };
+    let factor = |(name, low, high): (&str, f64, f64)| Factor::linear(name, low, high);
     let targets = ["UCS", "E", "nu"].iter().zip(TARGETS[set]);
-    let targets = targets.map(|(name, value)| Target { response: (*name).into(), value, weight: 1.0 }).collect();
+    let targets = targets.map(|(name, value)| Target::exactly(name, value, 1.0)).collect();
     Problem {
         domain: Domain::new(ranges.map(factor).to_vec(), &[]).expect("a box"),
         misfit: Misfit::new(targets, form, denominator).expect("targets"),
+        start: None,
     }
 }
 

@@ -56,13 +56,8 @@ pub struct CmaEs {
 }
 
 impl CmaEs {
-    /// A fresh search, from the centre of the domain.
-    pub fn new(settings: &Settings, domain: &Domain, seed: u64) -> Self {
-        Self::from(settings, domain, seed, domain.centre())
-    }
-
     /// A fresh search from a given point of the unit box.
-    pub fn from(settings: &Settings, domain: &Domain, seed: u64, start: &[f64]) -> Self {
+    pub fn new(settings: &Settings, domain: &Domain, seed: u64, start: &[f64]) -> Self {
         let d = domain.len();
         let population = settings.population.unwrap_or(4 + (3.0 * ln(d as f64)).floor() as usize).max(4);
         Self {

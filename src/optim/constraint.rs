@@ -1,27 +1,19 @@
 //! Where the parameters may lie: a box, and linear constraints in it.
 //!
-//! Optimisers see the unit box u, with x = low + u (high − low). A linear constraint Σ aᵢ xᵢ ≤ b becomes
-//! Σ aᵢ wᵢ uᵢ ≤ b − Σ aᵢ lowᵢ with the widths wᵢ, scaled to a normal of unit length. A point outside is brought to
+//! Optimisers see the unit box u ([`super::factor`]). A linear constraint Σ aᵢ xᵢ ≤ b becomes
+//! Σ aᵢ wᵢ uᵢ ≤ b − Σ aᵢ lowᵢ with the widths wᵢ, scaled to a normal of unit length. On logarithmic scales two kinds of
+//! constraint stay linear, and no other is taken: a bound a x ≤ b, and a ratio a x ≤ b y. A point outside is brought to
 //! the nearest allowed one by [`least_distance`].
 
 use super::Error;
+pub use super::factor::{Factor, Scale};
 use super::least_distance::least_distance;
+use math::elementary::ln;
 use math::random::Stream;
 use std::collections::BTreeMap;
 
 /// How far outside a bound, in the unit box, still counts as on it.
 pub const SLACK: f64 = 1e-9;
-
-/// A calibrated parameter and its range, in the unit the model takes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Factor {
-    /// Name.
-    pub name: String,
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
-}
 
 /// Σ terms ≤ `at_most`, in natural units.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,18 +80,17 @@ impl Domain {
 
     /// Natural units of a point of the unit box; 0 and 1 give the ends of the range exactly.
     pub fn natural(&self, unit: &[f64]) -> Vec<f64> {
-        let lerp = |(f, &u): (&Factor, &f64)| if u >= 1.0 { f.high } else { f.low + u * (f.high - f.low) };
-        self.factors.iter().zip(unit).map(lerp).collect()
+        self.factors.iter().zip(unit).map(|(f, &u)| f.natural(u)).collect()
     }
 
     /// Natural units of a point that may lie outside the unit box.
     pub fn natural_beyond(&self, unit: &[f64]) -> Vec<f64> {
-        self.factors.iter().zip(unit).map(|(f, &u)| f.low + u * (f.high - f.low)).collect()
+        self.factors.iter().zip(unit).map(|(f, &u)| f.natural_beyond(u)).collect()
     }
 
     /// Place of a natural point in the unit box; outside the range it lies outside 0 … 1.
     pub fn unit(&self, natural: &[f64]) -> Vec<f64> {
-        self.factors.iter().zip(natural).map(|(f, x)| (x - f.low) / (f.high - f.low)).collect()
+        self.factors.iter().zip(natural).map(|(f, &x)| f.unit(x)).collect()
     }
 
     /// Whether a point of the unit box is allowed.
@@ -114,7 +105,7 @@ impl Domain {
         let outside = |reason| Err(Error::Outside { point: natural.to_vec(), reason });
         for (factor, (u, x)) in self.factors.iter().zip(unit.iter().zip(natural)) {
             if !(-SLACK..=1.0 + SLACK).contains(u) {
-                let Factor { name, low, high } = factor;
+                let Factor { name, low, high, .. } = factor;
                 return outside(format!("`{name}` = {x} is not within {low} … {high}"));
             }
         }
@@ -176,7 +167,7 @@ impl Domain {
         let name = |&row: &usize| match self.walls.get(row) {
             Some((_, _, text)) => text.clone(),
             None => {
-                let Factor { name, low, high } = &self.factors[(row - self.walls.len()) / 2];
+                let Factor { name, low, high, .. } = &self.factors[(row - self.walls.len()) / 2];
                 if (row - self.walls.len()).is_multiple_of(2) {
                     format!("{name} ≥ {low}")
                 } else {
@@ -194,15 +185,10 @@ fn box_faults(factors: &[Factor]) -> Vec<Error> {
         faults.push(Error::Nothing { what: "factor" });
     }
     for (i, factor) in factors.iter().enumerate() {
-        let Factor { name, low, high } = factor;
-        if factors[..i].iter().any(|other| other.name == *name) {
-            faults.push(Error::Twice { name: name.clone() });
+        if factors[..i].iter().any(|other| other.name == factor.name) {
+            faults.push(Error::Twice { name: factor.name.clone() });
         }
-        if let Some(&value) = [low, high].into_iter().find(|v| !v.is_finite()) {
-            faults.push(Error::NotFinite { what: format!("an end of the range of `{name}`"), value });
-        } else if low >= high {
-            faults.push(Error::EmptyRange { factor: name.clone(), low: *low, high: *high });
-        }
+        faults.extend(factor.fault());
     }
     faults
 }
@@ -228,6 +214,9 @@ fn wall(constraint: &Linear, factors: &[Factor], known: &[String]) -> Result<Opt
         return Err(faults);
     }
     let of = |f: &Factor| constraint.terms.get(&f.name).copied().unwrap_or(0.0);
+    if factors.iter().any(|f| f.scale == Scale::Log && of(f) != 0.0) {
+        return ratio(constraint, factors, text).map(Some).map_err(|fault| vec![fault]);
+    }
     let normal: Vec<f64> = factors.iter().map(|f| of(f) * (f.high - f.low)).collect();
     let bound = constraint.at_most - factors.iter().map(|f| of(f) * f.low).sum::<f64>();
     let length = dot(&normal, &normal).sqrt();
@@ -236,6 +225,37 @@ fn wall(constraint: &Linear, factors: &[Factor], known: &[String]) -> Result<Opt
         return if holds { Ok(None) } else { Err(vec![Error::Contradiction { constraints: vec![text] }]) };
     }
     Ok(Some((normal.iter().map(|a| a / length).collect(), bound / length, text)))
+}
+
+/// A bound or a ratio of parameters on logarithmic scales, which is linear there: a x ≤ b as ln x ≤ ln(b/a), and
+/// a x ≤ b y as ln x − ln y ≤ ln(b/a).
+fn ratio(constraint: &Linear, factors: &[Factor], text: String) -> Result<Wall, Error> {
+    let terms: Vec<(usize, f64)> = factors
+        .iter()
+        .enumerate()
+        .filter_map(|(i, f)| constraint.terms.get(&f.name).map(|&a| (i, a)))
+        .filter(|(_, a)| *a != 0.0)
+        .collect();
+    let logarithmic = terms.iter().all(|(i, _)| factors[*i].scale == Scale::Log);
+    let (over, under, limit) = match (&terms[..], constraint.at_most) {
+        (&[(x, a)], b) if logarithmic && a * b > 0.0 => {
+            (Some(x).filter(|_| a > 0.0), Some(x).filter(|_| a < 0.0), b / a)
+        }
+        (&[(x, a), (y, b)], 0.0) if logarithmic && a > 0.0 && b < 0.0 => (Some(x), Some(y), -b / a),
+        (&[(y, b), (x, a)], 0.0) if logarithmic && a > 0.0 && b < 0.0 => (Some(x), Some(y), -b / a),
+        _ => return Err(Error::NotLogarithmic { constraint: text }),
+    };
+    // ln x − ln y ≤ ln(limit), where a bound from below has no x and ln y ≥ ln(limit).
+    let mut bound = if over.is_none() { -ln(limit) } else { ln(limit) };
+    let mut normal = vec![0.0; factors.len()];
+    for (sign, place) in [(1.0, over), (-1.0, under)] {
+        if let Some(i) = place {
+            normal[i] = sign * factors[i].span();
+            bound -= sign * ln(factors[i].low);
+        }
+    }
+    let length = dot(&normal, &normal).sqrt();
+    Ok((normal.iter().map(|a| a / length).collect(), bound / length, text))
 }
 
 /// "sigma_c − 3 tau_c ≤ 0".
@@ -263,7 +283,7 @@ mod tests {
     use super::*;
 
     fn factor(name: &str, low: f64, high: f64) -> Factor {
-        Factor { name: name.into(), low, high }
+        Factor::linear(name, low, high)
     }
 
     fn linear(terms: &[(&str, f64)], at_most: f64) -> Linear {
@@ -311,6 +331,30 @@ mod tests {
         near([0.8, 0.6], [0.6, 0.4]);
         near([2.0, 0.5], [0.75, 0.25]);
         near([-1.0, 0.5], [0.0, 0.5]);
+    }
+
+    /// k_s ≤ k_n / 2, k_s ≥ 10 and k_n ≤ 500 by logarithms: the walls are where the numbers say.
+    #[test]
+    fn ratios_and_bounds_hold_on_logarithmic_scales() {
+        let factors = vec![Factor::log("kn", 1.0, 1e3), Factor::log("ks", 1.0, 1e3)];
+        let walls =
+            [linear(&[("ks", 2.0), ("kn", -1.0)], 0.0), linear(&[("ks", -1.0)], -10.0), linear(&[("kn", 0.5)], 250.0)];
+        let domain = Domain::new(factors.clone(), &walls).expect("good");
+        for (point, allowed) in [
+            ([100.0, 49.9], true),
+            ([100.0, 50.1], false),
+            ([100.0, 10.01], true),
+            ([100.0, 9.99], false),
+            ([499.0, 20.0], true),
+            ([501.0, 20.0], false),
+        ] {
+            assert_eq!(domain.contains(&domain.unit(&point)), allowed, "{point:?}");
+        }
+        let sum = Domain::new(factors, &[linear(&[("kn", 1.0), ("ks", 1.0)], 100.0)]).expect_err("not linear");
+        assert_eq!(
+            sum[0].to_string(),
+            "kn + ks ≤ 100 names factors on a logarithmic scale, where only a bound of one factor or a ratio of two holds"
+        );
     }
 
     #[test]

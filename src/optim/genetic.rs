@@ -118,12 +118,15 @@ pub struct Genetic {
     /// Best misfit of each generation.
     best: Vec<f64>,
     step: f64,
+    /// A first guess, which takes part in the first generation.
+    start: Option<Vec<f64>>,
 }
 
 impl Genetic {
     /// A fresh search.
-    pub fn new(settings: &Settings, domain: &Domain, seed: u64) -> Self {
+    pub fn new(settings: &Settings, domain: &Domain, seed: u64, start: Option<&[f64]>) -> Self {
         Self {
+            start: start.map(<[f64]>::to_vec),
             size: settings.population(domain.len()),
             generations: settings.generations.unwrap_or(100 * domain.len()),
             settings: settings.clone(),
@@ -225,7 +228,9 @@ fn random_basis(n: usize, random: &mut Stream) -> Vec<Vec<f64>> {
 impl Optimiser for Genetic {
     fn ask(&mut self) -> Vec<Vec<f64>> {
         if self.population.is_empty() {
-            return (0..self.size).map(|_| self.domain.sample(&mut self.random)).collect();
+            let (guess, random) = (self.start.clone(), &mut self.random);
+            let others = self.size - guess.iter().len();
+            return guess.into_iter().chain((0..others).map(|_| self.domain.sample(random))).collect();
         }
         let others = self.size - self.elite();
         let crossed = (self.settings.crossover * others as f64).round() as usize;

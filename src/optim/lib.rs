@@ -11,14 +11,17 @@
 //! An optimiser hands out points and is told what came back. It never sees the model, a clock or a thread, so the
 //! same history gives the same points: a killed calibration is resumed by replaying what was told.
 //!
-//! Optimisers work in the *unit box*: every parameter is mapped linearly from its range to 0 … 1.
+//! Optimisers work in the *unit box*: every parameter is mapped from its range to 0 … 1, linearly or by logarithms
+//! ([`factor`]).
 
 pub mod annealing;
 pub mod cma_es;
 pub mod constraint;
 pub mod differential;
+pub mod factor;
 pub mod genetic;
 pub mod least_distance;
+mod level;
 pub mod local;
 pub mod misfit;
 pub mod polish;
@@ -62,6 +65,8 @@ pub struct Problem {
     pub domain: Domain,
     /// Targets and how deviations from them are combined.
     pub misfit: Misfit,
+    /// A first guess in the unit box: the first point of a search, and the centre of what is tried around it.
+    pub start: Option<Vec<f64>>,
 }
 
 /// A minimiser that is asked for points and told what came back.
@@ -169,6 +174,32 @@ pub enum Error {
     EmptyRange {
         /// The factor.
         factor: String,
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
+    /// A logarithmic scale from zero or below.
+    #[error("the range of `{factor}` begins at {low}, and a logarithmic scale needs a positive lower end")]
+    NoLogarithm {
+        /// The factor.
+        factor: String,
+        /// Lower end.
+        low: f64,
+    },
+    /// A constraint that is not linear in logarithms.
+    #[error(
+        "{constraint} names factors on a logarithmic scale, where only a bound of one factor or a ratio of two holds"
+    )]
+    NotLogarithmic {
+        /// The constraint, written out.
+        constraint: String,
+    },
+    /// A band of targets whose ends are the wrong way round.
+    #[error("the target of `{response}` lies between {low} and {high}; the lower end must be below the upper one")]
+    EmptyBand {
+        /// The response.
+        response: String,
         /// Lower end.
         low: f64,
         /// Upper end.

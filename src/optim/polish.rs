@@ -43,7 +43,7 @@ impl Optimiser for Polish {
                 if self.descent.stop().is_some() {
                     let settings = cma_es::Settings { step: STEP, restarts: 0, ..Default::default() };
                     let start = self.descent.best().0;
-                    self.adaptation = Some(CmaEs::from(&settings, &self.domain, self.seed, start));
+                    self.adaptation = Some(CmaEs::new(&settings, &self.domain, self.seed, start));
                 }
             }
         }

@@ -167,12 +167,12 @@ pub struct Search {
 impl Search {
     /// A fresh search.
     pub fn new(problem: &Problem, method: &Method, limits: &Limits, seed: u64, knowledge: &Knowledge) -> Self {
-        let domain = &problem.domain;
+        let (domain, start) = (&problem.domain, problem.start.as_deref());
         let optimiser: Box<dyn Optimiser> = match method {
-            Method::Genetic(s) => Box::new(Genetic::new(s, domain, seed)),
-            Method::Annealing(s) => Box::new(Annealing::new(s, domain, seed)),
-            Method::Differential(s) => Box::new(Differential::new(s, domain, seed)),
-            Method::CmaEs(s) => Box::new(CmaEs::new(s, domain, seed)),
+            Method::Genetic(s) => Box::new(Genetic::new(s, domain, seed, start)),
+            Method::Annealing(s) => Box::new(Annealing::new(s, domain, seed, start)),
+            Method::Differential(s) => Box::new(Differential::new(s, domain, seed, start)),
+            Method::CmaEs(s) => Box::new(CmaEs::new(s, domain, seed, start.unwrap_or(domain.centre()))),
             Method::Surrogate(s) => {
                 let known = knowledge.earlier.iter().map(|run| earlier(problem, run)).collect();
                 Box::new(Surrogate::new(s, problem, seed, known, knowledge.trend.clone()))

@@ -15,7 +15,7 @@ fn methods() -> Vec<Method> {
         Method::Annealing(annealing::Settings { chains: Some(3), ..annealing::Settings::wang2017() }),
         Method::Differential(differential::Settings::default()),
         Method::Differential(differential::Settings { preset: differential::Preset::Jde, ..Default::default() }),
-        Method::Differential(differential::Settings::rcc()),
+        Method::Differential(differential::Settings::rcc2020()),
         Method::CmaEs(cma_es::Settings::default()),
         Method::Surrogate(surrogate::Settings::default()),
     ]
@@ -123,6 +123,70 @@ fn trajectories_are_pinned() {
 }
 const TRAJECTORIES: [&str; 5] = ["56a75042", "de03ab75", "80af84bb", "6c5ad5c1", "43c39ef2"];
 
+/// The published presets, with runs that fail: 500 evaluations each, the first population around a guess.
+#[test]
+fn trajectories_of_the_presets_are_pinned() {
+    let free = benchmark::su2021(0, Form::Maximum, Denominator::Target);
+    let guess = Problem { start: Some(vec![0.4; 7]), ..free.clone() };
+    let cases = [
+        (Method::Annealing(annealing::Settings::wang2017()), &free),
+        (Method::Annealing(annealing::Settings::wang2017()), &guess),
+        (Method::Differential(differential::Settings::rcc2020()), &free),
+        (Method::Differential(differential::Settings::rcc2020()), &guess),
+    ];
+    let mut seen = Vec::new();
+    for (method, problem) in cases {
+        let (mut count, mut bytes) = (0, Vec::new());
+        let (stop, state) = minimise(problem, &method, &budget(500), 11, |x| {
+            count += 1;
+            bytes.extend(x.iter().flat_map(|x| x.to_le_bytes()));
+            (count % 7 != 3).then(|| benchmark::surfaces(x))
+        });
+        assert_eq!((stop, state.evaluations, state.failed), (Stop::Evaluations, 500, 72), "{method:?}");
+        seen.push(blake3::hash(&bytes).to_hex()[..8].to_owned());
+    }
+    assert_eq!(seen, PRESETS);
+}
+const PRESETS: [&str; 4] = ["bd36669b", "6f796359", "44e6a987", "d7fd918a"];
+
+/// A first guess is the first point that is tried, whatever the method, or the middle of what is tried first.
+#[test]
+fn every_method_begins_at_a_first_guess() {
+    let guess = vec![0.3, 0.6, 0.5, 0.4, 0.5, 0.35, 0.65];
+    let problem = Problem { start: Some(guess.clone()), ..benchmark::su2021(0, Form::Sum, Denominator::Target) };
+    for method in methods() {
+        // The steps of the evolution strategy are normal around its guess.
+        let narrow = Method::CmaEs(cma_es::Settings { step: 1e-14, ..Default::default() });
+        let method = if matches!(method, Method::CmaEs(_)) { narrow } else { method };
+        let mut search = Search::new(&problem, &method, &budget(500), 3, &Knowledge::default());
+        let asked: Vec<Vec<f64>> = search.ask().iter().map(|x| problem.domain.unit(x)).collect();
+        let mean = |j: usize| asked.iter().map(|u| u[j]).sum::<f64>() / asked.len() as f64;
+        for (j, wanted) in guess.iter().enumerate() {
+            let found = if is_surrogate(&method) { mean(j) } else { asked[0][j] };
+            assert!((found - wanted).abs() < 1e-12, "{method:?}: {found}");
+        }
+    }
+}
+
+/// Seven orders of magnitude: by equal differences the answer lies at a ten-thousandth of the range.
+#[test]
+fn every_method_searches_orders_of_magnitude_by_logarithms() {
+    use super::constraint::Factor;
+    use super::misfit::{Misfit, Target};
+    let factors = ["kn", "sigma"].map(|name| Factor::log(name, 1e2, 1e9)).to_vec();
+    let targets = vec![Target::exactly("E", 3e4, 1.0), Target::exactly("UCS", 2e4, 1.0)];
+    let misfit = Misfit::new(targets, Form::Sum, Denominator::Target).expect("targets");
+    let problem = Problem { domain: Domain::new(factors, &[]).expect("a box"), misfit, start: None };
+    for (name, method) in METHODS.iter().zip(defaults()) {
+        let limits = Limits { misfit: Some(0.01), ..budget(if is_surrogate(&method) { 60 } else { 3000 }) };
+        let (stop, state) = minimise(&problem, &method, &limits, 2, |x| {
+            assert!(x.iter().all(|x| (1e2..=1e9).contains(x)), "{x:?}");
+            Some(vec![0.3 * x[0], 1.2 * (x[0] * x[1]).sqrt()])
+        });
+        assert_eq!(stop, Stop::Reached, "{name}: {:?}", state.best);
+    }
+}
+
 #[test]
 fn no_method_leaves_the_box_or_breaks_a_constraint() {
     let free = benchmark::su2021(2, Form::Sum, Denominator::Target);
@@ -131,7 +195,7 @@ fn no_method_leaves_the_box_or_breaks_a_constraint() {
     let terms = [("Ec".to_owned(), 1.0), ("Ecj".to_owned(), 1.0)].into_iter().collect();
     let sum = Linear { terms, at_most: 30.0 };
     let domain = Domain::new(free.domain.factors().to_vec(), &[ratio, sum]).expect("feasible");
-    let problem = Problem { domain, misfit: free.misfit };
+    let problem = Problem { domain, misfit: free.misfit, start: None };
     for method in methods() {
         let evaluations = if is_surrogate(&method) { 24 } else { 600 };
         let (_, state) = minimise(&problem, &method, &budget(evaluations), 3, |x| {
@@ -164,7 +228,7 @@ fn published_presets_are_those_of_their_papers() {
     let (stop, _) = minimise(&problem, &method, &limits, 1, |x| Some(benchmark::surfaces(x)));
     assert_eq!(stop, Stop::Reached);
     // 24 individuals and 30 generations.
-    let method = Method::Differential(differential::Settings::rcc());
+    let method = Method::Differential(differential::Settings::rcc2020());
     let (stop, state) = minimise(&problem, &method, &Limits::default(), 1, |x| Some(benchmark::surfaces(x)));
     assert_eq!((stop, state.evaluations), (Stop::Iterations, 24 * 31));
 }

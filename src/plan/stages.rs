@@ -149,11 +149,10 @@ fn connect(check: &mut Check<'_>, table: &Table, stages: &[Configured]) -> Vec<V
 /// The input gives what the port accepts.
 fn fits(check: &mut Check<'_>, table: &Table, stage: &Configured, port: &Port, at: usize, input: &Configured) {
     let gives = input.stage.gives();
-    if port.accepts.contains(&gives) {
+    if port.accepts.takes(gives) {
         return;
     }
-    let wanted = port.accepts.join(" or ");
-    let message = format!("`{}` wants {wanted}, but stage `{}` gives {gives}", port.key, input.name);
+    let message = format!("`{}` wants {}, but stage `{}` gives {gives}", port.key, port.accepts, input.name);
     place_at_port(check, table, stage, port.key, at, Fault::new(message));
 }
 

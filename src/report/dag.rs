@@ -13,7 +13,7 @@ pub(super) fn picture(paper: &Paper, glyphs: &mut Glyphs) -> Markup {
     let reads = |reader: usize, maker: usize| paper.parts[reader].inputs.iter().any(|&(_, input)| input == maker);
     let is_read = |i: &usize| own.iter().any(|&reader| reads(reader, *i));
     // Lists of what the workflow says, and data that only tables read, compute nothing.
-    let computes = |i: &usize| !matches!(paper.parts[*i].kind.as_str(), "data" | "table" | "figure");
+    let computes = |i: &usize| paper.parts[*i].class.computes();
     let shown: Vec<usize> = own.iter().copied().filter(|i| computes(i) || own.len() == 1 || is_read(i)).collect();
     let place = |index: usize| shown.iter().position(|&i| i == index);
     let stages = shown.iter().map(|&i| {

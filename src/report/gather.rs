@@ -4,7 +4,7 @@ use super::paper::{Cost, Paper, Part, State};
 use crate::artifact::ContentHash;
 use crate::plan::{StageNode, Workflow};
 use crate::run::{Report, StageStatus, decide};
-use crate::stage::KINDS;
+use crate::stage::{Class, kind};
 use crate::store::{Campaign, Store, StoreError};
 use std::collections::HashSet;
 
@@ -47,11 +47,12 @@ pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper,
 }
 
 fn part(node: &StageNode, state: State, cost: Cost) -> Part {
-    let about = KINDS.iter().find(|kind| kind.name == node.kind).map_or("", |kind| kind.about);
+    let entry = kind(node.kind);
     Part {
         name: node.name.clone(),
         kind: node.kind.to_owned(),
-        about: about.to_owned(),
+        class: entry.map_or(Class::Statistics, |entry| entry.class),
+        about: entry.map_or("", |entry| entry.about).to_owned(),
         inputs: node.inputs.iter().map(|&(port, input)| (port.to_owned(), input)).collect(),
         settings: node.stage.settings(),
         state,

@@ -1,7 +1,7 @@
 //! What the page shows, as plain data.
 
-use crate::artifact::{Artifact, ContentHash};
-use crate::stage::Context;
+use crate::artifact::{Artifact, ArtifactKind, ContentHash};
+use crate::stage::{Class, Context};
 use crate::store::{Campaign, Origin};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -39,6 +39,8 @@ pub struct Part {
     pub name: String,
     /// Its kind.
     pub kind: String,
+    /// Class of the kind.
+    pub class: Class,
     /// One line on the kind.
     pub about: String,
     /// Its inputs: port, and which stage.
@@ -128,18 +130,18 @@ impl Part {
 
     /// Whether it only shows what other stages computed.
     pub(super) fn is_shown_elsewhere(&self) -> bool {
-        matches!(self.kind.as_str(), "figure" | "table")
+        self.class == Class::Presentation
     }
 
     /// How many tests or trials of a simulator its result holds; nothing when it is no simulator's.
     pub(super) fn runs(&self) -> Option<usize> {
         let artifact = self.artifact()?;
-        match (artifact.kind.as_str(), self.kind.as_str()) {
-            ("run", _) => Some(1),
-            ("results", "data") => None,
-            ("results" | "verification", _) => artifact.table("runs").map(crate::artifact::Table::rows),
-            _ => None,
+        if artifact.is(ArtifactKind::RUN) {
+            return Some(1);
         }
+        let many = artifact.is(ArtifactKind::RESULTS) || artifact.is(ArtifactKind::VERIFICATION);
+        let table = artifact.table("runs").filter(|_| many && self.class.computes());
+        table.map(crate::artifact::Table::rows)
     }
 }
 

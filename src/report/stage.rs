@@ -5,7 +5,10 @@ use super::paper::{Paper, Part, State, capital};
 use super::table::Sheet;
 use super::time::{duration, moment};
 use super::warning::warnings;
-use crate::artifact::Table;
+use crate::artifact::{ArtifactKind, Table};
+use crate::stage::figure::Figure as Picture;
+use crate::stage::table::Table as PrintedTable;
+use crate::stage::{Kind, artifact_kind};
 use maud::{Markup, html};
 use serde_json::Value;
 
@@ -99,12 +102,11 @@ fn own(paper: &Paper, index: usize, members: &[usize]) -> Markup {
     let part = &paper.parts[index];
     let Some(artifact) = part.artifact() else { return html! {} };
     let all: Vec<(String, &Table)> = artifact.tables().into_iter().filter(|(_, table)| table.rows() > 0).collect();
-    let first = all.first().map(|(name, _)| name.clone()).unwrap_or_default();
-    let printed = |name: &str| members.iter().any(|&member| prints(&paper.parts[member], index, name, &first));
+    let main = artifact_kind(artifact).and_then(ArtifactKind::main_table).unwrap_or_default();
+    let printed = |name: &str| members.iter().any(|&member| prints(&paper.parts[member], index, name, main));
     let rest: Vec<&(String, &Table)> = all.iter().filter(|(name, _)| !printed(name) && !name.contains('/')).collect();
-    let main = main_table(&artifact.kind);
     let is_open =
-        |name: &str| name == main && !members.iter().any(|&m| prints_some(&paper.parts[m], index, name, &first));
+        |name: &str| name == main && !members.iter().any(|&m| prints_some(&paper.parts[m], index, name, main));
     let sheet = |name: &str, table| {
         let command = paper.command("show", &format!("{} --table {name}", part.name));
         let about = artifact_about(name, table);
@@ -131,43 +133,27 @@ fn artifact_about(name: &str, table: &Table) -> Markup {
     html! { b { (name.replace('_', " ")) } @if !table.about.is_empty() { " " (table.about) } }
 }
 
-/// The table of an artifact that people look at first.
-fn main_table(kind: &str) -> &'static str {
-    match kind {
-        "specimen" => "quality",
-        "run" => "responses",
-        "results" => "runs",
-        "range" => "range",
-        "anova" => "anova",
-        "screening" => "effects",
-        "surfaces" => "fit",
-        "solution" => "solution",
-        "verification" => "summary",
-        _ => "",
-    }
-}
-
 /// Whether a `table` stage prints this table of that stage, whole.
-fn prints(part: &Part, index: usize, name: &str, first: &str) -> bool {
+fn prints(part: &Part, index: usize, name: &str, main: &str) -> bool {
     let free = |key: &str| match &part.settings[key] {
         Value::Array(list) => list.is_empty(),
         Value::Object(map) => map.is_empty(),
         _ => true,
     };
-    prints_some(part, index, name, first) && free("columns") && free("where")
+    prints_some(part, index, name, main) && free("columns") && free("where")
 }
 
 /// Whether a `table` stage prints something of this table of that stage.
-fn prints_some(part: &Part, index: usize, name: &str, first: &str) -> bool {
+fn prints_some(part: &Part, index: usize, name: &str, main: &str) -> bool {
     let of: Vec<usize> = part.inputs.iter().filter(|(port, _)| port == "of").map(|&(_, input)| input).collect();
-    part.kind == "table" && of == [index] && part.settings["table"].as_str().unwrap_or(first) == name
+    part.kind == PrintedTable::NAME && of == [index] && part.settings["table"].as_str().unwrap_or(main) == name
 }
 
 /// A table or figure that shows the stage.
 fn member(paper: &Paper, index: usize, glyphs: &mut Glyphs) -> Markup {
     let part = &paper.parts[index];
     match part.kind.as_str() {
-        "figure" => figure(paper, part, glyphs),
+        Picture::NAME => figure(paper, part, glyphs),
         _ => printed(paper, part),
     }
 }

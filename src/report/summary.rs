@@ -6,6 +6,9 @@ use super::table::{CLOSE, Mark, number};
 use super::time::{duration, moment};
 use super::warning::warnings;
 use crate::artifact::{Column, Table};
+use crate::stage::Kind;
+use crate::stage::figure::Figure as Picture;
+use crate::stage::table::Table as PrintedTable;
 use maud::{Markup, html};
 
 pub(super) fn summary(paper: &Paper) -> Markup {
@@ -42,7 +45,7 @@ fn sentence(paper: &Paper) -> Markup {
         @if done == paper.parts.len() { "All " (some(done, "stage")) " have a result" }
         @else { (done) " of " (some(paper.parts.len(), "stage")) " have a result" }
         @if runs > 0 { ": " (some(runs, "run")) " of the model, " } @else { ": " }
-        (some(count("table"), "table")) " and " (some(count("figure"), "figure")) ", from seed " (paper.context.seed) ". "
+        (some(count(PrintedTable::NAME), "table")) " and " (some(count(Picture::NAME), "figure")) ", from seed " (paper.context.seed) ". "
         @if let Some((first, last)) = cost.span {
             (some(cost.tasks, "task")) " took " (duration(cost.seconds)) " of computing between "
             (time(first)) " and " (time(last)) " UTC."
@@ -83,7 +86,7 @@ struct Compared<'a> {
 
 /// How far computed and published values agree, for every table that compares them.
 fn agreement(paper: &Paper) -> Markup {
-    let tables = paper.parts.iter().filter(|part| part.kind == "table");
+    let tables = paper.parts.iter().filter(|part| part.kind == PrintedTable::NAME);
     let all: Vec<Compared> = tables.flat_map(|part| compared(part).into_iter().flatten()).collect();
     html! {
         @if !all.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::page::STYLE;
 use super::{Cost, Paper, Part, State, page};
-use crate::artifact::{Artifact, Group, Node, Table};
+use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use crate::stage::Context;
 use figure::dag::{Dag, Stage};
 use figure::{Figure, Style, palette, scene::Color, svg::svg};
@@ -21,6 +21,7 @@ fn part(name: &str, kind: &str, inputs: &[usize], artifact: Option<Artifact>) ->
     Part {
         name: name.to_owned(),
         kind: kind.to_owned(),
+        class: crate::stage::kind(kind).unwrap().class,
         about: HOSTILE.to_owned(),
         inputs,
         settings,
@@ -35,8 +36,8 @@ fn hostile() -> Paper {
             .texts_column(HOSTILE, HOSTILE, vec![HOSTILE.to_owned()])
             .reals_column("value", HOSTILE, HOSTILE, vec![1.0 / 3.0])
     };
-    let results = Artifact::new("results", 1, Group::new().with("runs", Node::Table(table())));
-    let printed = Artifact::new("table", 1, Group::new().with("table", Node::Table(table())));
+    let results = Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table())));
+    let printed = Artifact::of(ArtifactKind::TABLE, Group::new().with("table", Node::Table(table())));
     let text = |text: &str| Node::Text(text.to_owned());
     let svg = format!("<svg viewBox=\"0 0 9 9\"><title>{HOSTILE}</title></svg>");
     let picture = Group::new().with("title", text(HOSTILE)).with("description", text(HOSTILE)).with("svg", text(&svg));
@@ -52,7 +53,7 @@ fn hostile() -> Paper {
         parts: vec![
             part("first", "simulate", &[], Some(results)),
             part("printed", "table", &[0], Some(printed)),
-            part("picture", "figure", &[0], Some(Artifact::new("picture", 1, picture))),
+            part("picture", "figure", &[0], Some(Artifact::of(ArtifactKind::PICTURE, picture))),
             part("later", "anova", &[0], None),
         ],
         runs: Vec::new(),

@@ -133,7 +133,7 @@ fn objects(store: &Store, board: &Board, gather: NodeId, places: &[usize]) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::artifact::{Artifact, ContentHash, Group, Node};
+    use crate::artifact::{Artifact, ArtifactKind, ContentHash, Group, Node};
 
     fn rows(values: &[f64]) -> Rows {
         let words = values.iter().flat_map(|value| [value.to_bits(), 1]).collect();
@@ -145,7 +145,7 @@ mod tests {
         let old = rows(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         let mut briefs = Briefs::default();
         let run = crate::stage::rows::response_table(&[]);
-        let run = Artifact::new("run", 1, Group::new().with("responses", Node::Table(run)));
+        let run = Artifact::of(ArtifactKind::RUN, Group::new().with("responses", Node::Table(run)));
         assert!((0..6).all(|_| briefs.push_run(&run)));
         let object = |place: u8| ObjectId { content: ContentHash([place; 32]), key: Key([place; 32]) };
         let ledger = Ledger {

@@ -26,7 +26,7 @@ pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
 
 use crate::artifact::{ContentHash, Key};
-use crate::exec::Threads;
+use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
 use crate::store::{ObjectId, Store, StoreError};
@@ -41,7 +41,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 /// How a campaign is run.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Worker threads.
+    /// Cores that all tasks together may use.
     pub jobs: usize,
     /// Go on with what does not depend on a failed task.
     pub keep_going: bool,
@@ -158,8 +158,8 @@ impl Report {
 /// Runs what is missing of `workflow`, or only decides when the settings say so.
 pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn Watch, stop: &AtomicBool) -> Report {
     let (answers, inbox) = channel();
-    std::thread::scope(|scope| {
-        let pool = Threads::start(scope, if settings.dry { 0 } else { settings.jobs.max(1) });
+    let jobs = if settings.dry { 1 } else { settings.jobs };
+    let ran = with_threads(jobs, |pool| {
         let run = Loop {
             workflow,
             store,
@@ -180,6 +180,13 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             again: false,
         };
         run.go(&inbox)
+    });
+    ran.unwrap_or_else(|error| Report {
+        stages: Vec::new(),
+        interrupted: false,
+        broken: Some(format!("the system grants no {jobs} threads ({error}); try fewer with `--jobs`")),
+        board: Board::default(),
+        places: Stages::new(workflow, &settings.targets, false),
     })
 }
 
@@ -203,13 +210,13 @@ struct Answer {
     result: Result<task::Finished, Failure>,
 }
 
-struct Loop<'env> {
+struct Loop<'pool, 'env> {
     workflow: &'env Workflow,
     store: &'env Store,
     settings: &'env Settings,
     watch: &'env dyn Watch,
     stop: &'env AtomicBool,
-    pool: Threads<'env>,
+    pool: Threads<'pool, 'env>,
     answers: Sender<Answer>,
     board: Board,
     stages: Stages,
@@ -229,7 +236,7 @@ struct Loop<'env> {
     again: bool,
 }
 
-impl Loop<'_> {
+impl Loop<'_, '_> {
     fn go(mut self, inbox: &Receiver<Answer>) -> Report {
         loop {
             while !self.again && self.advance() {}
@@ -339,9 +346,7 @@ impl Loop<'_> {
         }
         while self.running < self.pool.count() {
             let Some(node) = self.ready.pop_first() else { return };
-            let idle = self.pool.count() - self.running;
-            let threads = (idle / (self.ready.len() + 1)).max(1);
-            match task::Order::new(&mut self.board, node, self.store, threads) {
+            match task::Order::new(&mut self.board, node, self.store) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
                     Ok(()) => return,
@@ -378,11 +383,11 @@ impl Loop<'_> {
         let row = self.board.row(node);
         self.board.started(node);
         self.running += 1;
-        self.pool.give(move || {
+        self.pool.give(move |share| {
             watch.event(Event::Started { stage, row });
             let say = |progress: Progress| watch.event(Event::Said { stage, row, progress: &progress });
             // What panics is our own fault, but no reason to leave the loop waiting or to end the other tasks.
-            let result = catch_unwind(AssertUnwindSafe(|| order.execute(store, &say, stop)));
+            let result = catch_unwind(AssertUnwindSafe(|| order.execute(store, share, &say, stop)));
             let result = result.unwrap_or_else(|panic| Err(panicked(&*panic)));
             // The loop may be gone only when it panicked; then nobody waits for this answer.
             let _ = answers.send(Answer { node, result });

@@ -2,6 +2,7 @@
 
 use super::board::{Board, NodeId};
 use crate::artifact::{Artifact, ContentHash, Key};
+use crate::exec::Share;
 use crate::stage::{Failure, Job, Progress, StageError, Task, work};
 use crate::store::{Claim, Guard, Store, StoreError, Timing};
 use std::sync::Arc;
@@ -15,7 +16,6 @@ pub(super) struct Order {
     key: Key,
     text: String,
     inputs: Vec<(String, Arc<Artifact>)>,
-    threads: usize,
 }
 
 /// A result that cannot be read.
@@ -35,7 +35,7 @@ pub(super) struct Finished {
 
 impl Order {
     /// Loads the inputs of an open node, or says which of them is lost.
-    pub(super) fn new(board: &mut Board, node: NodeId, store: &Store, threads: usize) -> Result<Self, Box<Lost>> {
+    pub(super) fn new(board: &mut Board, node: NodeId, store: &Store) -> Result<Self, Box<Lost>> {
         let known = (board.take_text(node), board.inputs(node), board.key_of(node));
         let (Some(text), Some(contents), Some(key)) = known else {
             panic!("BUG: a task was started before its inputs were known");
@@ -50,20 +50,21 @@ impl Order {
             }
         }
         inputs.extend(task.kept.iter().map(|kept| ("kept".to_owned(), Arc::new(kept.artifact()))));
-        Ok(Self { node, task, key, text, inputs, threads })
+        Ok(Self { node, task, key, text, inputs })
     }
 
     /// Computes and stores the result, unless another process does: then waits for its result.
     pub(super) fn execute(
         self,
         store: &Store,
+        share: &Share,
         say: &(dyn Fn(Progress) + Sync),
         stop: &AtomicBool,
     ) -> Result<Finished, Failure> {
         loop {
             match store.claim(&self.key).map_err(failure)? {
                 Claim::Done(record) => return Ok(Finished { content: record.content, shared: true, seconds: 0.0 }),
-                Claim::Mine(claim) => return self.compute(claim, store, say, stop),
+                Claim::Mine(claim) => return self.compute(claim, store, share, say, stop),
                 Claim::Theirs(waiting) => {
                     say(Progress::note(format!("waits for {}", waiting.holder_now())));
                     if !waiting.wait(|| stop.load(Ordering::Relaxed)) {
@@ -78,6 +79,7 @@ impl Order {
         self,
         claim: Guard,
         store: &Store,
+        share: &Share,
         say: &(dyn Fn(Progress) + Sync),
         stop: &AtomicBool,
     ) -> Result<Finished, Failure> {
@@ -87,7 +89,7 @@ impl Order {
             seed: self.task.seed,
             inputs: &self.inputs,
             files: &self.task.files,
-            threads: self.threads,
+            threads: &|| share.threads(),
             time_limit: self.task.time_limit,
             say,
             stop,

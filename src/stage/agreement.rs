@@ -9,9 +9,9 @@
 //! * `pairs` (`response,table,row,computed,reference,ratio`): every pair, `row` in the reference.
 
 use super::columns::{Columns, Rows, Wanted, check_names, runs};
-use super::{Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names};
-use crate::artifact::{Artifact, Group, Node, Table};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -55,12 +55,13 @@ struct Pair {
 
 impl Stage for Agreement {
     fn inputs(&self) -> Vec<Port> {
-        let port = |key, names: &Names| Port { key, stages: names.list(), accepts: &["results"] };
+        let port =
+            |key, names: &Names| Port { key, stages: names.list(), accepts: Accepts::Only(&[ArtifactKind::RESULTS]) };
         vec![port("of", &self.of), port("compare", &self.compare)]
     }
 
-    fn gives(&self) -> &'static str {
-        "agreement"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::AGREEMENT
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -119,6 +120,8 @@ impl Stage for Agreement {
 impl Kind for Agreement {
     const NAME: &'static str = "agreement";
     const ABOUT: &'static str = "computed results beside values from elsewhere: ratios, ranks, trends";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::AGREEMENT];
+    const CLASS: Class = Class::Statistics;
     const WORKS: &'static [Work] = &[Work { name: "agreement", version: 1, run: compare }];
 }
 
@@ -176,7 +179,7 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
         .with("summary", Node::Table(summary_table(&summaries(&points))))
         .with("trends", Node::Table(trend_table(&trends)))
         .with("pairs", Node::Table(pair_table(&points)));
-    Ok(Artifact::new("agreement", 1, root))
+    Ok(Artifact::of(ArtifactKind::AGREEMENT, root))
 }
 
 fn levels(sample: &Sample) -> Vec<&[f64]> {

@@ -8,8 +8,8 @@ use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refu
 use super::fitted::{fit_table, residual_table};
 use super::notes::{Notes, short};
 use super::published::{Computed, beside, prints};
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node, Table};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -153,11 +153,11 @@ impl Anova {
 
 impl Stage for Anova {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: Accepts::Only(&[ArtifactKind::RESULTS]) }]
     }
 
-    fn gives(&self) -> &'static str {
-        "anova"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::ANOVA
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -208,6 +208,8 @@ impl Stage for Anova {
 impl Kind for Anova {
     const NAME: &'static str = "anova";
     const ABOUT: &'static str = "analysis of variance: sums of squares, F, p and contribution of every factor";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::ANOVA];
+    const CLASS: Class = Class::Statistics;
     // 2: notes; what rounding leaves of an exact fit is no error
     const WORKS: &'static [Work] = &[Work { name: "anova", version: 2, run: analyse }];
 }
@@ -280,7 +282,7 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         .with("fit", Node::Table(fit))
         .with("notes", Node::Table(notes(&analyses, &params).table()))
         .with("residuals", Node::Table(residual_table(residuals)));
-    Ok(Artifact::new("anova", 1, root))
+    Ok(Artifact::of(ArtifactKind::ANOVA, root))
 }
 
 /// What a person should see at once.

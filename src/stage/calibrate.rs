@@ -30,8 +30,8 @@ mod tests;
 
 pub use config::{Calibrate, Constraint, Curve, MethodName, Wanted};
 
-use super::{Complaint, Context, Kind, Known, Outcome, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::Artifact;
+use super::{Class, Complaint, Context, Kind, Known, Outcome, Point, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use optim::search::{Search, State};
 use params::{Params, Told};
 use serde_json::{Value, json};
@@ -49,14 +49,22 @@ impl Stage for Calibrate {
     fn inputs(&self) -> Vec<Port> {
         let one = |name: &Option<String>| name.iter().cloned().collect::<Vec<_>>();
         vec![
-            Port { key: "surfaces", stages: one(&self.surfaces), accepts: &["surfaces"] },
-            Port { key: "simulator", stages: one(&self.simulator), accepts: &["results", "run"] },
-            Port { key: "learn_from", stages: self.learn_from.clone(), accepts: &["results"] },
+            Port { key: "surfaces", stages: one(&self.surfaces), accepts: Accepts::Only(&[ArtifactKind::SURFACES]) },
+            Port {
+                key: "simulator",
+                stages: one(&self.simulator),
+                accepts: Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::RUN]),
+            },
+            Port {
+                key: "learn_from",
+                stages: self.learn_from.clone(),
+                accepts: Accepts::Only(&[ArtifactKind::RESULTS]),
+            },
         ]
     }
 
-    fn gives(&self) -> &'static str {
-        "solution"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::SOLUTION
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -172,5 +180,7 @@ impl Calibrate {
 impl Kind for Calibrate {
     const NAME: &'static str = "calibrate";
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
+    const CLASS: Class = Class::Calibration;
     const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 2, run: solve::solve }];
 }

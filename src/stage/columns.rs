@@ -118,7 +118,13 @@ impl Columns {
     pub(super) fn sample(&self, table: &Table) -> Result<Sample, StageError> {
         let factor = |own: &FactorColumn| {
             let values = reals(table, &own.name, Some(&own.unit))?;
-            Ok(Factor { name: own.name.clone(), values, levels: own.levels.clone(), coding: own.coding })
+            Ok(Factor {
+                name: own.name.clone(),
+                values,
+                levels: own.levels.clone(),
+                coding: own.coding,
+                labels: Vec::new(),
+            })
         };
         let response = |own: &ResponseColumn| {
             let values = reals(table, &own.name, Some(&own.unit))?;

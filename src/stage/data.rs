@@ -4,8 +4,8 @@
 //! numbers (or empty: missing) holds reals, any other holds texts. The result is an artifact `results` with the table `runs`, as
 //! `simulate` gives it.
 
-use super::{Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node, Table};
+use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use crate::unit::Unit;
 use design::table::MOST_RUNS;
 use schemars::JsonSchema;
@@ -25,8 +25,8 @@ impl Stage for Data {
         Vec::new()
     }
 
-    fn gives(&self) -> &'static str {
-        "results"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::RESULTS
     }
 
     fn check(&self, _context: &super::Context) -> Vec<Complaint> {
@@ -48,12 +48,14 @@ impl Stage for Data {
 impl Kind for Data {
     const NAME: &'static str = "data";
     const ABOUT: &'static str = "a table from a CSV file with units";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
+    const CLASS: Class = Class::Data;
     const WORKS: &'static [Work] = &[Work { name: "data", version: 1, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
     let table = parse(&job.file("table")?)?;
-    Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
+    Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
 }
 
 /// Reads the whole table, or says what is wrong with it.

@@ -15,8 +15,8 @@ mod tests;
 
 pub use config::Design;
 
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
-use crate::artifact::{Artifact, Table};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::unit::Unit;
 use design::report::power::Question;
 use design::{Factor, Fault, Layout, Method, Order, build, check, report};
@@ -43,8 +43,8 @@ impl Stage for Design {
         Vec::new()
     }
 
-    fn gives(&self) -> &'static str {
-        "design"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::DESIGN
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -92,6 +92,8 @@ impl Kind for Design {
     const NAME: &'static str = "design";
     const ABOUT: &'static str =
         "the runs of an experiment: factorial, orthogonal, screening, surface or sampled designs";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::DESIGN];
+    const CLASS: Class = Class::Design;
     // 2: tables of 12, 20, 24, 40 and 48 runs more, among which the smallest is looked for
     const WORKS: &'static [Work] = &[Work { name: "design", version: 2, run }];
 }

@@ -5,7 +5,7 @@ use super::columns::{Columns, Rows, refused, runs};
 use super::notes::Notes;
 use super::published::{Computed, beside, prints};
 use super::{Failure, Job, StageError};
-use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
+use crate::artifact::{Array, Artifact, ArtifactKind, Group, Node, Table, Values};
 use serde::{Deserialize, Serialize};
 use stats::canonical::canonical;
 use stats::diagnostics::Residual;
@@ -101,7 +101,7 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     if let Some(points) = &params.predict {
         root.put("predictions", Node::Table(predict::prediction_table(&found, points)));
     }
-    Ok(Artifact::new("surfaces", 1, root))
+    Ok(Artifact::of(ArtifactKind::SURFACES, root))
 }
 
 /// What a person should see at once.

@@ -6,8 +6,8 @@
 //! Scatter is relative, normal, and a function of seed, point and replicate.
 
 use super::rows::{self, GATHER};
-use super::{Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
 use crate::unit::Unit;
 use exmex::{BinOp, Express, FlatEx, MakeOperators, MatchLiteral, Operator, literal_matcher_from_pattern};
 use math::elementary;
@@ -121,12 +121,16 @@ fn after_operand(text: &str) -> &str {
 
 impl Stage for Formula {
     fn inputs(&self) -> Vec<Port> {
-        let design = |name: &String| Port { key: "design", stages: vec![name.clone()], accepts: &["design"] };
+        let design = |name: &String| Port {
+            key: "design",
+            stages: vec![name.clone()],
+            accepts: Accepts::Only(&[ArtifactKind::DESIGN]),
+        };
         self.design.iter().map(design).collect()
     }
 
-    fn gives(&self) -> &'static str {
-        if self.design.is_some() { "results" } else { "run" }
+    fn gives(&self) -> ArtifactKind {
+        if self.design.is_some() { ArtifactKind::RESULTS } else { ArtifactKind::RUN }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -200,6 +204,8 @@ impl Formula {
 impl Kind for Formula {
     const NAME: &'static str = "formula";
     const ABOUT: &'static str = "a stand-in simulator given by formulas of the factors";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
+    const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "formula", version: 1, run: evaluate }, GATHER];
 }
 
@@ -220,7 +226,7 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     let root = Group::new()
         .with("failure", Node::Text(failure))
         .with("responses", Node::Table(rows::response_table(&responses)));
-    Ok(Artifact::new("run", 1, root))
+    Ok(Artifact::of(ArtifactKind::RUN, root))
 }
 
 /// The fault of a formula that names what a run does not have.

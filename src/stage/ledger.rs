@@ -154,13 +154,14 @@ fn place_of<T>(list: &mut Vec<T>, is: impl Fn(&T) -> bool, make: impl FnOnce() -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::artifact::ArtifactKind;
     use crate::stage::rows::response_table;
 
     fn run(failure: &str, responses: &[(&str, f64, &str)]) -> Artifact {
         let group = Group::new()
             .with("failure", Node::Text(failure.to_owned()))
             .with("responses", Node::Table(response_table(responses)));
-        Artifact::new("run", 1, group)
+        Artifact::of(ArtifactKind::RUN, group)
     }
 
     #[test]
@@ -173,7 +174,7 @@ mod tests {
         ];
         let mut briefs = Briefs::default();
         assert!(runs.iter().all(|run| briefs.push_run(run)));
-        assert!(!briefs.push_run(&Artifact::new("run", 1, Group::new())));
+        assert!(!briefs.push_run(&Artifact::of(ArtifactKind::RUN, Group::new())));
         let bytes = briefs.to_bytes();
         let back = Briefs::from_bytes(&bytes).unwrap();
         assert_eq!((back.len(), back.shapes.len(), back.failures.len()), (4, 3, 2));

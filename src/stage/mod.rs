@@ -27,9 +27,10 @@
 //!
 //! # A new kind
 //! One file with the config struct (serde, schemars, `deny_unknown_fields`; quantities as [`crate::unit::Quantity`]),
-//! `impl Stage`, `impl Kind` and its work functions, and one line in the list below. Options added later are skipped
-//! when at their default (`skip_serializing_if`), so that they rerun nothing. Parameters of tasks are plain SI numbers
-//! (the domain's own spec types), built from the config in `next`.
+//! `impl Stage`, `impl Kind` and its work functions, and one line in the list below. `Kind` says what artifacts it can
+//! give and which class it belongs to; an artifact that no other kind gives is declared in the same file
+//! ([`ArtifactKind::new`]). Options added later are skipped when at their default (`skip_serializing_if`), so that they
+//! rerun nothing. Parameters of tasks are plain SI numbers (the domain's own spec types), built from the config in `next`.
 
 pub mod agreement;
 pub mod anova;
@@ -59,6 +60,7 @@ pub mod verify;
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserializer;
 use serde::de::DeserializeOwned;
@@ -69,8 +71,8 @@ pub trait Stage: Send + Sync {
     /// The stages it takes as inputs, in a fixed order.
     fn inputs(&self) -> Vec<Port>;
 
-    /// Kind of the artifact that is its result.
-    fn gives(&self) -> &'static str;
+    /// Kind of the artifact that is its result, one of [`Kind::GIVES`].
+    fn gives(&self) -> ArtifactKind;
 
     /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
     fn check(&self, context: &Context) -> Vec<Complaint>;
@@ -108,8 +110,36 @@ pub trait Kind: Stage + DeserializeOwned + JsonSchema + 'static {
     const NAME: &'static str;
     /// One line for the schema and for `flow` help.
     const ABOUT: &'static str;
+    /// The kinds of artifact that it can give; [`Stage::gives`] names one of them.
+    const GIVES: &'static [ArtifactKind];
+    /// Its class in pictures of a workflow.
+    const CLASS: Class;
     /// The work that its tasks name.
     const WORKS: &'static [Work];
+}
+
+/// Classes of stages, as pictures of a workflow tell them apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// Makes specimens, or runs a model at points.
+    Simulation,
+    /// Reads values that were measured or computed elsewhere.
+    Data,
+    /// Plans experiments.
+    Design,
+    /// Analyses results.
+    Statistics,
+    /// Finds parameters, or verifies them.
+    Calibration,
+    /// Shows what other stages computed.
+    Presentation,
+}
+
+impl Class {
+    /// Whether its stages compute something, and do not only read or show it.
+    pub fn computes(self) -> bool {
+        !matches!(self, Self::Data | Self::Presentation)
+    }
 }
 
 /// A named input of a stage: the key under which the workflow names other stages.
@@ -119,8 +149,8 @@ pub struct Port {
     pub key: &'static str,
     /// The stages named there, in order.
     pub stages: Vec<String>,
-    /// Artifact kinds that are accepted.
-    pub accepts: &'static [&'static str],
+    /// Kinds of artifact that are accepted.
+    pub accepts: Accepts,
 }
 
 /// A fault in a stage's settings, found before anything runs.
@@ -188,6 +218,10 @@ pub struct KindEntry {
     pub name: &'static str,
     /// One line on it.
     pub about: &'static str,
+    /// The kinds of artifact that it can give.
+    pub gives: &'static [ArtifactKind],
+    /// Its class in pictures of a workflow.
+    pub class: Class,
     /// The work its tasks name.
     pub works: &'static [Work],
     /// Schema of its table.
@@ -202,6 +236,8 @@ macro_rules! kinds {
         pub const KINDS: &[KindEntry] = &[$(KindEntry {
             name: <$config as Kind>::NAME,
             about: <$config as Kind>::ABOUT,
+            gives: <$config as Kind>::GIVES,
+            class: <$config as Kind>::CLASS,
             works: <$config as Kind>::WORKS,
             schema: <$config as JsonSchema>::json_schema,
         }),*];
@@ -234,6 +270,16 @@ kinds! {
     specimen::Specimen,
     table::Table,
     verify::Verify,
+}
+
+/// What the list knows of the kind called `name`.
+pub fn kind(name: &str) -> Option<&'static KindEntry> {
+    KINDS.iter().find(|kind| kind.name == name)
+}
+
+/// The declared kind of an artifact; `None` for one that no kind of stage gives.
+pub fn artifact_kind(artifact: &Artifact) -> Option<ArtifactKind> {
+    KINDS.iter().flat_map(|kind| kind.gives).copied().find(|kind| artifact.is(*kind))
 }
 
 /// The work called `name`.

@@ -5,8 +5,8 @@
 
 use super::columns::{Columns, Rows, Wanted, check_names, refused, runs};
 use super::notes::Notes;
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node, Table};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -30,11 +30,11 @@ pub struct Range {
 
 impl Stage for Range {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: Accepts::Only(&[ArtifactKind::RESULTS]) }]
     }
 
-    fn gives(&self) -> &'static str {
-        "range"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::RANGE
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -62,6 +62,8 @@ impl Stage for Range {
 impl Kind for Range {
     const NAME: &'static str = "range";
     const ABOUT: &'static str = "range analysis: mean response per level, range and rank of every factor";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RANGE];
+    const CLASS: Class = Class::Statistics;
     // 2: notes
     const WORKS: &'static [Work] = &[Work { name: "range", version: 2, run: analyse }];
 }
@@ -92,7 +94,7 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         .with("range", Node::Table(range))
         .with("levels", Node::Table(levels(&columns, &lines, most)))
         .with("notes", Node::Table(notes(&lines, sample.rows()).table()));
-    Ok(Artifact::new("range", 1, root))
+    Ok(Artifact::of(ArtifactKind::RANGE, root))
 }
 
 /// Responses whose missing runs spoil the balance of the table.

@@ -6,7 +6,8 @@
 
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
-use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -81,11 +82,11 @@ pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
 
 impl Stage for Regression {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: Accepts::Only(&[ArtifactKind::RESULTS]) }]
     }
 
-    fn gives(&self) -> &'static str {
-        "surfaces"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::SURFACES
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -143,6 +144,8 @@ impl Stage for Regression {
 impl Kind for Regression {
     const NAME: &'static str = "regression";
     const ABOUT: &'static str = "linear regression of responses on factors, from one table";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES];
+    const CLASS: Class = Class::Statistics;
     // 2: notes; what rounding leaves of an exact fit is no error
     const WORKS: &'static [Work] = &[Work { name: "fit", version: 2, run: fit }];
 }

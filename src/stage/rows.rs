@@ -9,7 +9,7 @@ pub use points::Rows;
 
 use super::ledger::{Briefs, KeptRuns};
 use super::{Complaint, Context, Failure, Input, Job, Known, Point, Source, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Column, Group, Node, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -160,7 +160,7 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     }
     let failures = results.iter().map(|(failure, _)| (*failure).to_owned()).collect();
     table = table.texts_column("failure", "why the run gave no result; empty when it did", failures);
-    Ok(Artifact::new("results", 1, Group::new().with("runs", Node::Table(table))))
+    Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
 }
 
 /// Places among the inputs of the task, and briefs, of runs that were made before.

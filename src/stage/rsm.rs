@@ -5,7 +5,8 @@
 use super::columns::{Columns, Wanted, check_names, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict};
 use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
-use super::{Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -43,11 +44,11 @@ pub struct Rsm {
 
 impl Stage for Rsm {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port { key: "tables", stages: self.tables.clone(), accepts: &["results"] }]
+        vec![Port { key: "tables", stages: self.tables.clone(), accepts: Accepts::Only(&[ArtifactKind::RESULTS]) }]
     }
 
-    fn gives(&self) -> &'static str {
-        "surfaces"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::SURFACES
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -144,5 +145,7 @@ impl Rsm {
 impl Kind for Rsm {
     const NAME: &'static str = "rsm";
     const ABOUT: &'static str = "second-order response surfaces with canonical analysis";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES];
+    const CLASS: Class = Class::Statistics;
     const WORKS: &'static [Work] = &[];
 }

@@ -8,8 +8,8 @@ use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refu
 use super::fitted::{fit_table, residual_table};
 use super::notes::Notes;
 use super::regression::{check_doubled, factors_of};
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node, Table};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -49,11 +49,11 @@ struct Params {
 
 impl Stage for Screening {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: &["results"] }]
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: Accepts::Only(&[ArtifactKind::RESULTS]) }]
     }
 
-    fn gives(&self) -> &'static str {
-        "screening"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::SCREENING
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -85,6 +85,8 @@ impl Stage for Screening {
 impl Kind for Screening {
     const NAME: &'static str = "screening";
     const ABOUT: &'static str = "effects of a two-level design with Lenth's limits";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SCREENING];
+    const CLASS: Class = Class::Statistics;
     // 2: notes; what rounding leaves of an exact fit is no error
     const WORKS: &'static [Work] = &[Work { name: "screening", version: 2, run: analyse }];
 }
@@ -103,7 +105,7 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         .with("fit", Node::Table(fit_table(&fits)))
         .with("notes", Node::Table(notes(&found).table()))
         .with("residuals", Node::Table(residual_table(residuals)));
-    Ok(Artifact::new("screening", 1, root))
+    Ok(Artifact::of(ArtifactKind::SCREENING, root))
 }
 
 /// What stands out of the noise, and what to look at.

@@ -3,9 +3,11 @@
 //! Replicate k is another packing and another aggregate of the same recipe; its seed comes from the workflow's seed and
 //! k. What is computed and why: [`dem::genesis`].
 
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Stage, StageError, Step, Task, Work};
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Stage, StageError, Step, Task, Work,
+};
 use crate::artifact::specimen::Specimen as Stored;
-use crate::artifact::{Artifact, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Table, Values};
 use crate::unit::{Density, Length};
 use dem::genesis::clump::{Clump, ClumpMass};
 use dem::genesis::gradation::{Gradation, GradationError};
@@ -252,7 +254,7 @@ impl Stage for Specimen {
         Vec::new()
     }
 
-    fn gives(&self) -> &'static str {
+    fn gives(&self) -> ArtifactKind {
         Stored::KIND
     }
 
@@ -279,6 +281,8 @@ impl Stage for Specimen {
 impl Kind for Specimen {
     const NAME: &'static str = "specimen";
     const ABOUT: &'static str = "discs packed to a porosity, with polygons of aggregate";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SPECIMEN];
+    const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "specimen", version: 1, run: make }];
 }
 

@@ -1,6 +1,6 @@
 //! `kind = "table"`: a table of other stages' results for people: CSV, LaTeX (booktabs) and Markdown.
 //!
-//! `table` names the table inside the artifact (its first one when not given), `columns` which of its columns are
+//! `table` names the table inside the artifact (its main one when not given), `columns` which of its columns are
 //! printed and in which order, `where` which rows. Several stages are stacked, with a column `stage` in front. With
 //! `compare` the numbers of another stage stand beside ours, row by row with equal values in the columns `by`, and the
 //! deviation in per cent after them; with `published` those of a CSV file do. Columns that are factors or responses get
@@ -17,8 +17,8 @@ mod list;
 mod units;
 
 use super::figure::{Names, stored};
-use super::{Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{self, Artifact, Group, Node};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{self, Accepts, Artifact, ArtifactKind, Group, Node};
 use crate::unit::Length;
 use beside::beside;
 use figure::column::{Column, Digits, Values};
@@ -49,7 +49,7 @@ pub struct Table {
     /// Bounds of the size classes of a list of aggregate.
     #[serde(default)]
     pub classes: Vec<Length>,
-    /// Which table of the artifact; its first one when not given.
+    /// Which table of the artifact; its main one when not given.
     pub table: Option<String>,
     /// Columns in the order of print; all when not given.
     #[serde(default)]
@@ -119,13 +119,17 @@ struct Params {
 
 impl Stage for Table {
     fn inputs(&self) -> Vec<Port> {
-        let mut ports = vec![Port { key: "of", stages: self.of.list(), accepts: ANY }];
-        ports.extend(self.compare.iter().map(|c| Port { key: "compare", stages: vec![c.clone()], accepts: ANY }));
+        let mut ports = vec![Port { key: "of", stages: self.of.list(), accepts: Accepts::Tables }];
+        ports.extend(self.compare.iter().map(|c| Port {
+            key: "compare",
+            stages: vec![c.clone()],
+            accepts: Accepts::Tables,
+        }));
         ports
     }
 
-    fn gives(&self) -> &'static str {
-        "table"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::TABLE
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -210,24 +214,6 @@ impl Stage for Table {
     }
 }
 
-/// Everything that holds a table.
-pub(super) const ANY: &[&str] = &[
-    "results",
-    "design",
-    "run",
-    "specimen",
-    "range",
-    "anova",
-    "screening",
-    "regression",
-    "surfaces",
-    "solution",
-    "verification",
-    "agreement",
-    "picture",
-    "table",
-];
-
 impl Table {
     fn symbol(&self, column: &str, context: &Context) -> Option<String> {
         let factor = || context.factors.get(column).map(|f| f.symbol.clone());
@@ -239,20 +225,20 @@ impl Table {
 impl Kind for Table {
     const NAME: &'static str = "table";
     const ABOUT: &'static str = "a table of other stages' results for people";
-    /// 2: lengths told row by row in millimetres, whole numbers among them without decimals.
-    const WORKS: &'static [Work] = &[Work { name: "table", version: 2, run: print }];
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
+    const CLASS: Class = Class::Presentation;
+    /// 3: the main table of a result when none is named, and not the first by its name. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 3, run: print }];
 }
 
-/// The table of that name, or the first.
+/// The table of that name, or the artifact's main one.
 fn find<'a>(artifact: &'a Artifact, name: Option<&str>) -> Result<&'a artifact::Table, StageError> {
     let tables = artifact.tables();
-    let found = match name {
-        Some(name) => tables.iter().find(|(n, _)| n == name),
-        None => tables.first(),
-    };
+    let wanted = name.or_else(|| super::artifact_kind(artifact)?.main_table());
+    let found = tables.iter().find(|(n, _)| Some(n.as_str()) == wanted);
     found.map(|(_, table)| *table).ok_or_else(|| {
         let there: Vec<&str> = tables.iter().map(|(n, _)| n.as_str()).collect();
-        StageError::new(format!("the artifact `{}` holds no table `{}`", artifact.kind, name.unwrap_or("…")))
+        StageError::new(format!("the artifact `{}` holds no table `{}`", artifact.kind, wanted.unwrap_or("…")))
             .hint(format!("it holds {}", if there.is_empty() { "no table".into() } else { there.join(", ") }))
     })
 }
@@ -294,7 +280,7 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
         .with("latex", Node::Text(printed.latex()))
         .with("markdown", Node::Text(printed.markdown()))
         .with("table", Node::Table(stored(printed.columns)));
-    Ok(Artifact::new("table", 1, root))
+    Ok(Artifact::of(ArtifactKind::TABLE, root))
 }
 
 /// The chosen columns of the chosen rows.

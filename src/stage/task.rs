@@ -126,8 +126,8 @@ pub struct Job<'a> {
     pub inputs: &'a [(String, Arc<Artifact>)],
     /// Files it reads.
     pub files: &'a [FileInput],
-    /// Threads it may use; results do not depend on it.
-    pub threads: usize,
+    /// Threads it may use at present; results do not depend on it. Long work asks again and again.
+    pub threads: &'a (dyn Fn() -> usize + Sync),
     /// Seconds after which an external program is ended.
     pub time_limit: Option<f64>,
     /// Takes reports of progress.
@@ -175,7 +175,7 @@ impl Job<'_> {
 
     /// Whether to stop, in the form in which the engine and the packing ask.
     pub fn watch(&self) -> Watch {
-        if self.stopped() { Watch::Stop } else { Watch::Continue }
+        if self.stopped() { Watch::Stop } else { Watch::Threads((self.threads)()) }
     }
 }
 

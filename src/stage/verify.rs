@@ -8,8 +8,8 @@
 //! The artifact `verification` holds the tables `summary` and `runs`.
 
 use super::calibrate::read_response;
-use super::{Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node, Table, Values};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table, Values};
 use math::distribution::t_for_coverage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -46,13 +46,21 @@ struct Params {
 impl Stage for Verify {
     fn inputs(&self) -> Vec<Port> {
         vec![
-            Port { key: "solution", stages: vec![self.solution.clone()], accepts: &["solution"] },
-            Port { key: "simulator", stages: vec![self.simulator.clone()], accepts: &["results", "run"] },
+            Port {
+                key: "solution",
+                stages: vec![self.solution.clone()],
+                accepts: Accepts::Only(&[ArtifactKind::SOLUTION]),
+            },
+            Port {
+                key: "simulator",
+                stages: vec![self.simulator.clone()],
+                accepts: Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::RUN]),
+            },
         ]
     }
 
-    fn gives(&self) -> &'static str {
-        "verification"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::VERIFICATION
     }
 
     fn check(&self, _context: &Context) -> Vec<Complaint> {
@@ -94,6 +102,8 @@ impl Stage for Verify {
 impl Kind for Verify {
     const NAME: &'static str = "verify";
     const ABOUT: &'static str = "calibrated parameters on fresh specimens";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::VERIFICATION];
+    const CLASS: Class = Class::Calibration;
     const WORKS: &'static [Work] = &[Work { name: "verify", version: 1, run: verify }];
 }
 
@@ -129,7 +139,7 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
     let root = Group::new()
         .with("summary", Node::Table(summary(&verified)))
         .with("runs", Node::Table(run_table(&params, solution, &verified, failures)?));
-    Ok(Artifact::new("verification", 1, root))
+    Ok(Artifact::of(ArtifactKind::VERIFICATION, root))
 }
 
 /// The targets of all sets, from the solution's table `prediction`.

@@ -18,7 +18,7 @@
 use super::columns::{Column, Matrix, Part};
 use super::diagnostics::{Residual, residuals};
 use super::error::{Fault, Faults};
-use super::fit::{Fit, PureError, Solution, is_small, ratio};
+use super::fit::{Fit, PureError, Solution, is_small, ratio, squares_about_mean};
 use super::number::{Real, Twofold};
 use super::range::level_faults;
 use super::sample::{Sample, Usable};
@@ -252,7 +252,8 @@ impl Job<'_> {
         lines.push(bare("total", total, solution.rows - 1, false));
         let alpha = self.settings.outlier_alpha;
         let (rows, press) = residuals(&matrix, &solution, &self.usable.rows, &self.usable.values, alpha);
-        let fit = Fit::of(&solution, self.response, self.usable.missing, press, pure);
+        let about_mean = (!solution.constant).then(|| squares_about_mean(self.sample, self.usable));
+        let fit = Fit::of(&solution, self.response, self.usable.missing, press, pure, about_mean);
         let response = self.response.to_string();
         Ok(Anova { response, lines, fit, residuals: rows, pooled: vec![], not_estimable: vec![] })
     }

@@ -52,7 +52,7 @@ pub enum Fault {
         /// The factor.
         factor: String,
         /// Its only value.
-        value: f64,
+        value: String,
     },
     /// A declared level does not occur.
     #[error(
@@ -63,7 +63,7 @@ pub enum Fault {
         /// The factor.
         factor: String,
         /// The level without rows.
-        level: f64,
+        level: String,
         /// The response looked at.
         response: String,
         /// Rows without a value of it.
@@ -126,6 +126,14 @@ pub enum Fault {
         /// The terms that say the same.
         others: Vec<String>,
     },
+    /// A power of a factor whose levels are names.
+    #[error("`{term}` takes a power of `{factor}`, whose levels are names; write `{factor}` without a power")]
+    PowerOfNames {
+        /// The term.
+        term: String,
+        /// The factor.
+        factor: String,
+    },
     /// A name that the table does not have.
     #[error("no {what} is named `{name}`; there are {}", names(known))]
     Unknown {
@@ -137,7 +145,7 @@ pub enum Fault {
         known: Vec<String>,
     },
     /// A text that is no term.
-    #[error("`{text}` is no term; write `const`, `Ec`, `Ec^2` or `Ec*kn_ks`")]
+    #[error("`{text}` is no term; write `const`, `Ec`, `Ec^2`, `Ec*kn_ks` or a formula such as `scn/(1+ratio)`")]
     Term {
         /// The text.
         text: String,

@@ -167,8 +167,14 @@ pub struct Fit {
     pub df_residual: usize,
     /// Residual standard deviation, in the unit of the response.
     pub s: Option<f64>,
-    /// Coefficient of determination.
+    /// Whether the model has a constant. Without one the total sum of squares is about zero, not about the mean, so R²
+    /// is the share of `Σy²` and compares only with that of another fit through the origin.
+    pub constant: bool,
+    /// Coefficient of determination: about the mean with a constant, about zero without.
     pub r2: f64,
+    /// `1 − SSE/Σ(y − ȳ)²` of a model without a constant, which compares with R² of one that has it; it is negative when
+    /// the mean alone explains more.
+    pub r2_about_mean: Option<f64>,
     /// R² adjusted for degrees of freedom.
     pub r2_adjusted: Option<f64>,
     /// Predicted R²: `1 − PRESS/SST`.
@@ -190,13 +196,15 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The summary of a solution; `press` is `None` where a row has leverage 1.
+    /// The summary of a solution; `press` is `None` where a row has leverage 1, `about_mean` is `Σw(y − ȳ)²`
+    /// where the model has no constant.
     pub(crate) fn of<T: Real>(
         solution: &Solution<T>,
         response: &str,
         missing: usize,
         press: Option<f64>,
         pure: PureError<T>,
+        about_mean: Option<T>,
     ) -> Self {
         let df_residual = solution.df_residual();
         let df_model = solution.terms() - usize::from(solution.constant);
@@ -215,7 +223,9 @@ impl Fit {
             df_model,
             df_residual,
             s: solution.deviation().map(Real::value),
+            constant: solution.constant,
             r2: (model / total).value(),
+            r2_about_mean: about_mean.map(|squares| (T::from(1.0) - error / squares).value()),
             r2_adjusted: (df_residual > 0)
                 .then(|| (T::from(1.0) - error / total * T::from(df_total / df_residual as f64)).value()),
             r2_predicted: press.map(|press| 1.0 - press / total.value()),
@@ -233,6 +243,14 @@ impl Fit {
 /// `(a/df_a)/(b/df_b)`; `None` when a degree of freedom or the denominator is zero.
 pub(crate) fn ratio<T: Real>(a: T, df_a: usize, b: T, df_b: usize) -> Option<f64> {
     (df_a > 0 && df_b > 0 && b > T::zero()).then(|| (a / T::from(df_a as f64) / (b / T::from(df_b as f64))).value())
+}
+
+/// `Σw(y − ȳ)²` of the usable rows.
+pub(crate) fn squares_about_mean<T: Real>(sample: &Sample, usable: &Usable) -> T {
+    let rows = || usable.rows.iter().zip(&usable.values).map(|(&row, &y)| (T::from(sample.weight(row)), T::from(y)));
+    let (sum, weights) = rows().fold((T::zero(), T::zero()), |(s, w), (weight, y)| (s + weight * y, w + weight));
+    let mean = sum / weights;
+    rows().fold(T::zero(), |sum, (weight, y)| sum + weight * (y - mean) * (y - mean))
 }
 
 /// Scatter of replicates about their means.

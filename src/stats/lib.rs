@@ -8,6 +8,9 @@
 //! * [`anova`]: sums of squares of factors and interactions, F, p, contribution
 //! * [`regression`]: polynomial models in natural and coded units, with [`terms`], [`selection`] and [`diagnostics`]
 //! * [`model`]: a fitted polynomial: prediction, intervals, domain
+//! * [`categories`]: factors whose levels are names, as dummy terms of a regression
+//! * [`groups`]: rows by equal values of columns: one fit per group, and pivot tables
+//! * [`summary`]: quartiles, whiskers and bins of plain values
 //! * [`agreement`]: how well two sets of values agree: ratios, ranks
 //! * [`canonical`]: stationary point of a second-order surface, its nature and axes, path of steepest ascent
 //! * [`screening`]: effects of an unreplicated two-level design, Lenth's limits
@@ -17,15 +20,18 @@
 pub mod agreement;
 pub mod anova;
 pub mod canonical;
+pub mod categories;
 pub mod diagnostics;
 pub mod error;
 pub mod fit;
+pub mod groups;
 pub mod model;
 pub mod range;
 pub mod regression;
 pub mod sample;
 pub mod screening;
 pub mod selection;
+pub mod summary;
 pub mod terms;
 
 mod columns;

@@ -16,8 +16,10 @@ pub struct Range {
     pub response: String,
     /// The factor.
     pub factor: String,
-    /// Its levels, ascending.
+    /// Its levels, ascending; 0, 1, 2 … where the levels are names.
     pub levels: Vec<f64>,
+    /// What the levels are called.
+    pub names: Vec<String>,
     /// Mean response at each level.
     pub means: Vec<f64>,
     /// Greatest mean minus least.
@@ -64,12 +66,15 @@ pub(crate) fn level_faults(sample: &Sample, usable: &Usable, response: &str) -> 
     let of_factor = |factor: &super::sample::Factor| {
         let found = factor.occurring(usable.rows.iter().copied());
         if let [value] = found[..] {
-            return vec![Fault::OneLevel { factor: factor.name.clone(), value }];
+            return vec![Fault::OneLevel { factor: factor.name.clone(), value: factor.level_text(value) }];
         }
         let lost = factor.all_levels().into_iter().filter(|level| !found.contains(level));
-        let missing = usable.missing;
-        let fault =
-            |level| Fault::EmptyLevel { factor: factor.name.clone(), level, response: response.into(), missing };
+        let fault = |level| Fault::EmptyLevel {
+            factor: factor.name.clone(),
+            level: factor.level_text(level),
+            response: response.into(),
+            missing: usable.missing,
+        };
         lost.map(fault).collect()
     };
     sample.factors.iter().flat_map(of_factor).collect()
@@ -91,6 +96,7 @@ fn one(sample: &Sample, usable: &Usable, response: usize, factor: usize) -> Rang
     Range {
         response: sample.responses[response].name.clone(),
         factor: column.name.clone(),
+        names: levels.iter().map(|&level| column.level_text(level)).collect(),
         levels,
         means,
         range: greatest - least,
@@ -138,8 +144,8 @@ mod tests {
         assert_eq!(
             faults,
             [
-                Fault::EmptyLevel { factor: "a".into(), level: 3.0, response: "y".into(), missing: 1 },
-                Fault::OneLevel { factor: "b".into(), value: 4.0 },
+                Fault::EmptyLevel { factor: "a".into(), level: "3".into(), response: "y".into(), missing: 1 },
+                Fault::OneLevel { factor: "b".into(), value: "4".into() },
             ]
         );
     }

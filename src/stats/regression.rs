@@ -6,15 +6,18 @@
 //! from the rows of `S R⁻¹`. A model that is not hierarchical depends on the origin of its factors; it is fitted in
 //! natural units alone.
 //!
+//! A factor whose levels are names enters by dummy coding, one term per level but the first ([`super::categories`]).
+//!
 //! Variance inflation of a coefficient: the squared norm of its row of `R⁻¹` times the squared norm of its column about
 //! the mean (about zero in a model without constant).
 //!
 //! Source: Myers, Montgomery and Anderson-Cook, Response Surface Methodology, 4th ed., 2016, chapters 2 and 6.
 
+use super::categories::spread;
 use super::columns::{Column, Matrix, Part};
 use super::diagnostics::{Residual, residuals};
 use super::error::{Fault, Faults};
-use super::fit::{Estimate, Fit, PureError, Solution, is_small};
+use super::fit::{Estimate, Fit, PureError, Solution, is_small, squares_about_mean};
 use super::model::{Axis, Model};
 use super::number::{Real, Twofold};
 use super::sample::{Sample, Usable};
@@ -78,8 +81,12 @@ pub struct Regression {
 pub fn regress(sample: &Sample, response: &str, terms: &[Term], settings: &Settings) -> Result<Regression, Faults> {
     sample.check()?;
     let index = sample.response(response)?;
+    let unknown = check_terms(sample, terms);
+    Faults::none_in(unknown)?;
+    let (sample, terms) = spread(sample, terms)?;
+    let (sample, terms) = (&sample, terms.as_slice());
     let usable = sample.usable(index);
-    let mut faults = check_terms(sample, terms);
+    let mut faults = Vec::new();
     if faults.is_empty() {
         faults.extend(flat_factors(sample, &usable, terms));
     }
@@ -126,7 +133,9 @@ fn flat_factors(sample: &Sample, usable: &Usable, terms: &[Term]) -> Vec<Fault> 
         let factor = &sample.factors[f];
         let mut values = usable.rows.iter().map(|&row| factor.values[row]);
         let first = values.next()?;
-        values.all(|v| v == first).then(|| Fault::OneLevel { factor: factor.name.clone(), value: first })
+        values
+            .all(|v| v == first)
+            .then(|| Fault::OneLevel { factor: factor.name.clone(), value: factor.level_text(first) })
     };
     used_factors(sample, terms).iter().filter_map(flat).collect()
 }
@@ -176,7 +185,8 @@ impl Job<'_> {
         let alpha = self.settings.outlier_alpha;
         let (rows, press) = residuals(&matrix, &solution, &self.usable.rows, &self.usable.values, alpha);
         let pure = PureError::of(self.sample, self.usable, &used_factors(self.sample, &terms));
-        let fit = Fit::of(&solution, self.response, self.usable.missing, press, pure);
+        let about_mean = (!solution.constant).then(|| squares_about_mean(self.sample, self.usable));
+        let fit = Fit::of(&solution, self.response, self.usable.missing, press, pure, about_mean);
         let model = Model::new(&solution, &axes, &terms, &rows);
         let own = own_coefficients(&solution, &terms);
         let (natural, coded) =

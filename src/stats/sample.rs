@@ -13,12 +13,39 @@ pub struct Factor {
     pub levels: Vec<f64>,
     /// The values that stand for −1 and +1 in coded units; `None` takes the least and greatest that occur.
     pub coding: Option<(f64, f64)>,
+    /// Names of the levels 0, 1, 2 … of a category such as the kind of cement; empty when the values are numbers.
+    pub labels: Vec<String>,
 }
 
 impl Factor {
     /// A factor whose levels are the values that occur.
     pub fn new(name: &str, values: Vec<f64>) -> Self {
-        Self { name: name.into(), values, levels: Vec::new(), coding: None }
+        Self { name: name.into(), values, levels: Vec::new(), coding: None, labels: Vec::new() }
+    }
+
+    /// A factor whose values are names; its levels are the names that occur, in alphabetical order.
+    pub fn named(name: &str, values: &[impl AsRef<str>]) -> Self {
+        let mut labels: Vec<String> = values.iter().map(|v| v.as_ref().to_owned()).collect();
+        labels.sort();
+        labels.dedup();
+        Self::of_labels(name, values, labels)
+    }
+
+    /// A factor whose values are names, with its levels in the order given; a name that is none of them has no number.
+    pub fn of_labels(name: &str, values: &[impl AsRef<str>], labels: Vec<String>) -> Self {
+        let number = |value: &str| labels.iter().position(|l| l == value).map_or(f64::NAN, |i| i as f64);
+        Self { labels: labels.clone(), ..Self::new(name, values.iter().map(|v| number(v.as_ref())).collect()) }
+    }
+
+    /// Whether its values are names of levels.
+    pub fn is_named(&self) -> bool {
+        !self.labels.is_empty()
+    }
+
+    /// A level as it is called: its name, or its number.
+    pub fn level_text(&self, level: f64) -> String {
+        let name = self.labels.get(level as usize).filter(|_| level >= 0.0);
+        name.cloned().unwrap_or_else(|| level.to_string())
     }
 
     /// The levels that occur in `rows`, ascending.
@@ -92,6 +119,20 @@ impl Sample {
             name: name.into(),
             known: self.factors.iter().map(|f| f.name.clone()).collect(),
         })
+    }
+
+    /// The table of some of its rows.
+    #[must_use]
+    pub fn with_rows(&self, rows: &[usize]) -> Self {
+        let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect();
+        let factor = |f: &Factor| Factor { values: pick(&f.values), ..f.clone() };
+        let response =
+            |r: &Response| Response { name: r.name.clone(), values: rows.iter().map(|&row| r.values[row]).collect() };
+        Self {
+            factors: self.factors.iter().map(factor).collect(),
+            responses: self.responses.iter().map(response).collect(),
+            weights: self.weights.as_deref().map(pick),
+        }
     }
 
     /// The response of that name.

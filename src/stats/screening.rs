@@ -6,6 +6,9 @@
 //! `d = m/3` for `m` effects, the margin of error is `ME = t(1 − α/2; d) · PSE` and the simultaneous one
 //! `SME = t(γ; d) · PSE`, `γ = (1 + (1 − α)^(1/m))/2`.
 //!
+//! With degrees of freedom for the error (centre points, replicates, fewer terms than runs) the standardised effect is
+//! `t = e/SE(e)`; it is active at the level α when `|t|` exceeds the critical value `t(1 − α/2; ν)`.
+//!
 //! Plot positions of the i-th smallest of m: normal `Φ⁻¹((i − ½)/m)`, half-normal `Φ⁻¹(½ + ½(i − ½)/m)`.
 //!
 //! Sources: Lenth 1989, doi:10.1080/00401706.1989.10488595; Daniel 1959, doi:10.1080/00401706.1959.10489866.
@@ -31,6 +34,10 @@ pub struct Effect {
     pub std_error: Option<f64>,
     /// Two-sided tail probability with that standard error.
     pub p: Option<f64>,
+    /// Standardised effect: the effect over its standard error.
+    pub standardized: Option<f64>,
+    /// The standardised effect exceeds the critical value; `None` without a standard error.
+    pub significant: Option<bool>,
     /// Effect over Lenth's pseudo standard error.
     pub lenth_t: Option<f64>,
     /// 1 for the largest in size: the order of a Pareto chart.
@@ -62,6 +69,8 @@ pub struct Screening {
     pub margin: Option<f64>,
     /// Simultaneous margin of error.
     pub simultaneous: Option<f64>,
+    /// Critical value of the standardised effects; `None` without degrees of freedom for the error.
+    pub critical: Option<f64>,
     /// The fit in ±1 units that the effects come from.
     pub regression: Regression,
 }
@@ -86,6 +95,8 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
     let margin = pse.map(|pse| pse * t_for_coverage(1.0 - alpha, freedom));
     let all_below = exp(ln_1p(-alpha) / m);
     let simultaneous = pse.map(|pse| pse * t_for_tail(1.0 - all_below, freedom));
+    let freedom_of_error = fitted.fit.df_residual;
+    let critical = (freedom_of_error > 0).then(|| t_for_coverage(1.0 - alpha, freedom_of_error as f64));
     let effects = (0..size.len()).map(|i| {
         let own = &fitted.natural[i + 1];
         let place = (size.iter().filter(|s| **s < size[i]).count()
@@ -100,6 +111,8 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
             coefficient: own.estimate,
             std_error: own.std_error.map(|e| 2.0 * e),
             p: own.p,
+            standardized: own.t,
+            significant: own.t.zip(critical).map(|(t, limit)| t.abs() > limit),
             lenth_t: pse.map(|pse| 2.0 * own.estimate / pse),
             rank: size.len() - place as usize,
             share: size[i] * size[i] / squares(0.0),
@@ -116,6 +129,7 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
         pse,
         margin,
         simultaneous,
+        critical,
         regression: fitted,
     })
 }
@@ -138,6 +152,7 @@ fn in_signs(sample: &Sample) -> Sample {
             factor.values.iter_mut().for_each(|v| *v = if *v == low { -1.0 } else { 1.0 });
             factor.levels = vec![-1.0, 1.0];
             factor.coding = None;
+            factor.labels = Vec::new();
         }
     }
     signs

@@ -1,4 +1,7 @@
 //! Terms of a polynomial model: products of powers of factors, written `const`, `Ec`, `Ec^2`, `Ec*kn_ks`.
+//!
+//! What stands between the products may also be a formula, such as `scn/(1+ratio)`: it is one factor of the term, and
+//! the caller computes its column. A sum or difference outside brackets makes the whole text one formula.
 
 use super::error::Fault;
 use serde::{Deserialize, Serialize};
@@ -49,7 +52,7 @@ impl Term {
         terms
     }
 
-    /// Reads `const`, `Ec`, `Ec^2`, `Ec*kn_ks`.
+    /// Reads `const`, `Ec`, `Ec^2`, `Ec*kn_ks`, `scn/(1+ratio)`.
     ///
     /// # Errors
     /// [`Fault::Term`] for anything else.
@@ -59,14 +62,8 @@ impl Term {
         }
         let fault = || Fault::Term { text: text.into() };
         let mut term = Self::constant();
-        for part in text.split('*') {
-            let (name, power) = match part.split_once('^') {
-                None => (part.trim(), 1),
-                Some((name, power)) => (name.trim(), power.trim().parse().map_err(|_| fault())?),
-            };
-            if name.is_empty() || power == 0 || power > 30 {
-                return Err(fault());
-            }
+        for part in parts(text).ok_or_else(fault)? {
+            let (name, power) = base_and_power(part).ok_or_else(fault)?;
             match term.powers.iter_mut().find(|(known, _)| known == name) {
                 Some((_, known)) => *known += power,
                 None => term.powers.push((name.into(), power)),
@@ -106,10 +103,71 @@ impl Term {
         (0..self.powers.len()).map(lowered).collect()
     }
 
+    /// The terms that stand for this one when `factor` is replaced by each of `names`; itself without the factor.
+    pub(crate) fn with_factor_as(&self, factor: &str, names: &[String]) -> Vec<Self> {
+        let Some(place) = self.powers.iter().position(|(name, _)| name == factor) else { return vec![self.clone()] };
+        let replaced = |name: &String| {
+            let mut term = self.clone();
+            term.powers[place].0.clone_from(name);
+            term
+        };
+        names.iter().map(replaced).collect()
+    }
+
     /// Whether two terms are the same product, in whatever order it is written.
     pub fn same(&self, other: &Self) -> bool {
         self.contains(other) && other.contains(self)
     }
+}
+
+/// The factors of a product as written; a sum outside brackets is one part. `None` where brackets do not close.
+fn parts(text: &str) -> Option<Vec<&str>> {
+    let (mut depth, mut start, mut found, mut before) = (0_i32, 0, Vec::new(), None);
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth -= 1,
+            '+' | '-' if depth == 0 && is_sum(text, at, before) => return balanced(text).then(|| vec![text.trim()]),
+            '*' if depth == 0 => {
+                found.push(text[start..at].trim());
+                start = at + 1;
+            }
+            _ => {}
+        }
+        before = if c.is_whitespace() { before } else { Some(c) };
+    }
+    found.push(text[start..].trim());
+    balanced(text).then_some(found)
+}
+
+/// Whether the sign at `at` adds: it follows an operand, and is not the exponent's of `1e-3`.
+fn is_sum(text: &str, at: usize, before: Option<char>) -> bool {
+    let operand = before.is_some_and(|c| !"+-*/^(".contains(c));
+    let mut last = text[..at].chars().rev();
+    let exponent = last.next().is_some_and(|c| c == 'e' || c == 'E') && last.next().is_some_and(|c| c.is_ascii_digit());
+    operand && !exponent
+}
+
+/// Whether every bracket closes.
+fn balanced(text: &str) -> bool {
+    let depth = text.chars().try_fold(0_i32, |depth, c| {
+        let depth = depth + i32::from(c == '(' || c == '[') - i32::from(c == ')' || c == ']');
+        (depth >= 0).then_some(depth)
+    });
+    depth == Some(0)
+}
+
+/// A factor and its power, 1 where none is written. A power inside a formula, as in `a^2/(1+b)`, belongs to it.
+fn base_and_power(part: &str) -> Option<(&str, u32)> {
+    let name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    let (base, power) = match part.rsplit_once('^') {
+        Some((base, power)) if power.trim().bytes().all(|b| b.is_ascii_digit()) => {
+            (base.trim(), power.trim().parse().ok()?)
+        }
+        Some((base, power)) if power.trim().chars().all(name) || base.trim().is_empty() => return None,
+        _ => (part, 1),
+    };
+    (!base.is_empty() && (1..=30).contains(&power)).then_some((base, power))
 }
 
 /// Every product of two factors.
@@ -160,8 +218,26 @@ mod tests {
             assert_eq!(Term::parse(text).unwrap().to_string(), text);
         }
         assert_eq!(Term::parse(" a * a ").unwrap().to_string(), "a^2");
-        for bad in ["", "a**b", "a^x", "a^0", "^2"] {
+        for bad in ["", "a**b", "a^x", "a^0", "^2", "a^", "(a", "a)*(b"] {
             assert_eq!(Term::parse(bad), Err(Fault::Term { text: bad.into() }));
+        }
+    }
+
+    #[test]
+    fn formulas_are_factors() {
+        let names = |text: &str| Term::parse(text).unwrap().factors().map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(names("scn/(1+ratio)"), ["scn/(1+ratio)"]);
+        assert_eq!(names("tau*scn/(1+ratio)"), ["tau", "scn/(1+ratio)"]);
+        assert_eq!(names("a + b*c"), ["a + b*c"]);
+        assert_eq!(names("sqrt(a*b)*c"), ["sqrt(a*b)", "c"]);
+        assert_eq!(names("a^2/(1+b)"), ["a^2/(1+b)"]);
+        assert_eq!(names("a*1e-3"), ["a", "1e-3"]);
+        assert_eq!(names("cement[CEM I*2]*water"), ["cement[CEM I*2]", "water"]);
+        let square = Term::parse("(a/b)^2").unwrap();
+        assert_eq!((square.power_of("(a/b)"), square.to_string().as_str()), (2, "(a/b)^2"));
+        for text in ["scn/(1+ratio)", "tau*scn/(1+ratio)", "a - b*c", "a^2/(1+b)"] {
+            let term = Term::parse(text).unwrap();
+            assert!(Term::parse(&term.to_string()).unwrap().same(&term), "{text}");
         }
     }
 

@@ -177,6 +177,8 @@ pub(crate) struct Books {
 pub enum Watch {
     /// Go on.
     Continue,
+    /// Go on, with up to so many threads from now on.
+    Threads(usize),
     /// End the run here.
     Stop,
 }

@@ -13,6 +13,8 @@ use crate::space::{Space, Tuple, Vector};
 const STRIDE: f64 = 2.0;
 /// Steps after which the end of a run looks for bodies out of bounds; every renewal of the list does.
 const CHECK: u64 = 1000;
+/// Particles that occupy a thread: with fewer, it waits at the barrier of every step longer than it computes.
+const WORTHWHILE: usize = 1000;
 
 impl<S: Space> Engine<S> {
     /// Makes `steps` steps; every `every` steps (at least one, and at the end) `watch` looks at the engine and may stop it.
@@ -25,11 +27,24 @@ impl<S: Space> Engine<S> {
             let now = left.min(every.max(1));
             self.advance(now)?;
             left -= now;
-            if watch(self) == Watch::Stop {
+            let wish = watch(self);
+            if !self.heed(wish) {
                 return Ok(Ended::Stopped);
             }
         }
         Ok(Ended::Finished)
+    }
+
+    /// Does what a watcher wants: uses the threads it grants, as far as the particles are enough to occupy them. Returns
+    /// false when it wants the run to end.
+    pub fn heed(&mut self, wish: Watch) -> bool {
+        if let Watch::Threads(granted) = wish {
+            let threads = granted.min(self.particle_count() / WORTHWHILE).max(1);
+            if threads != self.threads {
+                self.set_threads(threads);
+            }
+        }
+        wish != Watch::Stop
     }
 
     /// Makes `steps` steps.

@@ -193,7 +193,7 @@ impl<S: Space> Drive<'_, S> {
         if self.run.samples.len().is_multiple_of(ENERGY_EVERY) {
             self.run.energies.push((axial, energy(engine)));
         }
-        if self.run.interrupted || watch(&sample) == Watch::Stop {
+        if self.run.interrupted || !engine.heed(watch(&sample)) {
             self.run.interrupted = true;
             return false;
         }
@@ -217,7 +217,7 @@ impl<S: Space> Drive<'_, S> {
             let now = left.min(self.slice);
             engine.advance(now)?;
             left -= now;
-            if left > 0 && watch(last) == Watch::Stop {
+            if left > 0 && !engine.heed(watch(last)) {
                 self.run.interrupted = true;
                 break;
             }

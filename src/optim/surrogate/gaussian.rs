@@ -104,7 +104,7 @@ impl Gaussian {
     pub fn fit(points: &[Vec<f64>], values: &[f64], smooth: bool, corrects: bool) -> Option<Self> {
         let effects = if corrects { CORRECTION } else { 1.0 };
         let table = Table::new(points, values);
-        let range = |i: usize| Factor { name: i.to_string(), low: -RANGE, high: RANGE };
+        let range = |i: usize| Factor::linear(&i.to_string(), -RANGE, RANGE);
         let place = Domain::new((0..PRIORS.len()).map(range).collect(), &[]).ok()?;
         let loss = |unit: &[f64]| {
             let place = place.natural(unit);

@@ -1,7 +1,7 @@
 //! Calibration with one model per response, for simulations that are dear and scatter.
 //!
 //! Every response gets its own model ([`gaussian`]) over *all* runs, its own and those it was told to learn from, so
-//! that no single lucky run can win. A first design of two levels around the centre finds the directions; then every
+//! that no single lucky run can win. A first design of two levels around the first guess, or the centre, finds the directions; then every
 //! batch takes the point the models recommend and points around it, each off by a little in a direction of its own,
 //! which measures the neighbourhood from all sides.
 //!
@@ -148,7 +148,8 @@ impl Surrogate {
             let odd = (row & columns[j]).count_ones() % 2 == 1;
             self.settings.width * if odd { -signs[j] } else { signs[j] }
         };
-        let row = |row| (0..domain.len()).map(|j| domain.centre()[j] + level(row, j)).collect::<Vec<_>>();
+        let centre = self.problem.start.as_deref().unwrap_or(domain.centre());
+        let row = |row| (0..domain.len()).map(|j| centre[j] + level(row, j)).collect::<Vec<_>>();
         let rows: Vec<usize> = (0..size).collect();
         rows.into_iter().map(|i| domain.repair(&row(i))).take(self.first()).collect()
     }
@@ -187,10 +188,12 @@ impl Optimiser for Surrogate {
 
     fn stop(&self) -> Option<Stop> {
         let settled = |r: &Recommendation| {
-            self.problem.misfit.targets().iter().zip(&r.responses).all(|(target, y)| {
-                let bound = self.settings.tolerance * target.value.abs();
-                (y.low - target.value).abs() <= bound && (y.high - target.value).abs() <= bound
-            })
+            self.problem
+                .misfit
+                .targets()
+                .iter()
+                .zip(&r.responses)
+                .all(|(target, y)| target.holds([y.low, y.high], self.settings.tolerance))
         };
         if self.designed() && self.own() > 0 && self.recommended.as_ref().is_some_and(settled) {
             return Some(Stop::Settled);

@@ -2,6 +2,7 @@
 
 use super::Trend;
 use super::gaussian::Gaussian;
+use crate::constraint::{Factor, Scale as FactorScale};
 use crate::solution_set::descend;
 use crate::{Interval, Problem, Recommendation, Trial};
 use math::elementary::{exp, ln};
@@ -27,9 +28,11 @@ enum Scale {
 }
 
 impl Scale {
-    /// Codes a factor's range to −1 … 1; by logarithms when its ends are positive and apart by a factor of two.
-    fn factor(low: f64, high: f64) -> Self {
-        if low > 0.0 && high / low >= 2.0 {
+    /// Codes a factor's range to −1 … 1; by logarithms when it is searched so, or its ends are positive and apart by a
+    /// factor of two.
+    fn factor(factor: &Factor) -> Self {
+        let (low, high) = (factor.low, factor.high);
+        if factor.scale == FactorScale::Log || low > 0.0 && high / low >= 2.0 {
             let (low, high) = (ln(low), ln(high));
             Self::Logarithm { centre: 0.5 * (low + high), width: 0.5 * (high - low) }
         } else {
@@ -84,7 +87,7 @@ impl Models {
     /// Models over all runs; a response that a run lacks is NaN there. None without runs to go by: a response that no
     /// run has, and no trend.
     pub fn fit(runs: &[Trial], problem: &Problem, smooth: bool, trend: Option<&Trend>) -> Option<Self> {
-        let factors: Vec<Scale> = problem.domain.factors().iter().map(|f| Scale::factor(f.low, f.high)).collect();
+        let factors: Vec<Scale> = problem.domain.factors().iter().map(Scale::factor).collect();
         let (good, bad): (Vec<&Trial>, Vec<&Trial>) = runs.iter().partition(|run| run.succeeded());
         let coded = |runs: &[&Trial]| -> Vec<Vec<f64>> {
             runs.iter().map(|run| code(&factors, &problem.domain.natural_beyond(&run.point))).collect()
@@ -106,7 +109,7 @@ impl Models {
     }
 
     fn response(&self, k: usize, good: &[&Trial], coded: &[Vec<f64>], smooth: bool) -> Option<Response> {
-        let target = self.problem.misfit.targets()[k].value;
+        let target = self.problem.misfit.targets()[k].value();
         let mut rows: Vec<(Vec<f64>, f64, Option<f64>)> = Vec::new();
         for (run, z) in good.iter().zip(coded).filter(|(run, _)| run.responses[k].is_finite()) {
             let expected = match &self.trend {

@@ -293,12 +293,15 @@ impl Calibrate {
         match fault {
             Error::Nothing { what: "factor" } | Error::Twice { .. } => "factors",
             Error::EmptyRange { factor, .. } if self.ranges.contains_key(factor) => "ranges",
-            Error::Contradiction { .. } | Error::UnknownFactor { .. } => "constraints",
+            Error::NoLogarithm { factor, .. } if self.ranges.contains_key(factor) => "ranges",
+            Error::EmptyBand { .. } => "targets",
+            Error::NotLogarithmic { .. } | Error::Contradiction { .. } | Error::UnknownFactor { .. } => "constraints",
             Error::ZeroTarget { .. } if self.curve.is_none() => "targets",
             Error::Weight { response, .. } if self.weights.contains_key(response) => "weights",
             Error::Outside { .. } => "preference",
             Error::Nothing { .. }
             | Error::EmptyRange { .. }
+            | Error::NoLogarithm { .. }
             | Error::NotFinite { .. }
             | Error::ZeroTarget { .. }
             | Error::Weight { .. }

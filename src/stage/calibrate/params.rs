@@ -70,14 +70,14 @@ pub(super) struct Params {
 
 impl Params {
     fn domain(&self) -> Result<Domain, Vec<Error>> {
-        let factor = |f: &FactorParam| Factor { name: f.name.clone(), low: f.low, high: f.high };
+        let factor = |f: &FactorParam| Factor::linear(&f.name, f.low, f.high);
         let linear = |c: &Constraint| Linear { terms: c.terms.clone(), at_most: c.at_most };
         let walls: Vec<Linear> = self.constraints.iter().map(linear).collect();
         Domain::new(self.factors.iter().map(factor).collect(), &walls)
     }
 
     fn misfit(&self, set: usize) -> Result<Misfit, Vec<Error>> {
-        let target = |t: &TargetParam| Target { response: t.response.clone(), value: t.value, weight: t.weight };
+        let target = |t: &TargetParam| Target::exactly(&t.response, t.value, t.weight);
         Misfit::new(self.sets[set].iter().map(target).collect(), self.form, self.denominator)
     }
 
@@ -114,7 +114,7 @@ impl Params {
     pub(super) fn problem(&self, set: usize) -> Result<Problem, StageError> {
         let all =
             |faults: Vec<Error>| StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
-        Ok(Problem { domain: self.domain().map_err(all)?, misfit: self.misfit(set).map_err(all)? })
+        Ok(Problem { domain: self.domain().map_err(all)?, misfit: self.misfit(set).map_err(all)?, start: None })
     }
 
     /// What the surrogate knows beforehand.

@@ -2,7 +2,7 @@
 
 use super::params::{FactorParam, Params, TargetParam};
 use super::solve::{Line, Solved};
-use crate::artifact::{Artifact, Group, Node, Table};
+use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use optim::Interval;
 
 /// The tables of a calibration.
@@ -12,7 +12,7 @@ pub(super) fn artifact(params: &Params, solved: &[Solved]) -> Artifact {
         .with("prediction", Node::Table(prediction(params, solved)))
         .with("history", Node::Table(history(params, solved)))
         .with("solution_set", Node::Table(solution_set(params, solved)));
-    Artifact::new("solution", 1, root)
+    Artifact::of(ArtifactKind::SOLUTION, root)
 }
 
 fn named(about: &str) -> Table {

@@ -1,7 +1,7 @@
 //! Calibration through the stage, with a simulator and a library that live in memory.
 
 use super::*;
-use crate::artifact::{Artifact, ContentHash, Group, Node};
+use crate::artifact::{Artifact, ArtifactKind, ContentHash, Group, Node};
 use crate::stage::rows::response_table;
 use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
 use math::random::Stream;
@@ -38,7 +38,7 @@ impl Laboratory {
         let root = Group::new()
             .with("failure", Node::Text(failure))
             .with("responses", Node::Table(response_table(&responses)));
-        Outcome::Done(self.put(Artifact::new("run", 1, root)))
+        Outcome::Done(self.put(Artifact::of(ArtifactKind::RUN, root)))
     }
 
     fn simulations(&self) -> usize {
@@ -130,7 +130,8 @@ fn finished(laboratory: &Laboratory, task: &Task) -> Result<Artifact, String> {
         .collect();
     let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: Progress| ());
     let (params, seed) = (&task.params, task.seed);
-    let job = Job { params, seed, inputs: &inputs, files: &[], threads: 1, time_limit: None, say: &say, stop: &stop };
+    let job =
+        Job { params, seed, inputs: &inputs, files: &[], threads: &|| 1, time_limit: None, say: &say, stop: &stop };
     solve::solve(&job).map_err(|failure| failure.to_string())
 }
 

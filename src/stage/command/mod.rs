@@ -17,8 +17,8 @@ mod folder;
 mod read;
 
 use super::rows::{self, GATHER};
-use super::{Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
 use crate::unit;
 use read::Read;
 use schemars::JsonSchema;
@@ -92,12 +92,16 @@ fn stops(on_failure: &OnFailure) -> bool {
 
 impl Stage for Command {
     fn inputs(&self) -> Vec<Port> {
-        let design = Port { key: "design", stages: self.design.iter().cloned().collect(), accepts: &["design"] };
+        let design = Port {
+            key: "design",
+            stages: self.design.iter().cloned().collect(),
+            accepts: Accepts::Only(&[ArtifactKind::DESIGN]),
+        };
         if self.design.is_some() { vec![design] } else { Vec::new() }
     }
 
-    fn gives(&self) -> &'static str {
-        if self.design.is_some() { "results" } else { "run" }
+    fn gives(&self) -> ArtifactKind {
+        if self.design.is_some() { ArtifactKind::RESULTS } else { ArtifactKind::RUN }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -165,6 +169,8 @@ impl Stage for Command {
 impl Kind for Command {
     const NAME: &'static str = "command";
     const ABOUT: &'static str = "an external program, once or per design row";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
+    const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
 }
 
@@ -195,5 +201,5 @@ fn artifact(responses: &[(&str, f64, &str)], failure: &str) -> Artifact {
     let root = Group::new()
         .with("failure", Node::Text(failure.to_owned()))
         .with("responses", Node::Table(rows::response_table(responses)));
-    Artifact::new("run", 1, root)
+    Artifact::of(ArtifactKind::RUN, root)
 }

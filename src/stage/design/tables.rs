@@ -1,6 +1,6 @@
 //! The artifact of a design.
 
-use crate::artifact::{Artifact, Group, Node, Table};
+use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use design::{DesignTable, Report};
 
 /// The tables `design`, `coded` and `report`.
@@ -9,7 +9,7 @@ pub(super) fn artifact(table: &DesignTable, report: &Report) -> Artifact {
         .with("design", Node::Table(design(table)))
         .with("coded", Node::Table(coded(table)))
         .with("report", Node::Table(lines(table, report)));
-    Artifact::new("design", 1, root)
+    Artifact::of(ArtifactKind::DESIGN, root)
 }
 
 fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {

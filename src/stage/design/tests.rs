@@ -65,7 +65,7 @@ fn blank() -> Job<'static> {
         seed: None,
         inputs: &[],
         files: &[],
-        threads: 1,
+        threads: &|| 1,
         time_limit: None,
         say: &|_| {},
         stop: &STOP,

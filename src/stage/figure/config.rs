@@ -1,5 +1,6 @@
 //! Settings of a `figure` stage, and what each figure takes.
 
+use crate::artifact::{Accepts, ArtifactKind as Of};
 use crate::unit::Length;
 use figure::palette::Map;
 use figure::{DOUBLE, SINGLE};
@@ -147,8 +148,8 @@ pub enum Show {
 
 /// What one kind of figure takes.
 pub(super) struct Needs {
-    pub(super) from: &'static [&'static str],
-    pub(super) compare: &'static [&'static str],
+    pub(super) from: Accepts,
+    pub(super) compare: Accepts,
     /// Least and greatest number of responses.
     pub(super) responses: [usize; 2],
     /// Least and greatest number of factors named; factors are drawn when the second is not 0.
@@ -159,27 +160,32 @@ const MANY: usize = usize::MAX;
 
 impl Show {
     pub(super) fn needs(self) -> Needs {
-        let needs = |from, compare, responses, factors| Needs { from, compare, responses, factors };
-        const RESULTS: &[&str] = &["results"];
-        const MODELS: &[&str] = &["anova", "screening", "surfaces"];
-        const PLACES: &[&str] = &["design", "results"];
+        let needs = |from, compare, responses, factors| Needs {
+            from: Accepts::Only(from),
+            compare: Accepts::Only(compare),
+            responses,
+            factors,
+        };
+        const RESULTS: &[Of] = &[Of::RESULTS];
+        const MODELS: &[Of] = &[Of::ANOVA, Of::SCREENING, Of::SURFACES];
+        const POINTS: &[Of] = &[Of::DESIGN, Of::RESULTS];
         match self {
-            Show::StressStrain => needs(&["run"], &[], [0, 0], [0, 0]),
-            Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&["run"], &["specimen"], [0, 0], [0, 0]),
-            Show::Specimen => needs(&["specimen"], &[], [0, 0], [0, 0]),
-            Show::MainEffects | Show::Range => needs(&["range"], &["range"], [1, 1], [0, MANY]),
-            Show::Points => needs(PLACES, &[], [0, 0], [0, 3]),
+            Show::StressStrain => needs(&[Of::RUN], &[], [0, 0], [0, 0]),
+            Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0]),
+            Show::Specimen => needs(&[Of::SPECIMEN], &[], [0, 0], [0, 0]),
+            Show::MainEffects | Show::Range => needs(&[Of::RANGE], &[Of::RANGE], [1, 1], [0, MANY]),
+            Show::Points => needs(POINTS, &[], [0, 0], [0, 3]),
             Show::Agreement => needs(RESULTS, RESULTS, [0, MANY], [0, MANY]),
-            Show::Contour | Show::Surface => needs(&["surfaces"], PLACES, [1, 1], [2, 2]),
+            Show::Contour | Show::Surface => needs(&[Of::SURFACES], POINTS, [1, 1], [2, 2]),
             Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
             Show::ObservedPredicted => needs(MODELS, &[], [0, MANY], [0, 0]),
-            Show::Pareto => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
-            Show::HalfNormal => needs(&["screening", "anova"], &[], [1, 1], [0, MANY]),
-            Show::Normal => needs(&["screening"], &[], [1, 1], [0, MANY]),
-            Show::Convergence => needs(&["solution"], &[], [0, 0], [0, 0]),
-            Show::Solutions => needs(&["solution"], &[], [0, 0], [0, MANY]),
-            Show::Verification => needs(&["verification"], &[], [0, MANY], [0, 0]),
-            Show::Dag => needs(super::super::table::ANY, &[], [0, 0], [0, 0]),
+            Show::Pareto => needs(&[Of::SCREENING, Of::ANOVA], &[], [1, 1], [0, MANY]),
+            Show::HalfNormal => needs(&[Of::SCREENING, Of::ANOVA], &[], [1, 1], [0, MANY]),
+            Show::Normal => needs(&[Of::SCREENING], &[], [1, 1], [0, MANY]),
+            Show::Convergence => needs(&[Of::SOLUTION], &[], [0, 0], [0, 0]),
+            Show::Solutions => needs(&[Of::SOLUTION], &[], [0, 0], [0, MANY]),
+            Show::Verification => needs(&[Of::VERIFICATION], &[], [0, MANY], [0, 0]),
+            Show::Dag => Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) },
         }
     }
 

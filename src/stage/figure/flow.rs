@@ -1,15 +1,15 @@
 //! The graph of the workflow itself: the stages that lead to those named.
 
-use super::super::{Context, Outline};
+use super::super::{Class, Context, Outline, kind};
 use figure::dag::{Dag, Stage};
 
-/// Classes of stages, and the kinds that belong to each; other kinds belong to the last.
-const CLASSES: [(&str, &[&str]); 5] = [
-    ("specimens and runs", &["specimen", "simulate", "command", "formula", "data"]),
-    ("designs", &["design"]),
-    ("statistics", &["range", "anova", "screening", "regression", "rsm"]),
-    ("calibration", &["calibrate", "verify"]),
-    ("tables and figures", &["table", "figure"]),
+/// Names of the classes in the legend, in its order.
+const CLASSES: [(&str, &[Class]); 5] = [
+    ("specimens and runs", &[Class::Simulation, Class::Data]),
+    ("designs", &[Class::Design]),
+    ("statistics", &[Class::Statistics]),
+    ("calibration", &[Class::Calibration]),
+    ("tables and figures", &[Class::Presentation]),
 ];
 
 /// The named stages and all that they need, renumbered, in the order of the workflow.
@@ -33,7 +33,10 @@ pub(super) fn outline(last: &[String], context: &Context) -> Vec<Outline> {
 
 /// The picture, with the classes that occur.
 pub(super) fn dag(outline: &[Outline]) -> Dag {
-    let class = |stage: &Outline| CLASSES.iter().position(|(_, kinds)| kinds.contains(&stage.kind.as_str()));
+    let class = |stage: &Outline| {
+        let own = kind(&stage.kind)?.class;
+        CLASSES.iter().position(|(_, classes)| classes.contains(&own))
+    };
     let found: Vec<usize> = outline.iter().map(|stage| class(stage).unwrap_or(CLASSES.len() - 1)).collect();
     let used: Vec<usize> = (0..CLASSES.len()).filter(|class| found.contains(class)).collect();
     let place = |class: &usize| used.binary_search(class).unwrap_or(0);

@@ -30,8 +30,8 @@ mod run;
 mod solution;
 mod source;
 
-use super::{Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, Group, Node, Table};
+use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use figure::palette::Map;
 use figure::{self, Figure as Picture, Style, column, text};
 use serde::{Deserialize, Serialize};
@@ -98,8 +98,8 @@ impl Stage for Figure {
         ports
     }
 
-    fn gives(&self) -> &'static str {
-        "picture"
+    fn gives(&self) -> ArtifactKind {
+        ArtifactKind::PICTURE
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -181,7 +181,7 @@ impl Figure {
         if self.of.list().is_empty() {
             found.push(Complaint::new("of", "no stage is named"));
         }
-        if needs.compare.is_empty() && !self.compare.list().is_empty() {
+        if needs.compare == Accepts::Only(&[]) && !self.compare.list().is_empty() {
             found.push(self.without_effect("compare"));
         }
         let (from, compare) = (self.of.list().len(), self.compare.list().len());
@@ -261,6 +261,8 @@ impl Figure {
 impl Kind for Figure {
     const NAME: &'static str = "figure";
     const ABOUT: &'static str = "a picture of the results of other stages";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::PICTURE];
+    const CLASS: Class = Class::Presentation;
     /// 2: numbers at points of designs stand on a ground of paper; "1 crack"; force chains are those above the mean.
     /// 3: surfaces say where their axes lie. 4: empty columns in the legend of contributions; normal plots.
     /// 5: several targets of a solution set one below the other; circles of PNG files without the system's cosines.
@@ -312,7 +314,7 @@ fn picture_artifact(picture: &dyn Picture, style: &Style) -> Result<Artifact, Fa
         .with("pdf", Node::Bytes(figure::pdf::pdf(&scene)))
         .with("png", Node::Bytes(png))
         .with("data", Node::Table(stored(picture.data())));
-    Ok(Artifact::new("picture", 1, root))
+    Ok(Artifact::of(ArtifactKind::PICTURE, root))
 }
 
 /// Columns of a figure as a table of the store; a second column of the same name gets a number.

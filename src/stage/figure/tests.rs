@@ -1,5 +1,5 @@
 use super::*;
-use crate::artifact::{Array, ContentHash, Values};
+use crate::artifact::{Array, ArtifactKind, ContentHash, Values};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -111,7 +111,7 @@ fn specimen() -> Artifact {
         .with("clump_of", ints(vec![-1, 0, 0]))
         .with("polygon_of", ints(vec![0, 0, 0]))
         .with("vertices", vectors(vec![0.0, 0.0, 0.005, 0.0, 0.0, 0.005]));
-    Artifact::new("specimen", 1, root)
+    Artifact::of(ArtifactKind::SPECIMEN, root)
 }
 
 fn surfaces() -> Artifact {
@@ -260,7 +260,7 @@ fn made(text: &str, from: &[Artifact], compare: &[Artifact]) -> Result<Artifact,
         seed: None,
         inputs: &inputs,
         files: &[],
-        threads: 1,
+        threads: &|| 1,
         time_limit: None,
         say: &say,
         stop: &stop,

@@ -11,7 +11,7 @@ fn context() -> Context {
 fn design(moduli: &[f64]) -> Artifact {
     let types = moduli.iter().map(|_| "cube".to_owned()).collect();
     let table = Table::default().texts_column("point_type", "", types).reals_column("Ec", "GPa", "", moduli.to_vec());
-    Artifact::new("design", 1, Group::new().with("design", Node::Table(table)))
+    Artifact::of(ArtifactKind::DESIGN, Group::new().with("design", Node::Table(table)))
 }
 
 #[test]
@@ -51,7 +51,7 @@ fn gathering_converts_units_and_keeps_failures() {
         let group = Group::new()
             .with("failure", Node::Text(failure.to_owned()))
             .with("responses", Node::Table(response_table(&[("UCS", ucs, "Pa")])));
-        Arc::new(Artifact::new("run", 1, group))
+        Arc::new(Artifact::of(ArtifactKind::RUN, group))
     };
     let inputs = vec![
         ("design".to_owned(), Arc::new(design(&[10.0, 20.0]))),
@@ -65,7 +65,7 @@ fn gathering_converts_units_and_keeps_failures() {
         seed: None,
         inputs: &inputs,
         files: &[],
-        threads: 1,
+        threads: &|| 1,
         time_limit: None,
         say: &say,
         stop: &stop,

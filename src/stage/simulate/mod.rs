@@ -18,10 +18,9 @@ pub use config::{BondConfig, PackingChoice, Simulate};
 
 use super::rows::{self, GATHER};
 use super::{
-    Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Stage, StageError, Step, Task, Work,
 };
-use crate::artifact::Artifact;
-use crate::artifact::specimen::Specimen as Stored;
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use config::Params;
 use dem::loading::curve::Sample;
 use dem::loading::uniaxial;
@@ -31,14 +30,21 @@ use std::sync::Arc;
 
 impl Stage for Simulate {
     fn inputs(&self) -> Vec<Port> {
-        let specimen = Port { key: "specimen", stages: vec![self.specimen.clone()], accepts: &[Stored::KIND] };
-        let design =
-            self.design.iter().map(|name| Port { key: "design", stages: vec![name.clone()], accepts: &["design"] });
+        let specimen = Port {
+            key: "specimen",
+            stages: vec![self.specimen.clone()],
+            accepts: Accepts::Only(&[ArtifactKind::SPECIMEN]),
+        };
+        let design = self.design.iter().map(|name| Port {
+            key: "design",
+            stages: vec![name.clone()],
+            accepts: Accepts::Only(&[ArtifactKind::DESIGN]),
+        });
         std::iter::once(specimen).chain(design).collect()
     }
 
-    fn gives(&self) -> &'static str {
-        if self.design.is_some() { "results" } else { "run" }
+    fn gives(&self) -> ArtifactKind {
+        if self.design.is_some() { ArtifactKind::RESULTS } else { ArtifactKind::RUN }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -86,6 +92,8 @@ fn own_packing(point: &Point, number: u64) -> u64 {
 impl Kind for Simulate {
     const NAME: &'static str = "simulate";
     const ABOUT: &'static str = "a loading test on a specimen, once or per design row";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
+    const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "simulate", version: 1, run: simulate }, GATHER];
 }
 

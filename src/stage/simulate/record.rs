@@ -1,7 +1,7 @@
 //! The record of a test as it is stored: kind `run`.
 
 use super::super::rows::response_table;
-use crate::artifact::{Array, Artifact, Group, Node, Table, Values};
+use crate::artifact::{Array, Artifact, ArtifactKind, Group, Node, Table, Values};
 use dem::loading::crack::{CrackEvent, CrackGroup};
 use dem::loading::curve::{Sample, thinned};
 use dem::loading::drive::{Loading, TestKind, TestRecord};
@@ -27,7 +27,7 @@ pub(super) fn artifact(record: &TestRecord, test: &Loading) -> Artifact {
     if test.rule.forces {
         root.put("forces", Node::Table(forces(&record.run.snapshots)));
     }
-    Artifact::new("run", 1, root)
+    Artifact::of(ArtifactKind::RUN, root)
 }
 
 fn responses(record: &TestRecord, kind: TestKind) -> Vec<(&'static str, f64, &'static str)> {

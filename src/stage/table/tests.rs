@@ -3,14 +3,15 @@ use crate::artifact::Table as Data;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-fn anova(kind: &str, f: [f64; 3]) -> Arc<Artifact> {
+fn anova(kind: ArtifactKind, f: [f64; 3]) -> Arc<Artifact> {
     let words = |w: [&str; 3]| w.map(String::from).to_vec();
     let table = Data::default()
         .texts_column("response", "", words(["UCS", "UCS", "E"]))
         .texts_column("source", "", words(["Ec", "error", "Ec"]))
         .ints_column("df", "", vec![2, 36, 2])
         .reals_column("F", "", "", f.to_vec());
-    Arc::new(Artifact::new(kind, 1, Group::new().with("anova", Node::Table(table))))
+    let name = kind.main_table().unwrap();
+    Arc::new(Artifact::of(kind, Group::new().with(name, Node::Table(table))))
 }
 
 fn run(params: Value, inputs: &[(&str, Arc<Artifact>)]) -> Result<Artifact, Failure> {
@@ -21,7 +22,7 @@ fn run(params: Value, inputs: &[(&str, Arc<Artifact>)]) -> Result<Artifact, Fail
         seed: None,
         inputs: &inputs,
         files: &[],
-        threads: 1,
+        threads: &|| 1,
         time_limit: None,
         say: &say,
         stop: &stop,
@@ -41,7 +42,7 @@ fn rows_and_columns_are_chosen_and_heads_have_symbols() {
     let params = json!({
         "columns": ["source", "F"], "only": { "response": "UCS" }, "digits": 3, "symbols": { "F": "F_{2,36}" },
     });
-    let made = run(params, &[("of", anova("anova", [3003.4242, f64::NAN, 1.0]))]).unwrap();
+    let made = run(params, &[("of", anova(ArtifactKind::ANOVA, [3003.4242, f64::NAN, 1.0]))]).unwrap();
     assert_eq!(text(&made, "csv"), "source,F\nEc,3003.4242\nerror,\n");
     assert_eq!(text(&made, "markdown"), "| source | $F_{2,36}$ |\n| :-- | --: |\n| Ec | 3003 |\n| error | – |\n");
     assert!(text(&made, "latex").contains("source & $F_{2,36}$ \\\\\n\\midrule\nEc & 3003 \\\\\nerror & -- \\\\"));
@@ -51,8 +52,9 @@ fn rows_and_columns_are_chosen_and_heads_have_symbols() {
 #[test]
 fn published_values_stand_beside_ours_with_the_deviation() {
     let params = json!({ "by": ["response", "source"], "digits": 4 });
-    let ours = anova("anova", [110.0, 2.0, 50.0]);
-    let made = run(params, &[("of", ours), ("compare", anova("results", [100.0, f64::NAN, 50.0]))]).unwrap();
+    let ours = anova(ArtifactKind::ANOVA, [110.0, 2.0, 50.0]);
+    let made =
+        run(params, &[("of", ours), ("compare", anova(ArtifactKind::RESULTS, [100.0, f64::NAN, 50.0]))]).unwrap();
     let table = made.table("table").unwrap();
     assert_eq!(table.reals("F published").unwrap()[..1], [100.0]);
     let deviation = table.reals("F deviation").unwrap();
@@ -64,14 +66,14 @@ fn published_values_stand_beside_ours_with_the_deviation() {
 #[test]
 fn several_stages_are_stacked() {
     let params = json!({ "columns": ["source"], "digits": 4, "stages": ["a", "b"] });
-    let one = anova("anova", [1.0; 3]);
+    let one = anova(ArtifactKind::ANOVA, [1.0; 3]);
     let made = run(params, &[("of", one.clone()), ("of", one)]).unwrap();
     assert_eq!(text(&made, "csv").lines().nth(4), Some("b,Ec"));
 }
 
 #[test]
 fn what_is_missing_is_named() {
-    let said = |params: Value| match run(params, &[("of", anova("anova", [1.0; 3]))]) {
+    let said = |params: Value| match run(params, &[("of", anova(ArtifactKind::ANOVA, [1.0; 3]))]) {
         Err(Failure::Failed(error)) => format!("{} ({})", error.message, error.hint.unwrap_or_default()),
         other => panic!("{other:?}"),
     };
@@ -144,7 +146,7 @@ fn responses_in_rows_are_told_in_the_units_of_the_workflow() {
             .texts_column("response", "", words(["UCS", "E", "nu", "sigma_ci"]))
             .reals_column("value", "", "", values.to_vec())
             .texts_column("unit", "", words(["Pa", "Pa", "", "Pa"]));
-        Arc::new(Artifact::new("run", 1, Group::new().with("responses", Node::Table(table))))
+        Arc::new(Artifact::of(ArtifactKind::RUN, Group::new().with("responses", Node::Table(table))))
     };
     let params = json!({ "by": ["response"], "digits": 4, "units": { "UCS": "MPa", "E": "GPa", "nu": "" } });
     let theirs = of([32.23e6, 28.37e9, 0.197, f64::NAN]);
@@ -165,7 +167,7 @@ fn quantities_in_rows_are_told_as_people_read_them() {
         .texts_column("quantity", "", words(["mean radius", "width", "discs"]))
         .reals_column("value", "", "", vec![0.485_400_01e-3, 0.1, 24.0])
         .texts_column("unit", "", words(["m", "m", ""]));
-    let specimen = Arc::new(Artifact::new("specimen", 1, Group::new().with("quality", Node::Table(table))));
+    let specimen = Arc::new(Artifact::of(ArtifactKind::SPECIMEN, Group::new().with("quality", Node::Table(table))));
     let made = run(json!({ "digits": 4, "units": {} }), &[("of", specimen)]).unwrap();
     let rows: Vec<String> = text(&made, "markdown").lines().map(str::to_owned).collect();
     let ends = ["| mean radius | 0.4854 | mm |", "| width | 0.1000 | m |", "| discs | 24 | – |"];

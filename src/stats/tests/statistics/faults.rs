@@ -64,7 +64,7 @@ fn constant_responses_and_one_level_factors() {
     table.factors[1].values = vec![4.0; 6];
     table.responses[0] = Response::new("y", vec![2.0; 6]);
     let wanted = [
-        Fault::OneLevel { factor: "b".into(), value: 4.0 },
+        Fault::OneLevel { factor: "b".into(), value: "4".into() },
         Fault::ConstantResponse { response: "y".into(), value: 2.0, rows: 6 },
     ];
     assert_eq!(anova_faults(&table, &anova::Settings::default()), wanted);
@@ -103,7 +103,7 @@ fn too_few_rows_and_no_error_left() {
     table.responses[0].values[4] = None;
     let found = anova_faults(&table, &anova::Settings::default());
     assert!(
-        found.contains(&Fault::EmptyLevel { factor: "a".into(), level: 3.0, response: "y".into(), missing: 4 }),
+        found.contains(&Fault::EmptyLevel { factor: "a".into(), level: "3".into(), response: "y".into(), missing: 4 }),
         "{found:?}"
     );
     let terms = ["const", "a", "a^2", "b"];

@@ -4,6 +4,7 @@
 mod agreement;
 mod faults;
 mod identities;
+mod models;
 mod nist;
 mod other_code;
 mod su2021;

@@ -15,7 +15,7 @@ pub(super) fn close(found: f64, wanted: f64, tolerance: f64, what: &str) {
     assert!((found - wanted).abs() <= tolerance * wanted.abs(), "{what}: {found:e} for {wanted:e}");
 }
 
-fn all_close(found: impl IntoIterator<Item = f64>, wanted: &[f64], tolerance: f64, what: &str) {
+pub(super) fn all_close(found: impl IntoIterator<Item = f64>, wanted: &[f64], tolerance: f64, what: &str) {
     let found: Vec<f64> = found.into_iter().collect();
     assert_eq!(found.len(), wanted.len(), "{what}");
     let scale = wanted.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
