@@ -41,8 +41,10 @@ const LOOK_EVERY: u64 = 100;
 const MOST_STEPS: u64 = 500_000;
 /// Side walls around a cylinder, even.
 const FACETS: usize = 24;
-/// Relaxation of the servo, and its largest speed over that of the bodies in a wave of the confining stress.
-const RELAXATION: f64 = 0.5;
+/// Relaxation of the servo, and its largest speed over that of the bodies in a wave of the confining stress. A wall that
+/// follows its force with the speed G (F* − F) is stable while G times the impedance √(k m) of the balls on it is below 1,
+/// which is about 2.5 times the relaxation, and takes up waves best near a half.
+const RELAXATION: f64 = 0.15;
 const FASTEST: f64 = 0.1;
 
 /// A side wall: its outward normal, its area (m²), its distance from the axis (m).

@@ -40,7 +40,8 @@ pub(super) fn note_cracks<S: Space>(
 ) {
     let steps = (engine.steps() - step).max(1) as f64;
     for crack in &engine.cracks()[cracks.len()..] {
-        let share = (crack.step - step) as f64 / steps;
+        // What broke before the loading counts from its start.
+        let share = crack.step.saturating_sub(step) as f64 / steps;
         let touches_aggregate = |particle: usize| engine.group(particle) == AGGREGATE;
         let other = matches!(crack.other, Other::Particle(j) if touches_aggregate(j));
         cracks.push(CrackEvent {

@@ -1,10 +1,12 @@
 //! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
 
 use super::super::{Complaint, Context, Parameter, StageError};
-use crate::unit::{Angle, Dimension, Pressure, Velocity};
-use dem::loading::drive::{Loading, Rule, TestKind};
+use super::speed::PlatenSpeed;
+use crate::unit::{Angle, Dimension, Length, Pressure};
+use dem::loading::kind::TestKind;
 use dem::loading::material::{BondKind, Bonded, Bonding, Material, MaterialError, Unbonded};
 use dem::loading::rig::Machine;
+use dem::loading::settings::{Loading, Notch, Rule};
 use dem::{Convention, Masses};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,20 +24,38 @@ pub struct Simulate {
     pub material: String,
     /// The test.
     pub test: TestKind,
-    /// Speed of each platen or grip.
-    pub platen_speed: Velocity,
+    /// Speed of each platen or grip, or the strain rate, or the quasi-static number.
+    pub platen_speed: PlatenSpeed,
     /// Friction of the platens.
     #[serde(default)]
     pub platen_friction: f64,
+    /// Modulus of the contacts with the platens; that of the material when not given.
+    pub platen_modulus: Option<Pressure>,
+    /// `brazilian`: whole angle of the arc on which curved jaws touch the disc; flat platens when not given.
+    pub jaw_angle: Option<Angle>,
+    /// `biaxial`, `triaxial`: the confining stress.
+    pub confinement: Option<Pressure>,
+    /// `bending`: distance of the supports; nine tenths of the width when not given.
+    pub span: Option<Length>,
+    /// `bending`: the notch, if any.
+    pub notch: Option<Notch>,
     /// Share of the peak at which the test ends.
     #[serde(default = "stop_fraction")]
     pub stop_fraction: f64,
-    /// Stress that must be passed before the test may end.
-    #[serde(default = "seating_stress")]
-    pub seating_stress: Pressure,
-    /// Strain at which a test without a peak is given up.
-    #[serde(default = "strain_limit")]
-    pub strain_limit: f64,
+    /// Further strain, over the strain at the peak, for which the stress must stay below that share; 0, but 0.05 for
+    /// `brazilian`, where a platen's first contact may fail early.
+    pub lasting: Option<f64>,
+    /// Stress that must be passed before the test may end; a hundredth of the bonds' tensile strength when not given.
+    pub seating_stress: Option<Pressure>,
+    /// Strain between two samples; 1/500 of the strain at which the bonds can be expected to fail (tensile strength over
+    /// modulus) when not given.
+    pub sample_strain: Option<f64>,
+    /// Strain at which a test without a peak is given up; 20 times the strain at which the bonds can be expected to fail
+    /// when not given.
+    pub strain_limit: Option<f64>,
+    /// Steps after which a test is given up.
+    #[serde(default = "max_steps")]
+    pub max_steps: u64,
     /// Shares of the peak at which the state is kept.
     #[serde(default = "snapshots")]
     pub snapshots: Vec<f64>,
@@ -114,12 +134,8 @@ fn stop_fraction() -> f64 {
     Rule::default().stop_fraction
 }
 
-fn seating_stress() -> Pressure {
-    Pressure::si(Rule::default().seating_stress)
-}
-
-fn strain_limit() -> f64 {
-    Rule::default().strain_limit
+fn max_steps() -> u64 {
+    Rule::default().max_steps
 }
 
 fn snapshots() -> Vec<f64> {
@@ -156,28 +172,7 @@ const MICROPARAMETERS: [(&str, Dimension); 13] = [
     ("interface.mu", Dimension::NONE),
 ];
 
-/// Platens faster than this cannot be a quasi-static test of anything (m/s).
-const FASTEST: f64 = 1.0;
-
 impl Simulate {
-    /// The test with all its settings.
-    pub(super) fn spec(&self) -> Loading {
-        Loading {
-            kind: self.test,
-            speed: self.platen_speed.get(),
-            platen_friction: self.platen_friction,
-            machine: Machine { damping: self.damping, masses: self.masses, ..Machine::default() },
-            rule: Rule {
-                stop_fraction: self.stop_fraction,
-                seating_stress: self.seating_stress.get(),
-                strain_limit: self.strain_limit,
-                snapshots: self.snapshots.clone(),
-                forces: self.forces,
-                ..Rule::default()
-            },
-        }
-    }
-
     /// The material's values by path, SI.
     pub(super) fn base(&self, context: &Context) -> Result<BTreeMap<String, f64>, StageError> {
         let found = context.materials.get(&self.material);
@@ -231,32 +226,6 @@ impl Simulate {
             let complaint = Complaint::new(path, format!("`{path}` is not a microparameter"));
             let hint = format!("known: {}", known().collect::<Vec<_>>().join(", "));
             faults.push(complaint.in_material(&self.material).hint(hint));
-        }
-        faults
-    }
-
-    fn setting_faults(&self) -> Vec<Complaint> {
-        let speed = self.platen_speed.get();
-        let share = |x: f64| x > 0.0 && x < 1.0;
-        let rules = [
-            (
-                speed > 0.0 && speed <= FASTEST,
-                "platen_speed",
-                speed,
-                "above 0 and at most 1 m/s; 0.02 m/s is quasi-static",
-            ),
-            (self.platen_friction >= 0.0, "platen_friction", self.platen_friction, "at least 0"),
-            (share(self.stop_fraction), "stop_fraction", self.stop_fraction, "between 0 and 1"),
-            (share(self.strain_limit), "strain_limit", self.strain_limit, "a strain between 0 and 1"),
-            (self.seating_stress.get() > 0.0, "seating_stress", self.seating_stress.get(), "positive"),
-            ((0.0..1.0).contains(&self.damping), "damping", self.damping, "at least 0 and below 1"),
-        ];
-        let bad = rules.into_iter().filter(|rule| !rule.0);
-        let mut faults: Vec<Complaint> = bad
-            .map(|(_, key, found, wanted)| Complaint::new(key, format!("`{key}` is {found}; it must be {wanted}")))
-            .collect();
-        for found in self.snapshots.iter().filter(|&&found| !(found > 0.0 && found <= 1.0)) {
-            faults.push(Complaint::new("snapshots", format!("{found} is no share of the peak; give 0 to 1")));
         }
         faults
     }

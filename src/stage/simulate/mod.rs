@@ -7,14 +7,18 @@
 //! * `packing = "own"`: every row and replicate has a packing of its own, drawn from its content. All runs then scatter
 //!   alike, which is what pure error, lack of fit and the F-tests of an analysis of variance assume.
 //!
-//! The responses of `test = "uniaxial"` are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus
-//! around half of it; strain ratio there), of `"tension"` `sigma_t`, `E`, `nu`, of `"brazilian"` `sigma_t`; in SI units.
-//! Further ones are named in the record. What is computed and why: [`dem::loading`].
+//! Each test declares its responses ([`TestKind::responses`](dem::loading::kind::TestKind::responses)), in SI units:
+//! `uniaxial` gives `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus around half of it; strain
+//! ratio there), `tension` `sigma_t`, `E`, `nu`, `brazilian` `sigma_t`, `biaxial` and `triaxial` `q`, `sigma_1`, `sigma_3`,
+//! `bending` `f_b`, and each a few more. What is computed and why: [`dem::loading`].
 
 mod config;
+mod loading;
 mod record;
+mod speed;
 
 pub use config::{BondConfig, PackingChoice, Simulate};
+pub use speed::PlatenSpeed;
 
 use super::rows::{self, GATHER};
 use super::{
@@ -23,7 +27,7 @@ use super::{
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use config::Params;
 use dem::loading::curve::Sample;
-use dem::loading::uniaxial;
+use dem::loading::piece::Piece;
 use math::random::Stream;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -97,14 +101,15 @@ impl Kind for Simulate {
     const WORKS: &'static [Work] = &[Work { name: "simulate", version: 1, run: simulate }, GATHER];
 }
 
-/// Samples between two reports of progress.
+/// Looks at the run between two reports of progress.
 const REPORT_EVERY: usize = 50;
 
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let specimen = super::specimen::load(job.input("specimen")?)?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
-    for warning in uniaxial::warnings(&params.test, &specimen, &params.material).map_err(|faults| fail(&faults))? {
+    let piece = Piece::from(&specimen);
+    for warning in params.test.warnings(&piece, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));
     }
     let mut seen = 0;
@@ -117,10 +122,10 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
         job.watch()
     };
     let seed = job.seed.unwrap_or_default();
-    let record = params.test.run(&specimen, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
+    let record = params.test.run(&piece, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
     if record.run.interrupted {
         return Err(Failure::Stopped);
     }
-    record::unmet(&record).for_each(|words| (job.say)(Progress::warning(&words)));
+    record.invalid().for_each(|check| (job.say)(Progress::warning(&format!("not valid: {check}"))));
     Ok(record::artifact(&record, &params.test))
 }

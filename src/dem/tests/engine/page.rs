@@ -40,6 +40,7 @@ fn families() -> Vec<Family> {
         crate::scaling::family(),
         crate::energy::family(),
         crate::curve::family(),
+        crate::confined::family(),
         crate::genesis::family(),
     ]
 }
