@@ -9,6 +9,8 @@ use super::text::Line;
 /// What stands before a name.
 #[derive(Clone, Debug)]
 pub enum Swatch {
+    /// Nothing: the name says what the entries after it differ in.
+    Nothing,
     /// A line, with a marker on it when given.
     Line(Stroke, Option<Marker>),
     /// A marker.
@@ -44,6 +46,7 @@ const BETWEEN: f64 = 4.2;
 
 fn swatch_width(swatch: &Swatch) -> f64 {
     match swatch {
+        Swatch::Nothing => -GAP,
         Swatch::Line(..) => LINE,
         Swatch::Point(..) | Swatch::Hollow(_) => 2.0,
         Swatch::Box(_) | Swatch::Band(..) => BOX,
@@ -99,6 +102,7 @@ pub fn draw_stacked(scene: &mut Scene, entries: &[Entry], [x, y]: Point, style: 
 fn draw_swatch(scene: &mut Scene, swatch: &Swatch, [x, y]: Point) {
     let patch = Rect::new(x, y - BOX / 2.0, BOX, BOX);
     match swatch {
+        Swatch::Nothing => {}
         Swatch::Line(stroke, mark) => {
             scene.stroke(Path::polyline(&[[x + 0.2, y], [x + LINE - 0.2, y]]), stroke.clone());
             if let Some(kind) = mark {

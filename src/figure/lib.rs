@@ -4,13 +4,15 @@
 //! ([`Figure::data`]), so every figure has its CSV. Sizes are millimetres on paper, text is 8 pt when printed.
 //!
 //! * page: [`scene`] (what is drawn), [`text`] and [`font`] (labels), [`svg`], [`png`], [`pdf`] (writers)
-//! * plot: [`axis`], [`panel`], [`legend`], [`palette`]
+//! * plot: [`axis`], [`panel`], [`legend`], [`palette`], [`marks`]
 //! * words and numbers: [`column`], [`table`]
 //! * every other file is a figure
 
 pub mod agreement;
 pub mod axis;
 pub mod bars;
+pub mod boxes;
+pub mod bundle;
 pub mod chains;
 pub mod column;
 pub mod contour;
@@ -22,9 +24,12 @@ pub mod effect_plot;
 pub mod effects;
 pub mod font;
 mod geometry;
+pub mod heatmap;
+pub mod histogram;
 pub mod isoline;
 pub mod layers;
 pub mod legend;
+pub mod marks;
 pub mod palette;
 pub mod panel;
 pub mod pdf;
@@ -42,6 +47,7 @@ pub mod table;
 pub mod text;
 pub mod verification;
 pub mod view;
+pub mod xy;
 
 use column::Column;
 use scene::Scene;

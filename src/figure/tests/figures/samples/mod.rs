@@ -1,5 +1,6 @@
 //! Sample data of every figure, made by formulas that look like the real thing.
 
+mod columns;
 mod fits;
 mod spatial;
 
@@ -49,6 +50,20 @@ pub(crate) fn all() -> Vec<(&'static str, Style, Box<dyn Figure>)> {
         ("solutions-5", two.clone(), Box::new(solutions(5))),
         ("verification", two.clone(), Box::new(verification())),
         ("dag", two.clone(), Box::new(dag())),
+        ("xy", one.clone(), Box::new(columns::xy(1, 1.0))),
+        ("xy-4", one.clone(), Box::new(columns::xy(4, 1.0))),
+        ("xy-10", two.clone(), Box::new(columns::xy(10, 1.0))),
+        ("xy-large", one.clone(), Box::new(columns::xy(3, 1e7))),
+        ("xy-small", one.clone(), Box::new(columns::xy(3, 1e-7))),
+        ("xy-log", one.clone(), Box::new(columns::xy_log())),
+        ("bundle", one.clone(), Box::new(columns::bundle(1))),
+        ("bundle-3", one.clone(), Box::new(columns::bundle(3))),
+        ("histogram", one.clone(), Box::new(columns::histogram(1.0))),
+        ("histogram-small", one.clone(), Box::new(columns::histogram(1e-5))),
+        ("boxes", one.clone(), Box::new(columns::boxes(4))),
+        ("boxes-12", one.clone(), Box::new(columns::boxes(12))),
+        ("heat", one.clone(), Box::new(columns::heat(false))),
+        ("heat-2", two.clone(), Box::new(columns::heat(true))),
     ]
 }
 
