@@ -13,6 +13,9 @@
 //! G_F    = ∫ F dδ / (b (h − a)) up to the end of the test: all of it only with a small `stop_fraction`
 //! ```
 //!
+//! The beam starts with the velocities of an elastic beam that settles at the speed of the test, so that no shock runs
+//! through it.
+//!
 //! An elastic beam settles by F L³/(4 E b h³) (1 + 2.4 (1 + ν)(h/L)²) (Timoshenko). With different moduli in tension and
 //! compression E is 4 E_t E_c/(√E_t + √E_c)².
 
@@ -22,7 +25,7 @@ use super::judgement::Judgement;
 use super::material::{Material, PLATEN};
 use super::piece::Piece;
 use super::record::{TestRecord, Watcher};
-use super::rig::mount;
+use super::rig::{mount, set_velocities};
 use super::settings::{Loading, Notch, TestError};
 use crate::space::Tuple;
 use crate::{Clump, Engine, Fault, Faults, Other, Particle, Space, Vector};
@@ -56,6 +59,10 @@ pub(super) fn run<S: Space>(
     let engine = &mut mounted.engine;
     let schedule = test.schedule(&mounted.scales, height, (6.0 * height, span * span), engine.time_step())?;
     let down = Vector::<S>::build(|k| if k == 1 { -schedule.speed } else { 0.0 });
+    set_velocities(engine, |x| beam.settling::<S>(x, schedule.speed))?;
+    for roller in [balls, balls + 1] {
+        engine.set_motion(roller, Vector::<S>::zero(), crate::Spin::<S>::zero())?;
+    }
     engine.set_motion(balls + 2, down, crate::Spin::<S>::zero())?;
     let marks = Marks::new(&cut, &beam);
     let (start, factor) = (marks.read(engine), beam.stress_per_force());
@@ -100,6 +107,19 @@ struct Beam {
 }
 
 impl Beam {
+    /// Velocity at a point of an elastic beam whose middle settles at `speed` (m/s): with ξ = 2|x|/L the deflection is
+    /// 1 − (3ξ² − ξ³)/2 of that of the middle between the supports and a straight line outside, and sections stay plane.
+    fn settling<S: Space>(&self, x: Vector<S>, speed: f64) -> Vector<S> {
+        let xi = 2.0 * x.at(0).abs() / self.span;
+        let (share, slope) = if xi <= 1.0 {
+            (1.0 - 0.5 * (3.0 * xi * xi - xi * xi * xi), -0.5 * (6.0 * xi - 3.0 * xi * xi))
+        } else {
+            (1.5 * (1.0 - xi), -1.5)
+        };
+        let slope = slope * 2.0 / self.span * if x.at(0) < 0.0 { -1.0 } else { 1.0 };
+        Vector::<S>::build(|k| [speed * slope * x.at(1), -speed * share, 0.0][k])
+    }
+
     /// Height above the notch (m).
     fn ligament(&self) -> f64 {
         self.height * (1.0 - self.notch.map_or(0.0, |notch| notch.depth))

@@ -181,6 +181,11 @@ impl<S: Space> Vessel<S> {
             if let Err(failure) = self.mounted.engine.advance(steps) {
                 return Ok(Isotropic::Failed(failure.into()));
             }
+            if self.mounted.bonds == 0 {
+                // The time step counts closed contacts, and those of an unbonded piece close only now.
+                let masses = self.mounted.engine.settings().masses;
+                self.mounted.engine.set_masses(masses);
+            }
             let (off, ratio) = (self.off(), unbalanced_ratio(&self.mounted.engine));
             if off <= ISOTROPIC.0 && ratio <= ISOTROPIC.1 {
                 return Ok(Isotropic::Reached);

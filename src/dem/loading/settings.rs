@@ -107,8 +107,8 @@ impl Rule {
     /// The rule that suits a kind of test.
     pub fn of(kind: TestKind) -> Self {
         match kind {
-            // The first contacts of a disc and its platens may fail long before the disc does.
-            TestKind::Brazilian => Self { lasting: 0.05, ..Self::default() },
+            // The first contacts of a disc and its platens, or of a beam and its rollers, may fail long before the piece does.
+            TestKind::Brazilian | TestKind::Bending => Self { lasting: 0.05, ..Self::default() },
             _ => Self::default(),
         }
     }

@@ -43,7 +43,7 @@ pub struct Simulate {
     #[serde(default = "stop_fraction")]
     pub stop_fraction: f64,
     /// Further strain, over the strain at the peak, for which the stress must stay below that share; 0, but 0.05 for
-    /// `brazilian`, where a platen's first contact may fail early.
+    /// `brazilian` and `bending`, where a first contact may fail early.
     pub lasting: Option<f64>,
     /// Stress that must be passed before the test may end; a hundredth of the bonds' tensile strength when not given.
     pub seating_stress: Option<Pressure>,

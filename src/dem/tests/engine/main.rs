@@ -9,6 +9,7 @@
 
 mod balance;
 mod beam;
+mod bending;
 mod bits;
 mod block;
 mod bond;
@@ -34,6 +35,7 @@ mod page;
 mod piece;
 mod rest;
 mod scaling;
+mod split;
 mod step;
 mod stiffness;
 mod strength;
