@@ -1,16 +1,16 @@
 //! What stages may look up while a campaign runs.
 
 use super::board::{Board, TaskState};
-use super::ledger::{Files, Ledger};
+use super::files::{Files, path_of};
+use super::ledger::Ledger;
 use super::task::Lost;
 use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
 use crate::stage::ledger::Kept;
 use crate::stage::rows::Rows;
-use crate::stage::{FileInput, Library, Outcome, StageError, Task};
+use crate::stage::{FileInput, Library, Memory, Outcome, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(super) struct Shelf<'a> {
@@ -19,6 +19,8 @@ pub(super) struct Shelf<'a> {
     pub(super) board: &'a Board,
     /// What is remembered of the runs of the stage that asks.
     pub(super) ledger: Option<&'a Ledger>,
+    /// What the stage that asks remembers of its last step.
+    pub(super) memory: &'a Memory,
     pub(super) notes: RefCell<Notes>,
 }
 
@@ -31,11 +33,6 @@ pub(super) struct Notes {
     pub(super) rows: Option<Arc<Rows>>,
     /// A result that could not be read.
     pub(super) lost: Option<Lost>,
-}
-
-/// Where a file named by the workflow lies.
-pub(super) fn path_of(workflow: &Workflow, path: &str) -> PathBuf {
-    workflow.path.parent().unwrap_or(Path::new("")).join(path)
 }
 
 impl Library for Shelf<'_> {
@@ -61,6 +58,10 @@ impl Library for Shelf<'_> {
             }
             TaskState::Open | TaskState::Running => None,
         }
+    }
+
+    fn memory(&self) -> Option<&Memory> {
+        Some(self.memory)
     }
 
     fn file(&self, name: &str, path: &str) -> Result<FileInput, StageError> {

@@ -1,14 +1,15 @@
 //! Where each stage of the workflow stands.
 
 use super::board::{Board, ByKey, NodeId, TaskCount, TaskState};
-use super::ledger::{Files, Ledger};
+use super::files::Files;
+use super::ledger::Ledger;
 use super::library::{Notes, Shelf};
 use super::memo::{self, Base};
 use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
 use crate::stage::rows::Rows;
-use crate::stage::{Input, Known, Library, StageError, Step};
+use crate::stage::{Input, Known, Library, Memory, StageError, Step, vary};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
 use std::collections::HashSet;
@@ -81,6 +82,8 @@ struct Place {
     /// Every node it asked for, and the one it finishes with.
     asked: Vec<NodeId>,
     files: Files,
+    /// What it worked out at its last step.
+    memory: Memory,
     /// What its memo said, when that was enough.
     remembered: Option<memo::Known>,
 }
@@ -110,6 +113,7 @@ impl Stages {
             rows: None,
             asked: Vec::new(),
             files: Vec::new(),
+            memory: Memory::default(),
             remembered: None,
         };
         Self { places: wanted.into_iter().map(place).collect(), base: memo::base(workflow), memos }
@@ -167,7 +171,8 @@ impl Stages {
     ) -> Result<(Vec<NodeId>, Option<String>), Box<Lost>> {
         let key = self.places[index].run.filter(|_| self.memos && matches!(self.places[index].state, State::Waiting));
         let ledger = key.and_then(|key| Ledger::read(workflow, store, &key));
-        let shelf = Shelf { workflow, store, board, ledger: ledger.as_ref(), notes: RefCell::default() };
+        let memory = &self.places[index].memory;
+        let shelf = Shelf { workflow, store, board, ledger: ledger.as_ref(), memory, notes: RefCell::default() };
         let step = workflow.stages[index].stage.next(&self.known(workflow, index, &shelf));
         let Notes { files, rows, lost } = shelf.notes.into_inner();
         if let Some(lost) = lost {
@@ -215,14 +220,15 @@ impl Stages {
                 key,
                 stage: &maker.name,
                 content,
+                vary: Box::new(|point, number| vary::replicate(&workflow.context, &maker.name, point, number)),
                 replicate: Box::new(|number| maker.stage.replicate(&workflow.context, number)),
                 sample: Box::new(move |point, number| {
-                    maker.stage.sample(&self.known(workflow, input, library), point, number)
+                    vary::sample(&*maker.stage, &self.known(workflow, input, library), point, number)
                 }),
             }
         };
         let inputs = workflow.stages[index].inputs.iter().map(input).collect();
-        Known { context: &workflow.context, inputs, library }
+        Known { name: &workflow.stages[index].name, context: &workflow.context, inputs, library }
     }
 
     /// Ends the stages that can end now, and keeps their memos when something was or may be run.

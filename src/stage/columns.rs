@@ -1,8 +1,7 @@
 //! From a table of runs to the statistician's sample and back: shared by every stage that analyses.
 
 use super::{Complaint, Context, StageError};
-use crate::artifact::{Artifact, Table, Values};
-use crate::unit::Unit;
+use crate::artifact::{Artifact, Table};
 use serde::{Deserialize, Serialize};
 use stats::error::Faults;
 use stats::sample::{Factor, Response, Sample};
@@ -54,11 +53,6 @@ pub(super) fn runs(artifact: &Artifact) -> Result<&Table, StageError> {
 }
 
 impl Columns {
-    /// No columns: what stands in the settings of a stage before its table is known.
-    pub(super) fn none() -> Self {
-        Self { factors: Vec::new(), responses: Vec::new(), weights: None }
-    }
-
     /// The columns of `table` that are wanted, in the table's order.
     pub(super) fn of(table: &Table, context: &Context, wanted: Wanted) -> Result<Self, StageError> {
         let present = |name: &&String| table.column(name).is_some();
@@ -117,7 +111,7 @@ impl Columns {
     /// The sample that the columns of `table` make. A response without a number is a missing row.
     pub(super) fn sample(&self, table: &Table) -> Result<Sample, StageError> {
         let factor = |own: &FactorColumn| {
-            let values = reals(table, &own.name, Some(&own.unit))?;
+            let values = table.numbers(&own.name, &own.unit)?;
             Ok(Factor {
                 name: own.name.clone(),
                 values,
@@ -127,42 +121,16 @@ impl Columns {
             })
         };
         let response = |own: &ResponseColumn| {
-            let values = reals(table, &own.name, Some(&own.unit))?;
+            let values = table.numbers(&own.name, &own.unit)?;
             let values = values.into_iter().map(|v| (!v.is_nan()).then_some(v)).collect();
             Ok(Response { name: own.name.clone(), values })
         };
         Ok(Sample {
             factors: self.factors.iter().map(factor).collect::<Result<_, StageError>>()?,
             responses: self.responses.iter().map(response).collect::<Result<_, StageError>>()?,
-            weights: self.weights.as_ref().map(|name| reals(table, name, None)).transpose()?,
+            weights: self.weights.as_ref().map(|name| table.numbers(name, "")).transpose()?,
         })
     }
-}
-
-/// The numbers of a column, converted to `unit`.
-fn reals(table: &Table, name: &str, unit: Option<&str>) -> Result<Vec<f64>, StageError> {
-    let column = table.column(name).ok_or_else(|| StageError::new(format!("the table has no column `{name}`")))?;
-    let mut values = match &column.values {
-        Values::Reals(values) => values.clone(),
-        Values::Ints(values) => values.iter().map(|&v| v as f64).collect(),
-        Values::Texts(texts) => {
-            let number = |text: &String| text.is_empty() || text.parse().is_ok_and(f64::is_finite);
-            let (row, text) = texts.iter().enumerate().find(|(_, text)| !number(text)).map_or((0, ""), |(i, t)| (i, t));
-            let message = format!("row {}: `{name}` is `{text}`, which is not a finite number", row + 1);
-            return Err(StageError::new(message).hint("leave a cell empty where a run has no value"));
-        }
-    };
-    let Some(unit) = unit.filter(|unit| *unit != column.unit) else { return Ok(values) };
-    let parse = |text: &str| Unit::parse(text).map_err(|e| StageError::new(format!("column `{name}`: {e}")));
-    let (from, to) = (parse(&column.unit)?, parse(unit)?);
-    if from.dimension != to.dimension {
-        let message = format!("column `{name}` is in `{}` where `{unit}` is declared", column.unit);
-        return Err(StageError::new(message).hint("give the column's unit in its head, as in `Ec [GPa]`"));
-    }
-    let (times, over) =
-        if from.factor >= to.factor { (from.factor / to.factor, 1.0) } else { (1.0, to.factor / from.factor) };
-    values.iter_mut().for_each(|v| *v = *v * times / over);
-    Ok(values)
 }
 
 /// The faults of a sample or a model as one error.

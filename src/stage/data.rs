@@ -9,11 +9,11 @@ use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use crate::unit::Unit;
 use design::table::MOST_RUNS;
 use schemars::JsonSchema;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 /// Settings of a `data` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Data {
     /// The CSV file, relative to the workflow.
@@ -32,10 +32,6 @@ impl Stage for Data {
     fn check(&self, _context: &super::Context) -> Vec<Complaint> {
         let empty = Complaint::new("file", "the name of the file is empty").hint("name a CSV file beside the workflow");
         if self.file.trim().is_empty() { vec![empty] } else { Vec::new() }
-    }
-
-    fn settings(&self) -> Value {
-        json!({ "file": self.file })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -109,9 +105,9 @@ mod tests {
     fn units_numbers_and_missing_cells_are_read() {
         let table = parse(b"run,Ec [GPa],remark\n1,20,a\n2,,b\n").unwrap();
         assert_eq!(table.column("Ec").unwrap().unit, "GPa");
-        let moduli = table.reals("Ec").unwrap();
+        let moduli = table.shown("Ec").unwrap().0;
         assert!(moduli[0] == 20.0 && moduli[1].is_nan());
-        assert_eq!(table.reals("remark"), None);
+        assert!(table.shown("remark").is_err());
     }
 
     #[test]

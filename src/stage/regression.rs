@@ -9,14 +9,14 @@ use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use stats::selection::Direction;
 use stats::terms::Term;
 use std::collections::BTreeMap;
 
 /// Settings of a `regression` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Regression {
     /// The stage whose runs are fitted.
@@ -100,11 +100,6 @@ impl Stage for Regression {
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
-    }
-
-    fn settings(&self) -> Value {
-        let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
-        json!({ "terms": self.terms, "select": select, "weights": self.weights, "predict": self.predict, "published": self.published })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -191,13 +191,12 @@ fn rotation<S: Space>(start: &[Vector<S>], now: &[Vector<S>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::crack::CrackGroup;
     use super::*;
     use crate::{D2, D3};
 
     fn crack<S: Space>(at: [f64; 3]) -> CrackEvent<S> {
         let (position, normal) = (Vector::<S>::build(|k| at[k]), Vector::<S>::zero());
-        CrackEvent { strain: 0.0, mode: Mode::Tension, group: CrackGroup::Mortar, position, normal, size: 1e-3 }
+        CrackEvent { strain: 0.0, mode: Mode::Tension, groups: [0; 2], position, normal, size: 1e-3 }
     }
 
     /// D = 0.1 m, r̄ = 1 mm: 80 mm in 20 cells of 4 mm.

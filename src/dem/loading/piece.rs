@@ -3,7 +3,6 @@
 //! The origin is the centre of the piece and y the axis of loading. In the plane the piece has unit thickness along z.
 //! Lengths in metres.
 
-use super::material::{AGGREGATE, MORTAR};
 use crate::genesis::region::Region;
 use crate::genesis::specimen::Specimen;
 use crate::{Clump, D2, Group, Space, Vector};
@@ -116,7 +115,7 @@ impl From<&Specimen> for Piece<D2> {
             Region::Rectangle { width, height } => Outline::Block { width, height, depth: 1.0 },
             Region::Disc { diameter } => Outline::Disc { diameter, thickness: 1.0 },
         };
-        let group = |clump: &Option<usize>| if clump.is_some() { AGGREGATE } else { MORTAR };
+        let group = |clump: &Option<usize>| Group(u8::from(clump.is_some()));
         Self {
             outline,
             centres: specimen.centres.clone(),

@@ -135,7 +135,7 @@ pub fn mount<S: Space>(
     if !fixed.is_empty() {
         engine.fix(&fixed, true, true)?;
     }
-    engine.install_bonds(material.bonding.gap * piece.mean_radius(), seed)?;
+    engine.install_bonds(material.gap * piece.mean_radius(), seed)?;
     engine.absorb_overlaps();
     let (bonds, scales) = (engine.bond_count(), scales(&engine, &table, piece.density));
     Ok(Mounted { engine, scales, bonds })

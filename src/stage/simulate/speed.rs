@@ -3,12 +3,13 @@
 use crate::unit::{Rate, Velocity};
 use dem::loading::speed::Speed;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Serialize;
 use serde::de::{self, Deserialize, Deserializer, MapAccess};
 use std::borrow::Cow;
 use std::fmt;
 
 /// How fast a test is driven: `"0.02 m/s"`, `{ strain_rate = "0.1 s^-1" }` or `{ transits = 100 }`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlatenSpeed(pub Speed);
 
 /// The keys of its table.

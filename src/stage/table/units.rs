@@ -3,7 +3,7 @@
 //! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`; another quantity in pascal the
 //! prefix that leaves one to three digits before the point, a length below a decimetre millimetres.
 
-use crate::unit::Unit;
+use crate::unit::Conversion;
 use figure::column::{Column, Digits, Values};
 use std::collections::BTreeMap;
 
@@ -27,14 +27,15 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
         return;
     };
     let rows = names.iter().zip(&units).zip(&values);
-    let shown: Vec<(String, f64)> = rows.map(|((name, unit), &value)| one(wanted.get(name), unit, value)).collect();
+    let shown: Vec<(String, Conversion)> =
+        rows.map(|((name, unit), &value)| one(wanted.get(name), unit, value)).collect();
     for column in columns {
         match &mut column.values {
             Values::Words(words) if column.key == "unit" => {
                 words.iter_mut().zip(&shown).for_each(|(word, (unit, _))| word.clone_from(unit));
             }
             Values::Reals(values) if column.key == "value" || column.key == "value published" => {
-                values.iter_mut().zip(&shown).for_each(|(value, (_, factor))| *value /= factor);
+                values.iter_mut().zip(&shown).for_each(|(value, (_, shown))| *value = shown.of(*value));
                 if let Digits::Significant(digits) = column.digits {
                     column.digits = Digits::Unlike(digits);
                 }
@@ -44,20 +45,18 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
     }
 }
 
-/// The unit to show a value in, and what one of it is in the value's own unit.
-fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, f64) {
-    let as_it_is = || (unit.to_owned(), 1.0);
-    let Some(wanted) = wanted else {
-        return match value.abs() {
-            size if unit == "Pa" && (1e3..1e6).contains(&size) => ("kPa".into(), 1e3),
-            size if unit == "Pa" && (1e6..1e9).contains(&size) => ("MPa".into(), 1e6),
-            size if unit == "Pa" && size >= 1e9 => ("GPa".into(), 1e9),
-            size if unit == "m" && size < 0.1 => ("mm".into(), 1e-3),
-            _ => as_it_is(),
-        };
+/// The unit to show a value in, and the conversion to it; its own where it cannot be shown in the one that is wanted.
+fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, Conversion) {
+    let prefixed = match value.abs() {
+        size if unit == "Pa" && (1e3..1e6).contains(&size) => "kPa",
+        size if unit == "Pa" && (1e6..1e9).contains(&size) => "MPa",
+        size if unit == "Pa" && size >= 1e9 => "GPa",
+        size if unit == "m" && size < 0.1 => "mm",
+        _ => unit,
     };
-    match (Unit::parse(unit), Unit::parse(wanted)) {
-        (Ok(from), Ok(to)) if from.dimension == to.dimension => (wanted.clone(), to.factor / from.factor),
-        _ => as_it_is(),
+    let shown = wanted.map_or(prefixed, String::as_str);
+    match Conversion::between(unit, shown) {
+        Ok(conversion) => (shown.to_owned(), conversion),
+        Err(_) => (unit.to_owned(), Conversion::NONE),
     }
 }

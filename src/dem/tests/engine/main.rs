@@ -9,14 +9,12 @@
 
 mod balance;
 mod beam;
-mod bending;
 mod bits;
 mod block;
 mod bond;
 mod case;
 mod changes;
 mod clump;
-mod confined;
 mod curve;
 mod disc;
 mod energy;
@@ -32,10 +30,8 @@ mod measuring;
 mod memory;
 mod packing;
 mod page;
-mod piece;
 mod rest;
 mod scaling;
-mod split;
 mod step;
 mod stiffness;
 mod strength;

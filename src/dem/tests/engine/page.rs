@@ -40,9 +40,6 @@ fn families() -> Vec<Family> {
         crate::scaling::family(),
         crate::energy::family(),
         crate::curve::family(),
-        crate::split::family(),
-        crate::confined::family(),
-        crate::bending::family(),
         crate::genesis::family(),
     ]
 }
