@@ -5,7 +5,8 @@
 
 use crate::genesis::region::Region;
 use crate::genesis::specimen::Specimen;
-use crate::{Clump, D2, Group, Space, Vector};
+use crate::space::Tuple;
+use crate::{Clump, Group, Space, Spin, Vector};
 use std::f64::consts::FRAC_PI_4;
 
 /// Outline of a test piece.
@@ -109,33 +110,38 @@ impl<S: Space> Piece<S> {
     }
 }
 
-impl From<&Specimen> for Piece<D2> {
-    fn from(specimen: &Specimen) -> Self {
-        let outline = match specimen.region {
-            Region::Rectangle { width, height } => Outline::Block { width, height, depth: 1.0 },
-            Region::Disc { diameter } => Outline::Disc { diameter, thickness: 1.0 },
-        };
-        let group = |clump: &Option<usize>| Group(u8::from(clump.is_some()));
+impl From<Region> for Outline {
+    fn from(region: Region) -> Self {
+        match region {
+            Region::Rectangle { width, height } => Self::Block { width, height, depth: 1.0 },
+            Region::Box { width, height, depth } => Self::Block { width, height, depth },
+            Region::Disc { diameter } => Self::Disc { diameter, thickness: 1.0 },
+            Region::ThickDisc { diameter, depth } => Self::Disc { diameter, thickness: depth },
+            Region::Cylinder { diameter, height } => Self::Column { diameter, height },
+        }
+    }
+}
+
+impl<S: Space> From<&Specimen<S>> for Piece<S> {
+    fn from(specimen: &Specimen<S>) -> Self {
         Self {
-            outline,
+            outline: specimen.region.into(),
             centres: specimen.centres.clone(),
             radii: specimen.radii.clone(),
-            groups: specimen.clump_of_balls().iter().map(group).collect(),
+            groups: specimen.groups.clone(),
             density: specimen.density,
             clumps: specimen.clumps.iter().map(rigid).collect(),
         }
     }
 }
 
-fn rigid(clump: &crate::genesis::clump::Clump) -> Clump<D2> {
-    let mut inertia = [[0.0; 3]; 3];
-    inertia[2][2] = clump.inertia;
+fn rigid<S: Space>(clump: &crate::genesis::clump::Clump<S>) -> Clump<S> {
     Clump {
         pebbles: clump.pebbles.clone(),
         centre: clump.centre,
-        velocity: [0.0; 2],
-        spin: [0.0],
+        velocity: Vector::<S>::zero(),
+        spin: Spin::<S>::zero(),
         mass: clump.mass,
-        inertia,
+        inertia: clump.inertia,
     }
 }

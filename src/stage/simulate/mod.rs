@@ -12,6 +12,9 @@
 //! `uniaxial` gives `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus around half of it; strain
 //! ratio there), `tension` `sigma_t`, `E`, `nu`, `brazilian` `sigma_t`, `biaxial` and `triaxial` `q`, `sigma_1`, `sigma_3`,
 //! `bending` `f_b`, and each a few more. What is computed and why: [`dem::loading`].
+//!
+//! `material` names a `[material.NAME]`, or a stage that gives one ([`material`](super::material)): a `formula` stage whose
+//! responses are microparameters, or a calibration, of whose solution `set` picks the target set.
 
 mod config;
 mod loading;
@@ -22,12 +25,14 @@ pub use config::{BondConfig, PackingChoice, Simulate};
 pub use speed::PlatenSpeed;
 
 use super::rows::{self, GATHER};
+use super::specimen::Loaded;
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError, Step, Task,
     Work,
 };
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use config::Params;
+use dem::Space;
 use dem::loading::curve::Sample;
 use dem::loading::piece::Piece;
 use math::random::Stream;
@@ -60,7 +65,7 @@ impl Stage for Simulate {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { varies: true, ..Sketch::default() }
+        Sketch { material: Some(self.material.clone()), varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -68,14 +73,20 @@ impl Stage for Simulate {
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
-        let material = self.contacts(known.context, point)?;
+        let given = self.given(known)?;
+        // What a row varies stands above what was calibrated.
+        let mut point = point.clone();
+        for (name, value) in given.point {
+            point.entry(name).or_insert(value);
+        }
+        let material = self.contacts(known.context, &given.material, &point)?;
         let specimen = known.one("specimen")?;
         let packing = match self.packing {
             PackingChoice::Shared => number,
-            PackingChoice::Own => own_packing(point, number),
+            PackingChoice::Own => own_packing(&point, number),
         };
         let task = Task::new("simulate", json!(Params { material, test: self.spec() }));
-        if let Some(make) = (specimen.vary)(point, packing)? {
+        if let Some(make) = (specimen.vary)(&point, packing)? {
             return Ok(task.after("specimen", Arc::new(make)).seed(number));
         }
         if packing == 1 {
@@ -109,11 +120,17 @@ impl Kind for Simulate {
 const REPORT_EVERY: usize = 50;
 
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
+    match super::specimen::load(job.input("specimen")?)? {
+        Loaded::Plane(specimen) => tested(job, &Piece::from(&specimen)),
+        Loaded::Solid(specimen) => tested(job, &Piece::from(&specimen)),
+    }
+}
+
+/// Runs the test on a piece, in the plane or in the solid.
+fn tested<S: Space>(job: &Job, piece: &Piece<S>) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let specimen = super::specimen::load(job.input("specimen")?)?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
-    let piece = Piece::from(&specimen);
-    for warning in params.test.warnings(&piece, &params.material).map_err(|faults| fail(&faults))? {
+    for warning in params.test.warnings(piece, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));
     }
     let mut seen = 0;
@@ -126,7 +143,7 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
         job.watch()
     };
     let seed = job.seed.unwrap_or_default();
-    let record = params.test.run(&piece, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
+    let record = params.test.run(piece, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
     if record.run.interrupted {
         return Err(Failure::Stopped);
     }
