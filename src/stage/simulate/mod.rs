@@ -73,6 +73,7 @@ impl Stage for Simulate {
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
+        self.concerned(known, point)?;
         let given = self.given(known)?;
         // What a row varies stands above what was calibrated.
         let mut point = point.clone();
@@ -95,6 +96,26 @@ impl Stage for Simulate {
         let make = (specimen.replicate)(packing)
             .ok_or_else(|| StageError::new(format!("stage `{}` cannot make replicates", specimen.stage)))?;
         Ok(task.after("specimen", Arc::new(make)).seed(number))
+    }
+}
+
+impl Simulate {
+    /// Refuses a row that varies what is neither of this stage, nor of its specimen, nor of its material.
+    fn concerned(&self, known: &Known, point: &Point) -> Result<(), StageError> {
+        for name in point.keys() {
+            let paths = known.context.factors.get(name).map_or(&[][..], |factor| &factor.sets);
+            let mine = |path: &String| {
+                let stage = path.split_once('.').map_or("", |(stage, _)| stage);
+                !known.context.sets_stage(path) || stage == known.name || stage == self.specimen
+            };
+            if !paths.is_empty() && !paths.iter().any(mine) {
+                let message = format!("factor `{name}` sets `{}`, which this test does not use", paths.join("`, `"));
+                let hint =
+                    format!("it tests `{}`; let the factor set that, or leave it out of the design", self.specimen);
+                return Err(StageError::new(message).hint(hint));
+            }
+        }
+        Ok(())
     }
 }
 
