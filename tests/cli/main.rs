@@ -14,3 +14,4 @@ mod reruns;
 mod space;
 mod stop;
 mod trust;
+mod vocabulary;
