@@ -32,6 +32,12 @@ impl Dimension {
         Self { length: Power::whole(length), mass: Power::whole(mass), time: Power::whole(time) }
     }
 
+    /// How much one unit of this dimension grows when metre, kilogram and second shrink by these factors.
+    pub fn scale(self, bases: [f64; 3]) -> f64 {
+        let [length, mass, time] = bases;
+        self.length.of(length) * self.mass.of(mass) * self.time.of(time)
+    }
+
     /// `self · other^power`; `None` when an exponent has no small fraction.
     fn times(self, other: Self, power: Power) -> Option<Self> {
         let one = |a: Power, b: Power| a.plus(b.times(power)?);

@@ -1,13 +1,21 @@
-//! `kind = "data"`: a CSV file with units stands wherever a simulated table stands.
+//! `kind = "data"`: a table from a CSV file or a workbook stands wherever a simulated table stands.
 //!
-//! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`. A column whose cells are all
-//! numbers (or empty: missing) holds reals, any other holds texts. The result is an artifact `results` with the table `runs`, as
-//! `simulate` gives it.
+//! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or `sigma_c/MPa`.
+//! A column whose cells are all numbers (or missing) holds reals, any other holds texts. The result is an artifact
+//! `results` with the table `runs`, as `simulate` gives it, and the table `notes`, which says how the file was read where
+//! that was detected and is not the plain way (UTF-8, commas between cells, decimal points).
 
+mod cells;
+mod dialect;
+mod workbook;
+
+use super::notes::Notes;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
-use crate::unit::Unit;
+use cells::Cells;
 use design::table::MOST_RUNS;
+use dialect::Dialect;
+pub use dialect::{Decimal, Delimiter, Encoding};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -16,8 +24,30 @@ use serde_json::{Value, json};
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Data {
-    /// The CSV file, relative to the workflow.
+    /// The file, relative to the workflow: CSV, or a workbook of Excel or LibreOffice (xlsx, xls, ods).
     pub file: String,
+    /// What stands between cells; detected when not given.
+    pub delimiter: Option<Delimiter>,
+    /// What stands before decimals; detected when not given.
+    pub decimal: Option<Decimal>,
+    /// How letters are written as bytes; detected when not given.
+    pub encoding: Option<Encoding>,
+    /// Words that stand for no value; `NA`, `N/A`, `n/a`, `NaN`, `nan`, `null`, `-` and `–` when not given.
+    pub missing: Option<Vec<String>>,
+    /// The sheet of a workbook; its only one when not given.
+    pub sheet: Option<String>,
+}
+
+impl Data {
+    fn dialect(&self) -> Dialect {
+        Dialect {
+            delimiter: self.delimiter,
+            decimal: self.decimal,
+            encoding: self.encoding,
+            missing: self.missing.clone(),
+            sheet: self.sheet.clone(),
+        }
+    }
 }
 
 impl Stage for Data {
@@ -35,11 +65,11 @@ impl Stage for Data {
     }
 
     fn settings(&self) -> Value {
-        json!({ "file": self.file })
+        json!({ "file": self.file, "how": self.dialect() })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
-        let mut task = Task::new("data", json!({}));
+        let mut task = Task::new("data", json!(self.dialect()));
         task.files.push(known.library.file("table", &self.file)?);
         Ok(Step::Finish(task))
     }
@@ -47,79 +77,84 @@ impl Stage for Data {
 
 impl Kind for Data {
     const NAME: &'static str = "data";
-    const ABOUT: &'static str = "a table from a CSV file with units";
+    const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    const WORKS: &'static [Work] = &[Work { name: "data", version: 1, run: read }];
+    // 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    const WORKS: &'static [Work] = &[Work { name: "data", version: 2, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
-    let table = parse(&job.file("table")?)?;
-    Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
+    let (table, said) = parse_as(&job.file("table")?, &job.params()?)?;
+    let mut root = Group::new().with("runs", Node::Table(table));
+    if let Some(said) = said {
+        let mut notes = Notes::default();
+        notes.add("", said);
+        root.put("notes", Node::Table(notes.table()));
+    }
+    Ok(Artifact::of(ArtifactKind::RESULTS, root))
 }
 
-/// Reads the whole table, or says what is wrong with it.
+/// Reads the whole table in whatever way it is written, or says what is wrong with it.
 pub(super) fn parse(bytes: &[u8]) -> Result<Table, StageError> {
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
-    let fail = |e: csv::Error| StageError::new(e.to_string()).hint("every line must have the cells of the first line");
-    let heads: Vec<String> = reader.headers().map_err(fail)?.iter().map(str::to_owned).collect();
+    parse_as(bytes, &Dialect::default()).map(|(table, _)| table)
+}
+
+/// Reads the table as `how` fixes it; the second is what was detected, where that is not plain CSV.
+fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), StageError> {
+    let (lines, decimal, said) = if workbook::is_workbook(bytes) {
+        (workbook::lines(bytes, how.sheet.as_deref())?, Decimal::Point, None)
+    } else {
+        text_lines(bytes, how)?
+    };
+    let mut lines = lines.into_iter();
+    let heads = lines.next().unwrap_or_default();
     let mut cells = vec![Vec::new(); heads.len()];
-    for (row, record) in reader.records().enumerate() {
+    for (row, line) in lines.enumerate() {
         if row == MOST_RUNS {
             return Err(StageError::new(format!("the table has more than {MOST_RUNS} rows")).hint("name a part of it"));
         }
-        for (column, cell) in cells.iter_mut().zip(record.map_err(fail)?.iter()) {
-            column.push(cell.to_owned());
+        for (column, cell) in cells.iter_mut().zip(line) {
+            column.push(cell);
         }
     }
     if cells.first().is_none_or(Vec::is_empty) {
         return Err(StageError::new("the file has no rows below its first line"));
     }
-    let mut table = Table::default();
-    for (head, cells) in heads.iter().zip(cells) {
-        table = column(table, head, cells)?;
-    }
-    Ok(table)
+    let how = Cells { decimal, missing: how.missing.as_deref() };
+    let table = heads
+        .iter()
+        .zip(cells)
+        .try_fold(Table::default(), |table, (head, cells)| cells::column(table, head.trim(), cells, &how))?;
+    Ok((table, said))
 }
 
-fn column(table: Table, head: &str, cells: Vec<String>) -> Result<Table, StageError> {
-    let (name, unit) = match head.split_once('[') {
-        Some((name, unit)) => (name.trim(), unit.trim_end_matches(']').trim()),
-        None => (head, ""),
-    };
-    if name.is_empty() || table.column(name).is_some() {
-        return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
+/// The lines of a text file cell by cell, its decimal sign, and what was detected.
+type TextLines = (Vec<Vec<String>>, Decimal, Option<String>);
+
+fn text_lines(bytes: &[u8], how: &Dialect) -> Result<TextLines, StageError> {
+    let (text, encoding) = dialect::decode(bytes, how.encoding)?;
+    let delimiter = how.delimiter.unwrap_or_else(|| dialect::delimiter(&text));
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter.byte())
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .has_headers(false)
+        .from_reader(text.as_bytes());
+    let fail = |e: csv::Error| StageError::new(e.to_string()).hint("every line must have the cells of the first line");
+    let mut lines: Vec<Vec<String>> = Vec::new();
+    for record in reader.records().take(MOST_RUNS + 2) {
+        lines.push(record.map_err(fail)?.iter().map(str::to_owned).collect());
     }
-    Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
-    let numbers: Option<Vec<f64>> = cells
-        .iter()
-        .map(|cell| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|v: &f64| v.is_finite()) })
-        .collect();
-    Ok(match numbers {
-        Some(values) => table.reals_column(name, unit, "", values),
-        None => table.texts_column(name, "", cells),
-    })
+    let cells = lines.iter().skip(1).flatten().map(String::as_str);
+    let decimal = how.decimal.map_or_else(|| dialect::decimal(cells), Ok)?;
+    let said = dialect::said(
+        encoding,
+        Some(delimiter).filter(|_| how.delimiter.is_none()),
+        Some(decimal).filter(|_| how.decimal.is_none()),
+    );
+    Ok((lines, decimal, said))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn units_numbers_and_missing_cells_are_read() {
-        let table = parse(b"run,Ec [GPa],remark\n1,20,a\n2,,b\n").unwrap();
-        assert_eq!(table.column("Ec").unwrap().unit, "GPa");
-        let moduli = table.reals("Ec").unwrap();
-        assert!(moduli[0] == 20.0 && moduli[1].is_nan());
-        assert_eq!(table.reals("remark"), None);
-    }
-
-    #[test]
-    fn faults_name_line_or_column() {
-        let message = |text: &[u8]| parse(text).unwrap_err().message;
-        assert!(message(b"a,b\n1\n").contains("line: 2"), "{}", message(b"a,b\n1\n"));
-        assert!(message(b"a [ell]\n1\n").contains("`a [ell]`"));
-        assert!(message(b"a,a\n1,2\n").contains("name of its own"));
-        assert!(message(b"a\n").contains("no rows"));
-    }
-}
+mod tests;

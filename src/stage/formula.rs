@@ -81,11 +81,27 @@ impl MakeOperators<f64> for Operators {
 
 literal_matcher_from_pattern!(Number, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
 
-fn parse(text: &str) -> Result<FlatEx<f64, Operators, Number>, String> {
+/// A formula that was read.
+pub(super) struct Parsed(FlatEx<f64, Operators, Number>);
+
+impl Parsed {
+    /// The names that it uses, in the order in which [`Self::value`] takes their values.
+    pub(super) fn names(&self) -> &[String] {
+        self.0.var_names()
+    }
+
+    /// Its value.
+    pub(super) fn value(&self, values: &[f64]) -> Result<f64, String> {
+        self.0.eval(values).map_err(|e| e.to_string())
+    }
+}
+
+/// Reads a formula, or says what is wrong with it.
+pub(super) fn parse(text: &str) -> Result<Parsed, String> {
     if let Some(place) = ambiguous_power(text) {
         return Err(format!("`{text}`: a minus before a power at `{}`; write -(a^2) or (-a)^2", &text[place..]));
     }
-    FlatEx::parse(text).map_err(|e| format!("`{text}` is not a formula: {e}"))
+    FlatEx::parse(text).map(Parsed).map_err(|e| format!("`{text}` is not a formula: {e}"))
 }
 
 /// Place of a sign that stands directly before a power: mathematics reads `-a^2` as −(a²), the library as (−a)².
@@ -142,7 +158,7 @@ impl Stage for Formula {
             match parse(&response.value) {
                 Err(why) => found.push(Complaint::new(&at("value"), why)),
                 Ok(formula) => {
-                    for unknown in formula.var_names().iter().filter(|var| !names.contains(var)) {
+                    for unknown in formula.names().iter().filter(|var| !names.contains(var)) {
                         let hint = format!("known are {}", names.join(", "));
                         found.push(Complaint::new(&at("value"), format!("`{unknown}` is not a value")).hint(hint));
                     }
@@ -187,7 +203,7 @@ impl Formula {
     /// Responses and the names that their formulas use.
     fn named(&self) -> Vec<(String, String)> {
         let of = |(name, response): (&String, &Response)| {
-            let vars = parse(&response.value).map(|formula| formula.var_names().to_vec()).unwrap_or_default();
+            let vars = parse(&response.value).map(|formula| formula.names().to_vec()).unwrap_or_default();
             vars.into_iter().map(|var| (name.clone(), var)).collect::<Vec<_>>()
         };
         self.responses.iter().flat_map(of).collect()
@@ -216,9 +232,9 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     for (name, response) in &params.responses {
         let formula = parse(&response.value).map_err(StageError::new)?;
         let values =
-            formula.var_names().iter().map(|var| params.values.get(var).copied().ok_or_else(|| unset(name, var)));
+            formula.names().iter().map(|var| params.values.get(var).copied().ok_or_else(|| unset(name, var)));
         let value =
-            formula.eval(&values.collect::<Result<Vec<_>, _>>()?).map_err(|e| StageError::new(e.to_string()))?;
+            formula.value(&values.collect::<Result<Vec<_>, _>>()?).map_err(StageError::new)?;
         responses.push((name.as_str(), value * (1.0 + response.scatter * stream.normal()), response.unit.as_str()));
     }
     let undefined = responses.iter().find(|(_, value, _)| !value.is_finite());
@@ -256,14 +272,14 @@ mod tests {
             ("10 - a + 1", 6.0),
         ] {
             assert_eq!(
-                parse(text).unwrap().eval(&[5.0][..parse(text).unwrap().var_names().len()]).unwrap(),
+                parse(text).unwrap().value(&[5.0][..parse(text).unwrap().names().len()]).unwrap(),
                 value,
                 "{text}"
             );
         }
         assert!(parse("a +* 2").is_err());
         for unclear in ["-a^2", "3 * -sqrt(a)^2", "-(a + (1))^2 + 1", "max(-a^2, 1)"] {
-            assert!(parse(unclear).unwrap_err().contains("a minus before a power"), "{unclear}");
+            assert!(parse(unclear).err().unwrap().contains("a minus before a power"), "{unclear}");
         }
     }
 }

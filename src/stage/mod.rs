@@ -39,6 +39,7 @@ mod columns;
 pub mod command;
 mod context;
 pub mod data;
+mod derived;
 pub mod design;
 pub mod figure;
 pub mod fitted;
