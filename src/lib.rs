@@ -33,6 +33,20 @@
 //! 3. The text of a task whose inputs are known is hashed: its key. The store has a result for the key, or it runs.
 //! 4. A worker computes the artifact; the store writes it under the hash of its values and records key → object.
 //! 5. Keys use the content of inputs, so an equal result stops the wave; equal tasks are one, wherever they come from.
+//!
+//! # What may never happen
+//! * Two results for one task text. Nothing in a result comes from a clock, a host, a thread, an order of completion or a
+//!   locale. Sums keep their order; elementary functions are those of [`math`].
+//! * A result that depends on what else lies in the store, or on anything but the task text, its inputs and its files.
+//! * A file of the store that is changed or replaced. Files are written under another name, checked, and renamed; only
+//!   `flow store gc` deletes.
+//! * An object that is decoded before its size and digest were compared with its record.
+//! * A number that passes from a file, a command line or an artifact into a computation without its unit.
+//! * A domain crate that reads a file, prints, asks for the time or draws a random number without a seed it was given.
+//! * Printing anywhere but in [`cli`].
+//! * An external program that a workflow does not name.
+//! * Lost rows, failed runs or unmet targets that are not said where the numbers are read.
+//! * A panic on anything that a person, a file or a disk supplies. `panic!("BUG: …")` marks a broken invariant of ours.
 
 pub mod artifact;
 pub mod cli;

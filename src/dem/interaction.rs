@@ -118,6 +118,13 @@ pub struct ContactBond {
     pub shear_break: ShearBreak,
 }
 
+impl ContactBond {
+    /// A bond with its strengths (Pa), without scatter.
+    pub fn new(tensile_strength: f64, shear_strength: f64) -> Self {
+        Self { tensile_strength, shear_strength, deviation: 0.0, shear_break: ShearBreak::default() }
+    }
+}
+
 /// Stiffness of the bonding cement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BondStiffness {
@@ -259,6 +266,19 @@ impl Stiffness {
 }
 
 impl ParallelBond {
+    /// A bond of the full radius, with its modulus (Pa), k̄_n / k̄_s and strengths (Pa): no angle of friction, no scatter.
+    pub fn new(modulus: f64, ratio: f64, tensile_strength: f64, cohesion: f64) -> Self {
+        Self {
+            radius_multiplier: 1.0,
+            stiffness: BondStiffness::Modulus { modulus, ratio },
+            tensile_strength,
+            cohesion,
+            friction_angle: 0.0,
+            moment_factor: 1.0,
+            deviation: 0.0,
+        }
+    }
+
     /// Section of the cement, m².
     pub fn section<S: Space>(&self, radii: [f64; 2]) -> f64 {
         S::section(self.radius_multiplier * radii[0].min(radii[1]))

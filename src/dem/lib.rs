@@ -24,21 +24,39 @@
 //! A `watch` that reads walls and a few gauges every 10–100 steps costs nothing that can be measured; `contacts()` walks
 //! the whole list.
 //!
+//! A bonded block in compression, until it breaks (`examples/` has it in the plane and in space, with its closed forms):
+//!
 //! ```
 //! use dem::*;
-//! let (grain, platen) = (Group(0), Group(1));
-//! let law = Interaction::unbonded(Linear::direct(1e6, 5e5, 0.5));
-//! let wall = |point, normal, velocity| Wall { point, normal, motion: Motion::Velocity(velocity), group: platen };
-//! let model: Model<D2> = Model {
-//!     particles: vec![Particle::ball([0.0, 0.5], 0.5, 2000.0, grain), Particle::ball([0.0, 1.5], 0.5, 2000.0, grain)],
-//!     clumps: vec![],
-//!     walls: vec![wall([0.0, 0.0], [0.0, 1.0], [0.0, 0.0]), wall([0.0, 2.0], [0.0, -1.0], [0.0, -0.001])],
-//!     contacts: ContactTable::new().with(grain, grain, law).with(grain, platen, law),
-//!     settings: Settings::default(),
+//! let (grain, platen, radius, modulus) = (Group(0), Group(1), 0.01, 20e9);
+//! let pitch = 3_f64.sqrt() * radius; // of the rows of a hexagonal lattice
+//! let centre = |k: usize| [radius * (2 * (k % 8) + (k / 8) % 2) as f64, radius + pitch * (k / 8) as f64];
+//! let height = 2.0 * radius + 15.0 * pitch;
+//! let wall = |y, up: f64| Wall {
+//!     point: [0.0, y],
+//!     normal: [0.0, up],
+//!     motion: Motion::Velocity([0.0, 0.05 * up]), // m/s
+//!     group: platen,
 //! };
-//! let mut engine = Engine::new(&model)?;
-//! engine.run(1000, 100, |_| Watch::Continue)?;
-//! assert!(engine.wall_force(1)[1] > 0.0);
+//! let bond = Bond::Parallel(ParallelBond::new(modulus, 2.0, 20e6, 30e6));
+//! let mut engine = Engine::new(&Model {
+//!     particles: (0..8 * 16).map(|k| Particle::<D2>::ball(centre(k), radius, 2500.0, grain)).collect(),
+//!     clumps: vec![],
+//!     walls: vec![wall(0.0, 1.0), wall(height, -1.0)],
+//!     contacts: ContactTable::new()
+//!         .with(grain, grain, Interaction { linear: Linear::modulus(modulus, 2.0, 0.5), bond })
+//!         .with(grain, platen, Interaction::unbonded(Linear::modulus(modulus, 2.0, 0.0))),
+//!     settings: Settings::default(),
+//! })?;
+//! engine.install_bonds(1e-6 * radius, 1)?; // bonds what touches; the seed matters when strengths scatter
+//! let mut peak = 0.0_f64;
+//! let end = engine.run(100_000, 20, |engine| {
+//!     let stress = engine.wall_force(1)[1] / (16.0 * radius); // Pa; compression pushes the upper platen up
+//!     peak = peak.max(stress);
+//!     if stress < 0.7 * peak && engine.cracks().len() > 10 { Watch::Stop } else { Watch::Continue }
+//! })?;
+//! assert_eq!(end, Ended::Stopped);
+//! assert!(peak > 20e6 && engine.cracks().iter().any(|crack| crack.mode == measure::Mode::Shear));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
