@@ -5,6 +5,7 @@ use super::common::{Campaign, provenance, system};
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::plan::Workflow;
 use crate::run::{Report, StageReport, StageStatus, decide};
+use crate::stage::units::presented;
 use crate::store::{ObjectId, Store};
 use clap::Args;
 use math::elementary::log10;
@@ -91,7 +92,7 @@ impl Show {
             out!("{}", store.path(&object).display());
             return Ok(Exit::Done);
         }
-        self.values(what, &store, &object)
+        self.values(what, &store, &object, &workflow)
     }
 
     /// Why there is nothing to show.
@@ -112,8 +113,9 @@ impl Show {
         }
     }
 
-    fn values(&self, what: &str, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
-        let artifact = store.get(&object.content).map_err(|e| system(&e))?;
+    fn values(&self, what: &str, store: &Store, object: &ObjectId, workflow: &Workflow) -> Result<Exit, Exit> {
+        let stored = store.get(&object.content).map_err(|e| system(&e))?;
+        let artifact = presented(&stored, &workflow.context);
         let tables = self.chosen(what, &artifact)?;
         if self.json {
             let value = match &self.table {

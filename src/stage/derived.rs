@@ -1,6 +1,7 @@
 //! Formulas of factors as columns: what a term such as `scn/(1+ratio)` stands for, with its unit.
 //!
-//! A formula is computed in SI units and shown in the unit of the first factor of the same dimension, or in SI units. Its
+//! A formula is computed in SI units and shown in the unit of a factor of the same dimension (the first in the alphabet), or in
+//! SI units. Its
 //! dimension is found by what the formula does when lengths, masses and times are measured in other units: a formula that
 //! adds quantities of different kinds, or takes the exponential of one, changes by more than a factor, and is refused.
 
@@ -57,7 +58,8 @@ impl Derived {
     pub(super) fn of(name: &str, unit_of: impl Fn(&str) -> Option<String>) -> Result<Self, StageError> {
         let formula = parse(name).map_err(StageError::new)?;
         let factor = |own: &String| {
-            let unit = unit_of(own).ok_or_else(|| StageError::new(format!("`{name}` names `{own}`, which is no factor")))?;
+            let unit =
+                unit_of(own).ok_or_else(|| StageError::new(format!("`{name}` names `{own}`, which is no factor")))?;
             Ok((own.clone(), unit))
         };
         let factors = formula.names().iter().map(factor).collect::<Result<Vec<_>, StageError>>()?;
@@ -170,7 +172,7 @@ mod tests {
             ("exp(-ratio)", ""),
             ("E*R", "kg*s^-2"),
             ("sqrt(R)", "m^0.5"),
-            ("max(scn, E)", "MPa"),
+            ("max(scn, E)", "GPa"),
         ] {
             assert_eq!(Derived::of(text, unit).unwrap().unit, wanted, "{text}");
         }

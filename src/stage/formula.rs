@@ -231,10 +231,8 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     let mut responses = Vec::new();
     for (name, response) in &params.responses {
         let formula = parse(&response.value).map_err(StageError::new)?;
-        let values =
-            formula.names().iter().map(|var| params.values.get(var).copied().ok_or_else(|| unset(name, var)));
-        let value =
-            formula.value(&values.collect::<Result<Vec<_>, _>>()?).map_err(StageError::new)?;
+        let values = formula.names().iter().map(|var| params.values.get(var).copied().ok_or_else(|| unset(name, var)));
+        let value = formula.value(&values.collect::<Result<Vec<_>, _>>()?).map_err(StageError::new)?;
         responses.push((name.as_str(), value * (1.0 + response.scatter * stream.normal()), response.unit.as_str()));
     }
     let undefined = responses.iter().find(|(_, value, _)| !value.is_finite());

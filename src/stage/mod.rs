@@ -56,6 +56,7 @@ pub mod simulate;
 pub mod specimen;
 pub mod table;
 mod task;
+pub mod units;
 pub mod verify;
 
 pub use context::{Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler};

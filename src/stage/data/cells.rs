@@ -37,7 +37,7 @@ fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
         return Ok((name.trim(), unit));
     }
     let known = |unit: &str| !unit.is_empty() && unit != "1" && Unit::parse(unit).is_ok();
-    let round = head.strip_suffix(')').and_then(|rest| rest.split_once('('));
+    let round = head.strip_suffix(')').and_then(|rest| rest.split_once('(')).filter(|(name, _)| !name.ends_with('/'));
     // the first stroke: a unit may hold another, as in `v / m/s`
     let stroke = head.split_once('/');
     let both = [round, stroke].into_iter().flatten().map(|(name, unit)| (name.trim(), unit.trim()));

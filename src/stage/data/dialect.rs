@@ -46,7 +46,7 @@ pub enum Encoding {
 
 /// How a file is read; what is `None` is detected.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Dialect {
+pub(super) struct Dialect {
     /// What stands between cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delimiter: Option<Delimiter>,

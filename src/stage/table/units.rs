@@ -1,9 +1,9 @@
 //! Quantities told row by row (`value,unit`, in SI units) in the units that people read them in.
 //!
-//! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`; another quantity in pascal the
-//! prefix that leaves one to three digits before the point, a length below a decimetre millimetres.
+//! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`, another quantity that of the
+//! field ([`super::super::units`]).
 
-use crate::unit::Unit;
+use super::super::units::{scale, shown_unit};
 use figure::column::{Column, Digits, Values};
 use std::collections::BTreeMap;
 
@@ -46,18 +46,7 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
 
 /// The unit to show a value in, and what one of it is in the value's own unit.
 fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, f64) {
-    let as_it_is = || (unit.to_owned(), 1.0);
-    let Some(wanted) = wanted else {
-        return match value.abs() {
-            size if unit == "Pa" && (1e3..1e6).contains(&size) => ("kPa".into(), 1e3),
-            size if unit == "Pa" && (1e6..1e9).contains(&size) => ("MPa".into(), 1e6),
-            size if unit == "Pa" && size >= 1e9 => ("GPa".into(), 1e9),
-            size if unit == "m" && size < 0.1 => ("mm".into(), 1e-3),
-            _ => as_it_is(),
-        };
-    };
-    match (Unit::parse(unit), Unit::parse(wanted)) {
-        (Ok(from), Ok(to)) if from.dimension == to.dimension => (wanted.clone(), to.factor / from.factor),
-        _ => as_it_is(),
-    }
+    let shown = shown_unit(wanted, unit, value);
+    let factor = scale(&shown, unit).unwrap_or(1.0);
+    (shown, factor)
 }
