@@ -5,15 +5,18 @@
 //! below `src/`, so Cargo holds them to it; `tests/layers.rs` holds the modules of this crate to it.
 //!
 //! ```text
-//! cli → report → run → { exec, plan, store }
+//! cli → { report, export }; report → run → { exec, plan, store }
+//! export → stage
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → math
 //! { run, plan, stage, store } → artifact
-//! { plan, stage } → unit
+//! { plan, stage } → expression → unit
+//! { plan, stage, artifact } → unit
 //! ```
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`cli`] | what a person types and reads; the only place that prints |
+//! | [`export`] | results as files: CSV, pictures, ParaView, lists of particles |
 //! | [`report`] | a campaign as one HTML page |
 //! | [`run`] | the run loop, and the only state that changes during a run |
 //! | [`exec`] | threads that take work; knows neither tasks nor physics |
@@ -23,7 +26,7 @@
 //! | [`artifact`] | what can be stored, as plain data with a content hash |
 //! | [`dem`] | the discrete-element engine, specimens and tests |
 //! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
-//! | [`math`], [`unit`] | random streams, elementary functions, distributions; quantities with units |
+//! | [`math`], [`unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
 //!
 //! The domains (`dem`, `design`, `stats`, `optim`, `figure`) are pure and know nothing of one another, of files or of TOML.
 //!
@@ -51,6 +54,8 @@
 pub mod artifact;
 pub mod cli;
 pub mod exec;
+pub mod export;
+pub mod expression;
 pub mod plan;
 pub mod report;
 pub mod run;

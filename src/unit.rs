@@ -10,8 +10,11 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
+mod convert;
 mod power;
 mod read;
+
+pub use convert::Conversion;
 
 use power::Power;
 
@@ -32,10 +35,20 @@ impl Dimension {
         Self { length: Power::whole(length), mass: Power::whole(mass), time: Power::whole(time) }
     }
 
-    /// How much one unit of this dimension grows when metre, kilogram and second shrink by these factors.
-    pub fn scale(self, bases: [f64; 3]) -> f64 {
-        let [length, mass, time] = bases;
-        self.length.of(length) * self.mass.of(mass) * self.time.of(time)
+    /// The dimension of a product; `None` when an exponent has no small fraction.
+    pub fn product(self, other: Self) -> Option<Self> {
+        self.times(other, Power::whole(1))
+    }
+
+    /// The dimension of a power; `None` when an exponent has no small fraction.
+    pub fn power(self, exponent: f64) -> Option<Self> {
+        if self == Self::NONE {
+            return Some(self);
+        }
+        let whole = |d: &f64| (exponent * d - (exponent * d).round()).abs() < 1e-9;
+        let denominator = (1..=12).map(f64::from).find(whole)?;
+        let power = Power::read(&format!("{}/{denominator}", (exponent * denominator).round()))?;
+        Self::NONE.times(self, power)
     }
 
     /// `self · other^power`; `None` when an exponent has no small fraction.
@@ -46,6 +59,26 @@ impl Dimension {
             mass: one(self.mass, other.mass)?,
             time: one(self.time, other.time)?,
         })
+    }
+}
+
+/// As its SI unit: that of the list of symbols, else a product of powers of metre, kilogram and second.
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self == Self::NONE {
+            return f.write_str("a pure number");
+        }
+        let coherent = SYMBOLS.iter().find(|(_, factor, dimension, _)| *factor == 1.0 && dimension == self);
+        if let Some((symbol, ..)) = coherent {
+            return f.write_str(symbol);
+        }
+        let powers = [("kg", self.mass), ("m", self.length), ("s", self.time)];
+        let parts = powers.into_iter().filter(|(_, power)| *power != Power::whole(0));
+        let part = |(symbol, power): (&str, Power)| match power == Power::whole(1) {
+            true => symbol.to_owned(),
+            false => format!("{symbol}^{power}"),
+        };
+        f.write_str(&parts.map(part).collect::<Vec<_>>().join(" "))
     }
 }
 
@@ -84,6 +117,9 @@ pub enum UnitError {
     /// A symbol that is not known.
     #[error("`{0}` is not a unit that flow knows; known are {1}, with the prefixes G M k c m µ n where usual")]
     Unknown(String, String),
+    /// Two units of different kinds of quantity.
+    #[error("the two units measure different quantities")]
+    Differ,
     /// A unit of another kind of quantity.
     #[error("`{found}` is not a unit of {wanted}; write for example \"{example}\"")]
     OtherKind {
@@ -203,6 +239,14 @@ pub fn parse_any(text: &str) -> Result<(f64, Dimension), UnitError> {
     let (value, rest) = finite(text.trim(), "16 GPa")?;
     let unit = Unit::parse(rest)?;
     Ok((si(text, value, unit)?, unit.dimension))
+}
+
+/// Reads a number with or without a unit of any kind, as the number and the text of its unit.
+///
+/// # Errors
+/// What is wrong with the number.
+pub fn split_any(text: &str) -> Result<(f64, &str), UnitError> {
+    finite(text.trim(), "16 GPa")
 }
 
 /// The number of SI units, which must be finite too.

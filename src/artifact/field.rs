@@ -1,8 +1,10 @@
-//! Conversion between typed artifacts and the tree: one [`Field`] per type of value, one macro per artifact.
+//! Values of typed artifacts: one [`Field`] per type of value, read back in the unit that the declaration names.
 
 use super::{Array, Group, Node, Table, Values};
+use crate::unit::Conversion;
+use ndarray::{Dimension, IxDyn};
 
-/// Why a node could not be read as what was wanted.
+/// Why a value could not be read as what was declared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: wanted {wanted}, found {found}")]
 pub struct Wanted {
@@ -14,168 +16,194 @@ pub struct Wanted {
     pub found: String,
 }
 
+impl Wanted {
+    /// A value that is not what was wanted.
+    pub fn new(name: &str, wanted: impl Into<String>, found: impl Into<String>) -> Self {
+        Self { place: name.to_owned(), wanted: wanted.into(), found: found.into() }
+    }
+
+    /// Names what the place lies in.
+    #[must_use]
+    pub fn within(mut self, outer: &str) -> Self {
+        self.place = format!("{outer}.{}", self.place);
+        self
+    }
+}
+
 /// A type of value that artifacts can hold.
 pub trait Field: Sized {
-    /// The tree's form; `unit` and `about` come from the declaration.
-    fn to_node(&self, unit: &str, about: &str) -> Node;
+    /// Puts it into a group under a name; unit and description come from the declaration.
+    fn put(&self, group: &mut Group, name: &str, unit: &str, about: &str);
 
-    /// Reads the tree's form back, or says what was wanted.
+    /// Reads it back, its numbers converted to the declared unit.
     ///
     /// # Errors
-    /// The name of the wanted type when the node has another one.
-    fn from_node(node: &Node) -> Result<Self, &'static str>;
+    /// What was wanted and what stands there.
+    fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted>;
 }
 
-macro_rules! scalar_field {
-    ($type:ty, $wanted:literal, $self:ident, $unit:ident => $to:expr, $node:pat => $from:expr) => {
+/// The node called `name`.
+fn node<'g>(group: &'g Group, name: &str, wanted: &str) -> Result<&'g Node, Wanted> {
+    group.get(name).ok_or_else(|| Wanted::new(name, wanted, "nothing"))
+}
+
+/// The conversion to the declared unit.
+fn to_unit(name: &str, from: &str, to: &str) -> Result<Conversion, Wanted> {
+    Conversion::between(from, to).map_err(|_| Wanted::new(name, format!("the unit `{to}`"), format!("`{from}`")))
+}
+
+impl Field for f64 {
+    fn put(&self, group: &mut Group, name: &str, unit: &str, _about: &str) {
+        group.put(name, Node::Real { value: *self, unit: unit.to_owned() });
+    }
+    fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted> {
+        match node(group, name, "real")? {
+            Node::Real { value, unit: own } => Ok(to_unit(name, own, unit)?.of(*value)),
+            other => Err(Wanted::new(name, "real", other.type_name())),
+        }
+    }
+}
+
+macro_rules! plain_field {
+    ($($type:ty, $node:ident, $wanted:literal;)*) => {$(
         impl Field for $type {
-            fn to_node(&self, $unit: &str, _about: &str) -> Node {
-                let $self = self;
-                $to
+            fn put(&self, group: &mut Group, name: &str, _unit: &str, _about: &str) {
+                group.put(name, Node::$node(self.clone()));
             }
-            fn from_node(node: &Node) -> Result<Self, &'static str> {
-                match node {
-                    $node => Ok($from),
-                    _ => Err($wanted),
+            fn take(group: &Group, name: &str, _unit: &str) -> Result<Self, Wanted> {
+                match node(group, name, $wanted)? {
+                    Node::$node(value) => Ok(value.clone()),
+                    other => Err(Wanted::new(name, $wanted, other.type_name())),
                 }
             }
         }
-    };
+    )*};
 }
-scalar_field!(f64, "real", v, unit => Node::Real { value: *v, unit: unit.to_owned() }, Node::Real { value, .. } => *value);
-scalar_field!(i64, "whole number", v, _unit => Node::Int(*v), Node::Int(value) => *value);
-scalar_field!(bool, "flag", v, _unit => Node::Flag(*v), Node::Flag(value) => *value);
-scalar_field!(String, "text", v, _unit => Node::Text(v.clone()), Node::Text(value) => value.clone());
-scalar_field!(Vec<u8>, "bytes", v, _unit => Node::Bytes(v.clone()), Node::Bytes(value) => value.clone());
-scalar_field!(Table, "table", v, _unit => Node::Table(v.clone()), Node::Table(value) => value.clone());
-scalar_field!(Group, "group", v, _unit => Node::Group(v.clone()), Node::Group(value) => value.clone());
+plain_field! {
+    i64, Int, "whole number";
+    bool, Flag, "flag";
+    String, Text, "text";
+    Vec<u8>, Bytes, "bytes";
+    Table, Table, "table";
+    Group, Group, "group";
+}
 
-macro_rules! array_field {
-    ($type:ty, $values:ident, $wanted:literal) => {
+/// What only some artifacts of a kind hold.
+impl<F: Field> Field for Option<F> {
+    fn put(&self, group: &mut Group, name: &str, unit: &str, about: &str) {
+        if let Some(value) = self {
+            value.put(group, name, unit, about);
+        }
+    }
+    fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted> {
+        group.get(name).map(|_| F::take(group, name, unit)).transpose()
+    }
+}
+
+/// Puts an array of numbers or texts.
+fn put_array(group: &mut Group, name: &str, unit: &str, about: &str, shape: Vec<usize>, values: Values) {
+    group.put(name, Node::Array(Array { shape, unit: unit.to_owned(), about: about.to_owned(), values }));
+}
+
+/// The array called `name`.
+fn array<'g>(group: &'g Group, name: &str, wanted: &str) -> Result<&'g Array, Wanted> {
+    match node(group, name, wanted)? {
+        Node::Array(array) => Ok(array),
+        other => Err(Wanted::new(name, wanted, other.type_name())),
+    }
+}
+
+/// The numbers of the array called `name` in a unit, and its shape.
+fn reals(group: &Group, name: &str, unit: &str) -> Result<(Vec<usize>, Vec<f64>), Wanted> {
+    let array = array(group, name, "reals")?;
+    match &array.values {
+        Values::Reals(values) => Ok((array.shape.clone(), to_unit(name, &array.unit, unit)?.of_all(values.clone()))),
+        other => Err(Wanted::new(name, "reals", other.type_name())),
+    }
+}
+
+impl Field for Vec<f64> {
+    fn put(&self, group: &mut Group, name: &str, unit: &str, about: &str) {
+        put_array(group, name, unit, about, vec![self.len()], Values::Reals(self.clone()));
+    }
+    fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted> {
+        match reals(group, name, unit)? {
+            (shape, values) if shape.len() == 1 => Ok(values),
+            (shape, _) => Err(Wanted::new(name, "a list of reals", format!("an array of shape {shape:?}"))),
+        }
+    }
+}
+
+macro_rules! list_field {
+    ($($type:ty, $values:ident, $wanted:literal;)*) => {$(
         impl Field for Vec<$type> {
-            fn to_node(&self, unit: &str, about: &str) -> Node {
-                Node::Array(Array {
-                    shape: vec![self.len()],
-                    unit: unit.to_owned(),
-                    about: about.to_owned(),
-                    values: Values::$values(self.clone()),
-                })
+            fn put(&self, group: &mut Group, name: &str, unit: &str, about: &str) {
+                put_array(group, name, unit, about, vec![self.len()], Values::$values(self.clone()));
             }
-            fn from_node(node: &Node) -> Result<Self, &'static str> {
-                match node {
-                    Node::Array(Array { values: Values::$values(values), shape, .. }) if shape.len() == 1 => {
-                        Ok(values.clone())
-                    }
-                    _ => Err($wanted),
+            fn take(group: &Group, name: &str, _unit: &str) -> Result<Self, Wanted> {
+                match array(group, name, $wanted)? {
+                    Array { values: Values::$values(values), shape, .. } if shape.len() == 1 => Ok(values.clone()),
+                    other => Err(Wanted::new(name, $wanted, other.values.type_name())),
                 }
             }
         }
-    };
+    )*};
 }
-array_field!(f64, Reals, "reals");
-array_field!(i64, Ints, "whole numbers");
-array_field!(String, Texts, "texts");
+list_field! {
+    i64, Ints, "whole numbers";
+    String, Texts, "texts";
+}
 
-/// Vectors of the plane or of space: an array of shape (n, D).
+/// Vectors of the plane or of space whose dimension is known when the program is written: an array of shape (n, D).
 impl<const D: usize> Field for Vec<[f64; D]> {
-    fn to_node(&self, unit: &str, about: &str) -> Node {
-        Node::Array(Array {
-            shape: vec![self.len(), D],
-            unit: unit.to_owned(),
-            about: about.to_owned(),
-            values: Values::Reals(self.as_flattened().to_vec()),
-        })
+    fn put(&self, group: &mut Group, name: &str, unit: &str, about: &str) {
+        let values = self.as_flattened().to_vec();
+        put_array(group, name, unit, about, vec![self.len(), D], Values::Reals(values));
     }
-    fn from_node(node: &Node) -> Result<Self, &'static str> {
-        match node {
-            Node::Array(Array { values: Values::Reals(values), shape, .. }) if shape.len() == 2 && shape[1] == D => {
-                Ok(values.as_chunks::<D>().0.to_vec())
-            }
-            _ => Err("vectors"),
+    fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted> {
+        match reals(group, name, unit)? {
+            (shape, values) if shape.len() == 2 && shape[1] == D => Ok(values.as_chunks::<D>().0.to_vec()),
+            (shape, _) => Err(Wanted::new(name, format!("vectors of {D}"), format!("an array of shape {shape:?}"))),
         }
     }
 }
 
-/// Declares an artifact: its struct, its kind and version, and the conversions both ways.
-///
-/// ```
-/// use flow::artifact::ArtifactKind;
-/// const CURVE: ArtifactKind = ArtifactKind::new("curve", 1);
-/// flow::artifact! {
-///     /// A stress–strain curve.
-///     pub struct Curve = CURVE {
-///         /// Axial strain, shortening positive.
-///         pub strain: Vec<f64>, "";
-///         /// Axial stress, compression positive.
-///         pub stress: Vec<f64>, "Pa";
-///     }
-/// }
-/// let curve = Curve { strain: vec![0.0, 1e-4], stress: vec![0.0, 3e6] };
-/// let stored = curve.to_artifact();
-/// assert_eq!(Curve::from_artifact(&stored), Ok(curve));
-/// ```
-///
-/// The doc comment of a field is its description in the file, the text after it its unit. The expansion is the
-/// struct itself, `KIND`, `to_artifact` and `from_artifact`; a missing or wrong field reads
-/// `curve.strain: wanted reals, found text`.
-#[macro_export]
-macro_rules! artifact {
-    ($(#[$attribute:meta])* $visible:vis struct $name:ident = $kind:path {
-        $($(#[doc = $about:literal])* $field_visible:vis $field:ident : $type:ty, $unit:literal;)*
-    }) => {
-        $(#[$attribute])*
-        #[derive(Clone, Debug, PartialEq)]
-        $visible struct $name { $($(#[doc = $about])* $field_visible $field: $type,)* }
-
-        impl $name {
-            /// The kind, by which ports accept it.
-            pub const KIND: $crate::artifact::ArtifactKind = $kind;
-
-            /// The storable form.
-            pub fn to_artifact(&self) -> $crate::artifact::Artifact {
-                let mut root = $crate::artifact::Group::new();
-                $(root.put(stringify!($field),
-                    $crate::artifact::Field::to_node(&self.$field, $unit, concat!($($about),*).trim()));)*
-                $crate::artifact::Artifact::of($kind, root)
-            }
-
-            /// Reads the storable form.
-            ///
-            /// # Errors
-            /// The field that is missing or has another type, or the kind or version that does not fit.
-            pub fn from_artifact(artifact: &$crate::artifact::Artifact) -> Result<Self, $crate::artifact::Wanted> {
-                $crate::artifact::expect_kind(artifact, $kind)?;
-                Ok(Self { $($field: $crate::artifact::take(&artifact.root, $kind.name(), stringify!($field))?,)* })
-            }
-        }
-    };
-}
-
-/// Checks kind and version; used by [`artifact!`](crate::artifact!).
-///
-/// # Errors
-/// The kind or version that was wanted and found.
-pub fn expect_kind(artifact: &super::Artifact, kind: super::ArtifactKind) -> Result<(), Wanted> {
-    if artifact.is(kind) && artifact.version == kind.version() {
-        return Ok(());
+/// Arrays of reals whose shape is data: points in the plane or in space are an `Array2` of shape (n, 2) or (n, 3).
+impl<D: Dimension> Field for ndarray::Array<f64, D> {
+    fn put(&self, group: &mut Group, name: &str, unit: &str, about: &str) {
+        let values = self.iter().copied().collect();
+        put_array(group, name, unit, about, self.shape().to_vec(), Values::Reals(values));
     }
-    Err(Wanted {
-        place: artifact.kind.clone(),
-        wanted: format!("{kind} version {}", kind.version()),
-        found: format!("{} version {}", artifact.kind, artifact.version),
-    })
+    fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted> {
+        let (shape, values) = reals(group, name, unit)?;
+        let wrong = || Wanted::new(name, "an array of reals with other axes", format!("the shape {shape:?}"));
+        let all = ndarray::Array::from_shape_vec(IxDyn(&shape), values).map_err(|_| wrong())?;
+        all.into_dimensionality::<D>().map_err(|_| wrong())
+    }
 }
 
-/// Reads one field of a group; used by [`artifact!`](crate::artifact!).
-///
-/// # Errors
-/// What was wanted and found.
-pub fn take<F: Field>(group: &Group, kind: &str, name: &str) -> Result<F, Wanted> {
-    let fail = |wanted: &str, found: &str| Wanted {
-        place: format!("{kind}.{name}"),
-        wanted: wanted.to_owned(),
-        found: found.to_owned(),
-    };
-    let node = group.get(name).ok_or_else(|| fail("a value", "nothing"))?;
-    F::from_node(node).map_err(|wanted| fail(wanted, node.type_name()))
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn values_come_back_in_the_declared_unit() {
+        let mut group = Group::new();
+        16.1.put(&mut group, "modulus", "GPa", "");
+        vec![0.5, 1.5].put(&mut group, "radii", "mm", "");
+        array![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]].put(&mut group, "centres", "mm", "");
+        None::<f64>.put(&mut group, "nothing", "", "");
+        assert_eq!(f64::take(&group, "modulus", "MPa"), Ok(16100.0));
+        assert_eq!(Vec::<f64>::take(&group, "radii", "m"), Ok(vec![0.0005, 0.0015]));
+        let centres = ndarray::Array2::<f64>::take(&group, "centres", "mm").unwrap();
+        assert_eq!((centres.ncols(), centres[[1, 2]]), (3, 6.0));
+        assert_eq!(Vec::<[f64; 3]>::take(&group, "centres", "mm").unwrap()[1], [4.0, 5.0, 6.0]);
+        assert!(Vec::<[f64; 2]>::take(&group, "centres", "mm").is_err());
+        assert!(ndarray::Array3::<f64>::take(&group, "centres", "mm").is_err());
+        assert_eq!(<Option<f64> as Field>::take(&group, "nothing", ""), Ok(None));
+        let message = f64::take(&group, "modulus", "mm").unwrap_err().within("test").to_string();
+        assert_eq!(message, "test.modulus: wanted the unit `mm`, found `GPa`");
+        assert_eq!(i64::take(&group, "radii", "").unwrap_err().to_string(), "radii: wanted whole number, found reals");
+    }
 }

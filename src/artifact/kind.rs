@@ -19,7 +19,7 @@ impl ArtifactKind {
     /// A design of experiments.
     pub const DESIGN: Self = Self::new("design", 1).main("design");
     /// One run of a simulator.
-    pub const RUN: Self = Self::new("run", 1).main("responses");
+    pub const RUN: Self = Self::new("run", 2).main("responses");
     /// Runs or measurements, one per row.
     pub const RESULTS: Self = Self::new("results", 1).main("runs");
     /// A range analysis.

@@ -6,16 +6,23 @@
 //!
 //! Typed artifacts are declared with [`artifact!`](crate::artifact!), one type per file, and convert to and from the tree.
 
+mod cells;
+mod declare;
 mod field;
 mod key;
 mod kind;
 mod node;
+mod read;
+pub mod run;
 pub mod specimen;
 
-pub use field::{Field, Wanted, expect_kind, take};
+pub use cells::Cells;
+pub use declare::expect_kind;
+pub use field::{Field, Wanted};
 pub use key::{FirstBytes, Key};
 pub use kind::{Accepts, ArtifactKind};
 pub use node::{Array, Column, Group, Node, Table, Values};
+pub use read::Unread;
 
 use std::fmt;
 

@@ -93,15 +93,6 @@ impl Table {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// The real numbers of a column; whole numbers are converted, text is refused.
-    pub fn reals(&self, name: &str) -> Option<Vec<f64>> {
-        match &self.column(name)?.values {
-            Values::Reals(values) => Some(values.clone()),
-            Values::Ints(values) => Some(values.iter().map(|&v| v as f64).collect()),
-            Values::Texts(_) => None,
-        }
-    }
-
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())
@@ -178,6 +169,11 @@ impl Values {
             Self::Reals(values) => values.iter().all(|x| !x.is_finite() || format!("{x}").len() <= 6),
             Self::Ints(_) | Self::Texts(_) => true,
         }
+    }
+
+    /// Whether they are numbers.
+    pub fn are_numbers(&self) -> bool {
+        matches!(self, Self::Reals(_) | Self::Ints(_))
     }
 
     /// Number of values.

@@ -17,7 +17,8 @@ pub(super) struct Campaign {
     /// Apply the overrides of `[profile.NAME]`.
     #[arg(long, value_name = "NAME")]
     pub(super) profile: Option<String>,
-    /// Override one value: `stage.anova.alpha=0.01`. May be given more than once.
+    /// Override one value of the workflow: `stage.anova.alpha=0.01`, `material.base.mortar.Ec='"20 GPa"'`. May be given
+    /// more than once.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub(super) sets: Vec<String>,
     #[command(flatten)]

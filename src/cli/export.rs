@@ -1,15 +1,12 @@
 //! `flow export`: results as files for people and other programs.
 
-mod bodies;
-mod paraview;
-mod particles;
-mod vtu;
-
 use super::Exit;
 use super::common::{Campaign, system};
 use super::output::replace;
-use super::show::{csv_text, object, parts};
-use crate::artifact::{Artifact, ArtifactKind, ContentHash, Node};
+use super::show::{object, parts};
+use crate::artifact::run::Run;
+use crate::artifact::{Artifact, ArtifactKind, ContentHash};
+use crate::export::{File, files, paraview, particles, tables};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
 use crate::stage::specimen;
@@ -48,9 +45,6 @@ enum Form {
     /// Specimens, and runs with their microparameters, as lists of particles, clumps, groups and contacts (CSV, SI).
     Particles,
 }
-
-/// A file: its name and bytes.
-type File = (String, Vec<u8>);
 
 /// A result that is exported: its name in the names of files, and the task that made it.
 struct Chosen {
@@ -114,7 +108,7 @@ impl Export {
                 }
                 particles::files(name, &specimen, None)
             }
-            Form::Vtu | Form::Particles if artifact.is(ArtifactKind::RUN) && artifact.table("cracks").is_some() => {
+            Form::Vtu | Form::Particles if Run::from_artifact(artifact).is_ok_and(|run| run.cracks.is_some()) => {
                 let made = Made::of(store, &chosen.object)?;
                 if self.to == Form::Vtu {
                     return paraview::run(name, artifact, &made.specimen);
@@ -172,39 +166,4 @@ impl Made {
         let parameters = line("param ").map(|(path, value)| (path.to_owned(), value.to_owned())).collect();
         Ok(Self { specimen, parameters })
     }
-}
-
-/// The files of a result: texts and bytes whose names are file formats are written as they are, and take the place of the
-/// tables they were made from.
-fn files(stage: &str, artifact: &Artifact) -> Vec<File> {
-    let mut files = Vec::new();
-    for (name, node) in artifact.root.iter() {
-        let ending = if name == "latex" {
-            "tex"
-        } else if name == "markdown" {
-            "md"
-        } else {
-            name
-        };
-        let known = ["svg", "pdf", "png", "csv", "tex", "md"].contains(&ending);
-        match node {
-            Node::Bytes(bytes) if known => files.push((format!("{stage}.{ending}"), bytes.clone())),
-            Node::Text(text) if known => files.push((format!("{stage}.{ending}"), text.clone().into_bytes())),
-            Node::Bytes(_) | Node::Text(_) | Node::Group(_) | Node::Table(_) | Node::Array(_) => {}
-            Node::Real { .. } | Node::Int(_) | Node::Flag(_) => {}
-        }
-    }
-    let whole = format!("{stage}.csv");
-    if !files.iter().any(|(name, _)| *name == whole) {
-        files.extend(tables(stage, artifact));
-    }
-    files
-}
-
-/// Every table of a result as CSV.
-fn tables(stage: &str, artifact: &Artifact) -> Vec<File> {
-    let tables = artifact.tables().into_iter();
-    tables
-        .map(|(name, table)| (format!("{stage}.{}.csv", name.replace('/', ".")), csv_text(table).into_bytes()))
-        .collect()
 }

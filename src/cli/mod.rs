@@ -24,6 +24,7 @@ mod show;
 mod store;
 
 use clap::{Parser, Subcommand};
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Numerical-experiment campaigns with bonded-particle models, from one TOML file.
@@ -81,7 +82,12 @@ pub enum Exit {
 
 /// Reads the command line and does what it says.
 pub fn main() -> ExitCode {
-    let exit = match Arguments::parse().command {
+    ExitCode::from(execute(std::env::args_os()) as u8)
+}
+
+/// Does what a command line says; its first word is the program.
+fn execute<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Exit {
+    match Arguments::parse_from(arguments).command {
         Command::Run(run) => run.go(),
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
@@ -95,6 +101,8 @@ pub fn main() -> ExitCode {
         Command::New(new) => new.go(),
         Command::Schema(schema) => schema.go(),
         Command::Completions(completions) => completions.go(),
-    };
-    ExitCode::from(exit as u8)
+    }
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 use super::Exit;
 use super::common::{Campaign, provenance, system};
 use crate::artifact::{Artifact, Column, Node, Table, Values};
+use crate::export::{cells, csv_text, head};
 use crate::plan::Workflow;
 use crate::run::{Report, StageReport, StageStatus, decide};
 use crate::stage::units::presented;
@@ -206,16 +207,6 @@ fn print_others(artifact: &Artifact, only_table: bool) {
     }
 }
 
-fn cells(values: &Values) -> Vec<String> {
-    match values {
-        Values::Reals(values) => {
-            values.iter().map(|v| if v.is_nan() { String::new() } else { v.to_string() }).collect()
-        }
-        Values::Ints(values) => values.iter().map(i64::to_string).collect(),
-        Values::Texts(values) => values.clone(),
-    }
-}
-
 /// Numbers for a reader: seven digits, small and large ones with an exponent.
 fn short(values: &Values) -> Vec<String> {
     let one = |v: &f64| match v.abs() {
@@ -231,13 +222,6 @@ fn short(values: &Values) -> Vec<String> {
     match values {
         Values::Reals(values) => values.iter().map(one).collect(),
         Values::Ints(_) | Values::Texts(_) => cells(values),
-    }
-}
-
-fn head(column: &Column) -> String {
-    match column.unit.as_str() {
-        "" => column.name.clone(),
-        unit => format!("{} [{unit}]", column.name),
     }
 }
 
@@ -261,19 +245,6 @@ pub(super) fn text(table: &Table) -> String {
     let rest = if more > 0 { format!("\n… and {more} more rows; --csv shows all") } else { String::new() };
     let lines: Vec<String> = shown.lines().map(|line| line.trim_end().to_owned()).collect();
     format!("{}{rest}", lines.join("\n"))
-}
-
-/// A table as CSV, with units in the first line and all digits.
-pub(super) fn csv_text(table: &Table) -> String {
-    let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
-    let mut out = csv::Writer::from_writer(Vec::new());
-    let written = out.write_record(table.columns.iter().map(head)).and_then(|()| {
-        (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))
-    });
-    match (written, out.into_inner()) {
-        (Ok(()), Ok(bytes)) => String::from_utf8_lossy(&bytes).into_owned(),
-        (Err(_), _) | (_, Err(_)) => panic!("BUG: writing a table to memory failed"),
-    }
 }
 
 fn values_json(values: &Values) -> Value {

@@ -1,10 +1,12 @@
 //! From the tree to the workflow: every table read, every name resolved.
 
+use super::collect::{Check, MOST_FAULTS, steps};
 use super::fault::{Fault, Source};
-use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
-use super::node::{Entry, Node, Sources, Step, Table, Value};
+use super::file::{FactorTable, Head, ResponseTable};
+use super::node::{Node, Sources, Step, Table, Value};
 use super::read::read;
 use super::{Overrides, StageNode, Workflow, overlay, stages, syntax};
+use crate::stage::material::{Material, MaterialTable};
 use crate::stage::{Context, Outline};
 use crate::unit::Unit;
 use serde::Deserialize;
@@ -14,15 +16,6 @@ use std::sync::Arc;
 
 /// Keys of the root.
 const ROOT: [&str; 6] = ["workflow", "factor", "response", "material", "stage", "profile"];
-
-/// So many faults are told; much later ones are not even looked for.
-pub(super) const MOST_FAULTS: usize = 50;
-
-/// Longest name of a stage, factor, response or material.
-const LONGEST_NAME: usize = 64;
-
-/// What such a name is like.
-pub(super) const NAME_PATTERN: &str = "^[A-Za-z][A-Za-z0-9_-]{0,63}$";
 
 /// The checked workflow, or every fault of it in the order of the file.
 pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
@@ -40,10 +33,10 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         factors: check.named(&mut root, "factor", Check::factor),
         responses: check.named(&mut root, "response", Check::response),
         materials: check.named(&mut root, "material", Check::material),
-        outline: Vec::new(),
+        ..Context::default()
     };
+    let stages = stages::read_all(&mut check, &mut root, &mut context);
     check.settings(&root, &context);
-    let stages = stages::read_all(&mut check, &mut root, &context);
     let mut faults = check.faults;
     let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
         faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.source.name != name, place.span.start)));
@@ -73,16 +66,6 @@ fn outline(stages: &[StageNode]) -> Vec<Outline> {
         Outline { name: stage.name.clone(), kind: stage.kind.to_owned(), inputs: inputs.into_iter().collect() }
     };
     stages.iter().map(one).collect()
-}
-
-/// Collects faults.
-pub(super) struct Check<'a> {
-    /// For the places of faults.
-    pub(super) sources: &'a Sources,
-    /// The faults so far.
-    pub(super) faults: Vec<Fault>,
-    /// Section and name of factors, responses and materials that could not be read.
-    pub(super) lost: Vec<(&'static str, String)>,
 }
 
 impl Check<'_> {
@@ -132,30 +115,6 @@ impl Check<'_> {
         found
     }
 
-    /// The table of tables below `key`.
-    pub(super) fn tables<'t>(&mut self, root: &'t mut Table, key: &str) -> Option<&'t mut Table> {
-        let node = &mut root.0.get_mut(key)?.node;
-        let (span, found) = (node.span, node.describe());
-        if let Value::Table(table) = &mut node.value {
-            return Some(table);
-        }
-        let message = format!("wanted tables such as [{key}.NAME], found {found}");
-        self.faults.push(Fault::new(message).at(self.sources.place(span)));
-        None
-    }
-
-    /// Names stand in file names, on the command line and in figures.
-    pub(super) fn name(&mut self, name: &str, entry: &Entry) {
-        let inner = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
-        if begins && name.chars().all(inner) && name.len() <= LONGEST_NAME {
-            return;
-        }
-        let fault = Fault::new(format!("`{}` cannot be a name", super::node::shortened(name)));
-        let hint = format!("a letter first, then letters, digits, `_` and `-`, at most {LONGEST_NAME} in all");
-        self.faults.push(fault.at(self.sources.place(entry.key)).hint(hint));
-    }
-
     fn factor(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Factor> {
         let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| FactorTable::deserialize(reader))?;
         let before = self.faults.len();
@@ -171,13 +130,42 @@ impl Check<'_> {
             let message = format!("the range must rise: {} is not below {}", range[0], range[1]);
             self.complain(node, &steps(["range"]), Fault::new(message));
         }
-        let mut sorted: Vec<(f64, usize)> = table.levels.iter().copied().zip(0..).collect();
+        self.categories(name, &table, node);
+        let mut sorted: Vec<(f64, usize)> = table.numbers().into_iter().zip(0..).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for pair in sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
             let path = [Step::Key("levels".to_owned()), Step::Index(pair[1].1)];
             self.complain(node, &path, Fault::new(format!("level {} stands here twice", pair[1].0)));
         }
-        (self.faults.len() == before).then(|| table.factor(name))
+        let factor = table.factor(name);
+        self.scale(name, &factor, node);
+        (self.faults.len() == before).then_some(factor)
+    }
+
+    /// Faults of a factor whose levels are names.
+    fn categories(&mut self, name: &str, table: &FactorTable, node: &Node) {
+        let (numbers, names) = (table.numbers(), table.names());
+        if names.is_empty() {
+            return;
+        }
+        let mut complain = |key: &str, message: String, hint: &str| {
+            self.complain(node, &steps([key]), Fault::new(message).hint(hint));
+        };
+        if !numbers.is_empty() {
+            let message = format!("factor `{name}` has numbers and names for levels");
+            complain("levels", message, "write all of them as numbers, or all as names in quotes");
+        }
+        if let Some(twice) = names.iter().enumerate().find(|(i, own)| names[..*i].contains(own)).map(|(_, own)| own) {
+            complain("levels", format!("level `{twice}` stands here twice"), "name each level once");
+        }
+        for (key, given) in
+            [("range", table.range.is_some()), ("unit", !table.unit.is_empty()), ("sets", !table.sets.0.is_empty())]
+        {
+            if given {
+                let message = format!("`{key}` has no effect on factor `{name}`, whose levels are names");
+                complain(key, message, "leave it out");
+            }
+        }
     }
 
     fn response(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Response> {
@@ -186,37 +174,9 @@ impl Check<'_> {
         Some(table.response(name))
     }
 
-    fn material(&mut self, _: &str, node: &mut Node) -> Option<BTreeMap<String, crate::stage::Parameter>> {
+    fn material(&mut self, _: &str, node: &mut Node) -> Option<Material> {
         let read_table = |reader: super::reader::Reader<'_>| MaterialTable::deserialize(reader);
-        read(node, self.sources, &mut self.faults, Vec::new, read_table).map(MaterialTable::material)
-    }
-
-    /// What factors set must be there, and of the kind that their units say.
-    fn settings(&mut self, root: &Table, context: &Context) {
-        let Some(factors) = root.0.get("factor").map(|entry| &entry.node) else { return };
-        if context.materials.is_empty() || !self.lost.is_empty() {
-            return;
-        }
-        for (name, factor) in context.factors.iter().filter(|(_, factor)| !factor.sets.is_empty()) {
-            let all = context.materials.iter();
-            let mut set = all.filter_map(|(material, values)| Some((material, values.get(&factor.sets)?))).peekable();
-            if set.peek().is_none() {
-                let paths: BTreeSet<&str> =
-                    context.materials.values().flat_map(|m| m.keys().map(String::as_str)).collect();
-                let fault = Fault::new(format!("no material has `{}`, which factor `{name}` sets", factor.sets));
-                let fault = fault.known(&factor.sets, "parameters", paths);
-                self.complain(factors, &steps([name.as_str(), "sets"]), fault);
-            }
-            let Ok(unit) = Unit::parse(&factor.unit) else { continue };
-            if let Some((material, _)) = set.find(|(_, parameter)| parameter.dimension != unit.dimension) {
-                let unit =
-                    if factor.unit.is_empty() { "a pure number".to_owned() } else { format!("in {}", factor.unit) };
-                let fault =
-                    Fault::new(format!("factor `{name}` is {unit}, and `{}`, which it sets, is not", factor.sets));
-                let hint = format!("give it the unit that `{}` has in [material.{material}]", factor.sets);
-                self.complain(factors, &steps([name.as_str(), "unit"]), fault.hint(hint));
-            }
-        }
+        read(node, self.sources, &mut self.faults, Vec::new, read_table).map(|table| table.0)
     }
 
     fn unit(&mut self, unit: &str, node: &Node) {
@@ -224,17 +184,4 @@ impl Check<'_> {
             self.complain(node, &steps(["unit"]), Fault::new(e.to_string()));
         }
     }
-
-    /// A fault at `path` below `node`, or as near to it as the file goes; once, though two stages may find it.
-    pub(super) fn complain(&mut self, node: &Node, path: &[Step], fault: Fault) {
-        let fault = fault.at(self.sources.place(node.nearest(path).span));
-        if !self.faults.contains(&fault) {
-            self.faults.push(fault);
-        }
-    }
-}
-
-/// A path below a table, as names.
-pub(super) fn steps<'p>(path: impl IntoIterator<Item = &'p str>) -> Vec<Step> {
-    path.into_iter().map(|part| Step::Key(part.to_owned())).collect()
 }

@@ -6,6 +6,7 @@
 //! [`key`](mod@key) writes the task text and its hash, [`why`] says what is different between two of them.
 
 mod check;
+mod collect;
 mod fault;
 mod file;
 mod graph;
@@ -15,6 +16,7 @@ mod overlay;
 mod read;
 mod reader;
 pub mod schema;
+mod sets;
 mod stages;
 mod syntax;
 pub mod why;

@@ -3,7 +3,7 @@
 //! What is laid over a stage, factor or response must name one that exists; whether its keys exist is seen when the
 //! merged table is read, and the fault then points at the profile or the option.
 
-use super::check::MOST_FAULTS;
+use super::collect::MOST_FAULTS;
 use super::fault::Fault;
 use super::node::{Entry, Node, Sources, Span, Table, Value};
 use super::syntax;
@@ -115,7 +115,7 @@ fn check_paths(root: &Table, over: &Table, whose: &str, sources: &Sources, fault
         let Some((_, things)) = NAMED.iter().find(|(key, _)| *key == name) else {
             if name != "workflow" {
                 let fault = Fault::new(format!("{whose} cannot set `{name}`")).at(place);
-                faults.push(fault.known(name, "keys", ["workflow", "factor", "response", "stage"]));
+                faults.push(fault.known(name, "keys", ["workflow", "factor", "response", "material", "stage"]));
             }
             continue;
         };

@@ -110,7 +110,8 @@ fn compared(part: &Part) -> Option<Vec<Compared<'_>>> {
     let table: &Table = part.artifact()?.table("table")?;
     let column = |column: &'_ Column| {
         let (quantity, _) = column.name.rsplit_once(' ').filter(|_| Mark::of(column) == Some(Mark::Signed))?;
-        let deviations: Vec<f64> = table.reals(&column.name)?.into_iter().filter(|d| d.is_finite()).collect();
+        let deviations: Vec<f64> =
+            table.numbers(&column.name, "%").ok()?.into_iter().filter(|d| d.is_finite()).collect();
         (!deviations.is_empty()).then(|| (quantity.to_owned(), deviations))
     };
     let found = table.columns.iter().filter_map(column);

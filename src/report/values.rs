@@ -65,19 +65,19 @@ fn curves(data: &Table) -> Option<Value> {
     let mut curves = Vec::new();
     for number in 0..data.columns.len() {
         let tag = if number == 0 { String::new() } else { format!("_{number}") };
-        let Some(strain) = data.reals(&format!("axial_strain{tag}")) else { continue };
+        let Some(strain) = data.numbers(&format!("axial_strain{tag}"), "").ok() else { continue };
         let percent = |values: Vec<f64>| short(values.into_iter().map(|e| 100.0 * e));
         let counted = data.columns.iter().filter_map(|column| {
             let mode = column.name.strip_prefix("cracks_")?.strip_suffix(tag.as_str())?;
             // Of another curve: its number is still there.
             let other = mode.rsplit_once('_').is_some_and(|(_, end)| end.parse::<u32>().is_ok());
-            Some(json!({ "name": mode, "values": short(data.reals(&column.name)?) })).filter(|_| !other)
+            Some(json!({ "name": mode, "values": short(data.shown(&column.name).ok()?.0) })).filter(|_| !other)
         });
         curves.push(json!({
             "name": if number == 0 { String::new() } else { format!("curve {number}") },
             "strain": percent(strain),
-            "stress": short(data.reals(&format!("axial_stress{tag}"))?),
-            "lateral": data.reals(&format!("lateral_strain{tag}")).map(percent),
+            "stress": short(data.numbers(&format!("axial_stress{tag}"), "MPa").ok()?),
+            "lateral": data.numbers(&format!("lateral_strain{tag}"), "").ok().map(percent),
             "cracks": counted.collect::<Vec<_>>(),
         }));
     }
@@ -86,7 +86,7 @@ fn curves(data: &Table) -> Option<Value> {
 
 fn field(data: &Table, context: &Context) -> Option<Value> {
     let [x, y, z] = data.columns.as_slice() else { return None };
-    let (xs, ys, zs) = (data.reals(&x.name)?, data.reals(&y.name)?, data.reals(&z.name)?);
+    let (xs, ys, zs) = (data.shown(&x.name).ok()?.0, data.shown(&y.name).ok()?.0, data.shown(&z.name).ok()?.0);
     // Rows go along x first.
     let across = ys.iter().take_while(|v| Some(*v) == ys.first()).count();
     let up = xs.len().checked_div(across)?;
@@ -145,7 +145,7 @@ fn told(value: f64, unit: &str) -> String {
 
 fn pairs(data: &Table, context: &Context) -> Option<Value> {
     let [.., a, b] = data.columns.as_slice() else { return None };
-    let (xs, ys) = (data.reals(&a.name)?, data.reals(&b.name)?);
+    let (xs, ys) = (data.shown(&a.name).ok()?.0, data.shown(&b.name).ok()?.0);
     let (units, origins, rows) = (texts(data, "unit")?, texts(data, "origin")?, texts(data, "row")?);
     let panel = |(response, members): (&str, Vec<usize>)| {
         let sign = name_of(context, response);
@@ -161,9 +161,9 @@ fn pairs(data: &Table, context: &Context) -> Option<Value> {
 }
 
 fn effects(data: &Table, context: &Context) -> Option<Value> {
-    let (levels, units) = (data.reals("level")?, texts(data, "level_unit")?);
+    let (levels, units) = (data.shown("level").ok()?.0, texts(data, "level_unit")?);
     let means = data.column("mean")?;
-    let (values, unit) = (data.reals("mean")?, &means.unit);
+    let (values, unit) = (data.shown("mean").ok()?.0, &means.unit);
     let panel = |(factor, rows): (&str, Vec<usize>)| {
         let sign = name_of(context, factor);
         let words = |i: usize| format!("{sign} = {}: mean {}", told(levels[i], &units[i]), told(values[i], unit));
@@ -174,8 +174,9 @@ fn effects(data: &Table, context: &Context) -> Option<Value> {
 
 fn residuals(data: &Table) -> Option<Value> {
     let runs = texts(data, "run")?;
-    let ys = data.reals("studentized_residual")?;
-    let (fitted, quantile, leverage) = (data.reals("fitted")?, data.reals("normal_quantile")?, data.reals("leverage")?);
+    let ys = data.shown("studentized_residual").ok()?.0;
+    let (fitted, quantile, leverage) =
+        (data.shown("fitted").ok()?.0, data.shown("normal_quantile").ok()?.0, data.shown("leverage").ok()?.0);
     let order: Vec<f64> = (1..=runs.len()).map(|i| i as f64).collect();
     let panel = |(xs, what): (&Vec<f64>, &str)| {
         let words =
@@ -188,14 +189,14 @@ fn residuals(data: &Table) -> Option<Value> {
 
 fn convergence(data: &Table) -> Option<Value> {
     let [_, effort, ..] = data.columns.as_slice() else { return None };
-    let (runs, xs, ys) = (texts(data, "run")?, data.reals(&effort.name)?, data.reals("best")?);
+    let (runs, xs, ys) = (texts(data, "run")?, data.shown(&effort.name).ok()?.0, data.shown("best").ok()?.0);
     let words = |i: usize| format!("{}, {} {}: best misfit {}", runs[i], effort.name, told(xs[i], ""), told(ys[i], ""));
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }
 
 fn effect_plot(data: &Table) -> Option<Value> {
     let [_, sizes, ..] = data.columns.as_slice() else { return None };
-    let (names, xs, ys) = (texts(data, "effect")?, data.reals(&sizes.name)?, data.reals("quantile")?);
+    let (names, xs, ys) = (texts(data, "effect")?, data.shown(&sizes.name).ok()?.0, data.shown("quantile").ok()?.0);
     let words = |i: usize| format!("{}: {}", Line::new(&names[i], 1.0).plain, told(xs[i], &sizes.unit));
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }

@@ -52,7 +52,7 @@ fn texts<'a>(table: &'a Table, name: &str) -> &'a [String] {
 
 /// Responses with a number, where it is known.
 fn by_response<'a>(table: &'a Table, name: &str) -> Vec<(&'a str, f64)> {
-    let values = table.reals(name).unwrap_or_default();
+    let values = table.numbers(name, "").unwrap_or_default();
     let pairs = texts(table, "response").iter().map(String::as_str).zip(values);
     pairs.filter(|(_, value)| value.is_finite()).collect()
 }
@@ -126,21 +126,19 @@ fn inflation(table: &Table) -> Vec<String> {
 }
 
 fn reach(table: &Table) -> Vec<String> {
-    let sets: Vec<f64> = table.reals("set").unwrap_or_default();
+    let sets = table.ints("set").unwrap_or_default();
     let rows = texts(table, "response").iter().zip(texts(table, "reach")).enumerate();
     let out = rows.filter(|(_, (_, reach))| reach.starts_with("out of reach"));
-    out.map(|(i, (response, reach))| {
-        format!("set {}: the target of {response} is {reach}", sets.get(i).unwrap_or(&0.0))
-    })
-    .collect()
+    out.map(|(i, (response, reach))| format!("set {}: the target of {response} is {reach}", sets.get(i).unwrap_or(&0)))
+        .collect()
 }
 
 fn outside(table: &Table) -> Vec<String> {
-    let sets: Vec<f64> = table.reals("set").unwrap_or_default();
+    let sets = table.ints("set").unwrap_or_default();
     let rows = texts(table, "response").iter().zip(texts(table, "target_inside")).enumerate();
     let out = rows.filter(|(_, (_, inside))| *inside == "no");
     let told: Vec<String> =
-        out.map(|(i, (response, _))| format!("{response} of set {}", sets.get(i).unwrap_or(&0.0))).collect();
+        out.map(|(i, (response, _))| format!("{response} of set {}", sets.get(i).unwrap_or(&0))).collect();
     if told.is_empty() {
         Vec::new()
     } else {

@@ -5,7 +5,7 @@
 //! they were, and the objects in the store. Of a kept run nothing is opened: what is taken from it stands in the memo.
 
 use super::board::{Board, NodeId, TaskState};
-use super::memo;
+use super::files::{Files, unchanged};
 use crate::artifact::Key;
 use crate::plan::Workflow;
 use crate::stage::ledger::{Briefs, Kept, KeptRuns};
@@ -14,9 +14,6 @@ use crate::store::{Memo, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
-
-/// Files that were looked at, with their digests.
-pub(super) type Files = Vec<(String, String)>;
 
 /// The runs that earlier campaigns made.
 pub(super) struct Ledger {
@@ -43,7 +40,7 @@ impl Ledger {
         let Note { files, factors } = serde_json::from_str(&memo.note).ok()?;
         let (words, briefs) = memo.data.split_at_checked(8 * (factors.len() + 1) * memo.objects.len())?;
         let briefs = Briefs::from_bytes(briefs).filter(|briefs| briefs.len() == memo.objects.len())?;
-        if !memo::unchanged(workflow, &files) || !store.has_all(&memo.objects).ok()? {
+        if !unchanged(workflow, &files) || !store.has_all(&memo.objects).ok()? {
             return None;
         }
         let words = words.as_chunks::<8>().0.iter().map(|word| u64::from_le_bytes(*word)).collect();
@@ -133,7 +130,8 @@ fn objects(store: &Store, board: &Board, gather: NodeId, places: &[usize]) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::artifact::{Artifact, ArtifactKind, ContentHash, Group, Node};
+    use crate::artifact::ContentHash;
+    use crate::artifact::run::{Responses, Run};
 
     fn rows(values: &[f64]) -> Rows {
         let words = values.iter().flat_map(|value| [value.to_bits(), 1]).collect();
@@ -144,8 +142,7 @@ mod tests {
     fn places(new: &Rows) -> Vec<Option<usize>> {
         let old = rows(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         let mut briefs = Briefs::default();
-        let run = crate::stage::rows::response_table(&[]);
-        let run = Artifact::of(ArtifactKind::RUN, Group::new().with("responses", Node::Table(run)));
+        let run = Run::plain("", Responses::default()).to_artifact();
         assert!((0..6).all(|_| briefs.push_run(&run)));
         let object = |place: u8| ObjectId { content: ContentHash([place; 32]), key: Key([place; 32]) };
         let ledger = Ledger {

@@ -1,7 +1,8 @@
 //! What stages may look up while a campaign runs.
 
 use super::board::{Board, TaskState};
-use super::ledger::{Files, Ledger};
+use super::files::{Files, path_of};
+use super::ledger::Ledger;
 use super::task::Lost;
 use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
@@ -10,7 +11,6 @@ use crate::stage::rows::Rows;
 use crate::stage::{FileInput, Library, Outcome, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(super) struct Shelf<'a> {
@@ -31,11 +31,6 @@ pub(super) struct Notes {
     pub(super) rows: Option<Arc<Rows>>,
     /// A result that could not be read.
     pub(super) lost: Option<Lost>,
-}
-
-/// Where a file named by the workflow lies.
-pub(super) fn path_of(workflow: &Workflow, path: &str) -> PathBuf {
-    workflow.path.parent().unwrap_or(Path::new("")).join(path)
 }
 
 impl Library for Shelf<'_> {

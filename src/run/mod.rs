@@ -12,9 +12,12 @@
 
 mod board;
 mod commit;
+mod files;
 mod ledger;
 mod library;
 mod memo;
+#[cfg(test)]
+mod pins;
 mod record;
 mod stages;
 mod task;

@@ -14,14 +14,14 @@ use super::{Context, figure::Names};
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use stats::agreement::{Agreement as Found, agreement, pair_rows};
 use stats::regression::{self, regress};
 use stats::sample::{Factor, Response, Sample};
 use stats::terms::Term;
 
 /// Settings of an `agreement` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Agreement {
     /// The stages with the computed results.
@@ -76,13 +76,6 @@ impl Stage for Agreement {
             found.push(Complaint::new("tolerance", message).hint("0.001 allows for levels printed with three digits"));
         }
         found
-    }
-
-    fn settings(&self) -> Value {
-        json!({
-            "of": self.of.list(), "compare": self.compare.list(), "responses": self.responses,
-            "tolerance": self.tolerance,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

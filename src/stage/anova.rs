@@ -12,12 +12,12 @@ use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, S
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use stats::anova::{Anova as Analysis, Error, Interactions, Line, Settings, Squares, anova};
 use std::collections::BTreeMap;
 
 /// Settings of an `anova` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Anova {
     /// The stage whose runs are analysed.
@@ -179,12 +179,6 @@ impl Stage for Anova {
         let levels = levels.into_iter().chain(self.pool_above.map(|p| ("pool_above", p)));
         found.extend(levels.filter_map(|(key, value)| check_probability(key, value)));
         found
-    }
-
-    fn settings(&self) -> Value {
-        let names = json!({ "factors": self.factors, "responses": self.responses, "weights": self.weights });
-        let none = Columns::none();
-        json!({ "columns": names, "analysis": self.params(none), "published": self.published })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -71,10 +71,6 @@ impl Stage for Calibrate {
         self.faults(context)
     }
 
-    fn settings(&self) -> Value {
-        json!(self)
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let mut params = self.params(known.context)?;
         params.check()?;

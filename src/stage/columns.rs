@@ -3,7 +3,6 @@
 use super::derived::Derived;
 use super::{Complaint, Context, StageError};
 use crate::artifact::{Artifact, Table, Values};
-use crate::unit::Unit;
 use serde::{Deserialize, Serialize};
 use stats::error::Faults;
 use stats::sample::{Factor, Response, Sample};
@@ -63,11 +62,6 @@ pub(super) fn runs(artifact: &Artifact) -> Result<&Table, StageError> {
 }
 
 impl Columns {
-    /// No columns: what stands in the settings of a stage before its table is known.
-    pub(super) fn none() -> Self {
-        Self { factors: Vec::new(), responses: Vec::new(), derived: Vec::new(), weights: None }
-    }
-
     /// The columns of `table` that are wanted, in the table's order.
     pub(super) fn of(table: &Table, context: &Context, wanted: Wanted) -> Result<Self, StageError> {
         let present = |name: &&String| table.column(name).is_some();
@@ -91,7 +85,9 @@ impl Columns {
                 .copied()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| (low.min(level), high.max(level)));
             let coding = factor.range.map(|[low, high]| (low, high)).or((!factor.levels.is_empty()).then_some(ends));
-            let labels = table.column(name).map(|column| labels(&column.values)).unwrap_or_default();
+            let seen = table.column(name).map(|column| labels(&column.values)).unwrap_or_default();
+            // the order of the workflow, if it names the levels: the first is the reference of dummy coding
+            let labels = if seen.is_empty() || factor.names.is_empty() { seen } else { factor.names.clone() };
             let is_number = labels.is_empty();
             Some(FactorColumn {
                 name: (*name).clone(),
@@ -157,24 +153,24 @@ impl Columns {
             if !own.labels.is_empty() {
                 return named(table, own);
             }
-            let values = reals(table, &own.name, Some(&own.unit))?;
+            let values = table.numbers(&own.name, &own.unit)?;
             Ok(Factor { levels: own.levels.clone(), coding: own.coding, ..Factor::new(&own.name, values) })
         };
         let derived = |own: &Derived| {
-            let parts = own.factors.iter().map(|(name, unit)| reals(table, name, Some(unit)));
-            let values = own.values(&parts.collect::<Result<Vec<_>, _>>()?)?;
+            let parts = own.factors.iter().map(|(name, unit)| Ok(table.numbers(name, unit)?));
+            let values = own.values(&parts.collect::<Result<Vec<_>, StageError>>()?)?;
             Ok(Factor::new(&own.name, values))
         };
         let plain = self.factors.iter().map(factor);
         let response = |own: &ResponseColumn| {
-            let values = reals(table, &own.name, Some(&own.unit))?;
+            let values = table.numbers(&own.name, &own.unit)?;
             let values = values.into_iter().map(|v| (!v.is_nan()).then_some(v)).collect();
             Ok(Response { name: own.name.clone(), values })
         };
         Ok(Sample {
             factors: plain.chain(self.derived.iter().map(derived)).collect::<Result<_, StageError>>()?,
             responses: self.responses.iter().map(response).collect::<Result<_, StageError>>()?,
-            weights: self.weights.as_ref().map(|name| reals(table, name, None)).transpose()?,
+            weights: self.weights.as_ref().map(|name| table.numbers(name, "")).transpose()?,
         })
     }
 }
@@ -194,40 +190,16 @@ fn labels(values: &Values) -> Vec<String> {
 
 /// A factor whose levels are names.
 fn named(table: &Table, own: &FactorColumn) -> Result<Factor, StageError> {
-    let Some(Values::Texts(texts)) = table.column(&own.name).map(|column| &column.values) else {
-        return Err(StageError::new(format!("the table has no names in a column `{}`", own.name)));
-    };
+    let texts = table.texts(&own.name)?;
     if let Some(row) = texts.iter().position(String::is_empty) {
         let message = format!("row {}: `{}` is empty, where other rows name a level", row + 1, own.name);
         return Err(StageError::new(message).hint("name the level, or leave out the row"));
     }
-    Ok(Factor::of_labels(&own.name, texts, own.labels.clone()))
-}
-
-/// The numbers of a column, converted to `unit`.
-fn reals(table: &Table, name: &str, unit: Option<&str>) -> Result<Vec<f64>, StageError> {
-    let column = table.column(name).ok_or_else(|| StageError::new(format!("the table has no column `{name}`")))?;
-    let mut values = match &column.values {
-        Values::Reals(values) => values.clone(),
-        Values::Ints(values) => values.iter().map(|&v| v as f64).collect(),
-        Values::Texts(texts) => {
-            let number = |text: &String| text.is_empty() || text.parse().is_ok_and(f64::is_finite);
-            let (row, text) = texts.iter().enumerate().find(|(_, text)| !number(text)).map_or((0, ""), |(i, t)| (i, t));
-            let message = format!("row {}: `{name}` is `{text}`, which is not a finite number", row + 1);
-            return Err(StageError::new(message).hint("leave a cell empty where a run has no value"));
-        }
-    };
-    let Some(unit) = unit.filter(|unit| *unit != column.unit) else { return Ok(values) };
-    let parse = |text: &str| Unit::parse(text).map_err(|e| StageError::new(format!("column `{name}`: {e}")));
-    let (from, to) = (parse(&column.unit)?, parse(unit)?);
-    if from.dimension != to.dimension {
-        let message = format!("column `{name}` is in `{}` where `{unit}` is declared", column.unit);
-        return Err(StageError::new(message).hint("give the column's unit in its head, as in `Ec [GPa]`"));
+    if let Some(row) = texts.iter().position(|text| !own.labels.contains(text)) {
+        let message = format!("row {}: `{}` is `{}`, which is none of its levels", row + 1, own.name, texts[row]);
+        return Err(StageError::new(message).hint(format!("its levels are {}", own.labels.join(", "))));
     }
-    let (times, over) =
-        if from.factor >= to.factor { (from.factor / to.factor, 1.0) } else { (1.0, to.factor / from.factor) };
-    values.iter_mut().for_each(|v| *v = *v * times / over);
-    Ok(values)
+    Ok(Factor::of_labels(&own.name, texts, own.labels.clone()))
 }
 
 /// The faults of a sample or a model as one error.

@@ -17,11 +17,11 @@ use design::table::MOST_RUNS;
 use dialect::Dialect;
 pub use dialect::{Decimal, Delimiter, Encoding};
 use schemars::JsonSchema;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 /// Settings of a `data` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Data {
     /// The file, relative to the workflow: CSV, or a workbook of Excel or LibreOffice (xlsx, xls, ods).
@@ -62,10 +62,6 @@ impl Stage for Data {
     fn check(&self, _context: &super::Context) -> Vec<Complaint> {
         let empty = Complaint::new("file", "the name of the file is empty").hint("name a CSV file beside the workflow");
         if self.file.trim().is_empty() { vec![empty] } else { Vec::new() }
-    }
-
-    fn settings(&self) -> Value {
-        json!({ "file": self.file, "how": self.dialect() })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

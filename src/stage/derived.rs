@@ -1,12 +1,10 @@
 //! Formulas of factors as columns: what a term such as `scn/(1+ratio)` stands for, with its unit.
 //!
-//! A formula is computed in SI units and shown in the unit of a factor of the same dimension (the first in the alphabet), or in
-//! SI units. Its
-//! dimension is found by what the formula does when lengths, masses and times are measured in other units: a formula that
-//! adds quantities of different kinds, or takes the exponential of one, changes by more than a factor, and is refused.
+//! A formula is computed in SI units and shown in the unit of a factor of the same dimension (the first in the alphabet),
+//! or in SI units. One that adds quantities of different kinds, or takes the exponential of one, is refused.
 
-use super::formula::{Parsed, parse};
 use super::{Complaint, Context, StageError};
+use crate::expression::{Expression, Measure};
 use crate::unit::{Dimension, Unit};
 use serde::{Deserialize, Serialize};
 
@@ -36,12 +34,18 @@ pub(super) fn check(name: &str, context: &Context) -> Vec<Complaint> {
     if is_plain(name) {
         return vec![unknown(name)];
     }
-    let formula = match parse(name) {
+    let formula = match Expression::parse(name) {
         Ok(formula) => formula,
         Err(why) => return vec![Complaint::new("factors", why)],
     };
     let lost: Vec<Complaint> =
         formula.names().iter().filter(|own| !context.factors.contains_key(*own)).map(|own| unknown(own)).collect();
+    if lost.is_empty()
+        && let Some(category) = formula.names().iter().find(|own| !context.factors[*own].names.is_empty())
+    {
+        let message = format!("`{name}` computes with `{category}`, whose levels are names");
+        return vec![Complaint::new("factors", message).hint("name the factor as a term of its own")];
+    }
     if lost.is_empty()
         && let Err(error) = Derived::of(name, |factor| context.factors.get(factor).map(|f| f.unit.clone()))
     {
@@ -56,7 +60,7 @@ impl Derived {
     /// # Errors
     /// It cannot be read, names no known factor, or mixes quantities of different kinds.
     pub(super) fn of(name: &str, unit_of: impl Fn(&str) -> Option<String>) -> Result<Self, StageError> {
-        let formula = parse(name).map_err(StageError::new)?;
+        let formula = Expression::parse(name).map_err(StageError::new)?;
         let factor = |own: &String| {
             let unit =
                 unit_of(own).ok_or_else(|| StageError::new(format!("`{name}` names `{own}`, which is no factor")))?;
@@ -75,14 +79,15 @@ impl Derived {
     /// # Errors
     /// A row gives no number, such as a division by zero.
     pub(super) fn values(&self, columns: &[Vec<f64>]) -> Result<Vec<f64>, StageError> {
-        let formula = parse(&self.name).map_err(StageError::new)?;
+        let formula = Expression::parse(&self.name).map_err(StageError::new)?;
         let own = parsed_unit(&self.unit)?.factor;
-        let units = self.factors.iter().map(|(_, unit)| Ok(parsed_unit(unit)?.factor));
-        let units = units.collect::<Result<Vec<f64>, StageError>>()?;
+        let units = self.factors.iter().map(|(_, unit)| parsed_unit(unit));
+        let units = units.collect::<Result<Vec<Unit>, StageError>>()?;
         let rows = columns.first().map_or(0, Vec::len);
         let value = |row: usize| {
-            let point: Vec<f64> = columns.iter().zip(&units).map(|(column, unit)| column[row] * unit).collect();
-            let value = formula.value(&point).map_err(StageError::new)? / own;
+            let measure = |(column, unit): (&Vec<f64>, &Unit)| Measure::of(column[row] * unit.factor, unit.dimension);
+            let point: Vec<Measure> = columns.iter().zip(&units).map(measure).collect();
+            let value = formula.eval(&point).map_err(StageError::new)?.value / own;
             let undefined = || {
                 let message = format!("row {}: `{}` is {value}", row + 1, self.name);
                 StageError::new(message).hint("leave out the row, or write a formula that holds for it")
@@ -97,61 +102,19 @@ fn parsed_unit(text: &str) -> Result<Unit, StageError> {
     Unit::parse(text).map_err(|e| StageError::new(e.to_string()))
 }
 
-/// Other lengths, masses and times than those of the SI.
-const SCALES: [[f64; 3]; 4] = [[2.0, 1.0, 1.0], [1.0, 2.0, 1.0], [1.0, 1.0, 2.0], [3.0, 5.0, 7.0]];
-/// Values at which a formula is tried, by turns over its factors.
-const TRIALS: [f64; 5] = [0.37, 1.9, 0.83, 2.6, 1.3];
-
 /// The unit in which the values of a formula are shown.
-fn unit_of_formula(name: &str, formula: &Parsed, factors: &[(String, String)]) -> Result<String, StageError> {
+fn unit_of_formula(name: &str, formula: &Expression, factors: &[(String, String)]) -> Result<String, StageError> {
     let units = factors.iter().map(|(_, unit)| parsed_unit(unit)).collect::<Result<Vec<Unit>, StageError>>()?;
-    let growth = |scale: [f64; 3], shift: usize| {
-        let trial = |i: usize| TRIALS[(i + shift) % TRIALS.len()];
-        let at = |scale: [f64; 3]| {
-            let point: Vec<f64> = units.iter().enumerate().map(|(i, u)| trial(i) * u.dimension.scale(scale)).collect();
-            formula.value(&point).map_err(StageError::new)
-        };
-        Ok::<f64, StageError>(at(scale)? / at([1.0; 3])?)
-    };
-    let mixed = || {
-        StageError::new(format!("`{name}` mixes quantities of different kinds, such as a length and a pressure"))
-            .hint("divide each by one of its kind before it is added, or put in an exponential or a logarithm")
-    };
-    // the power of each base unit, from what doubling it does to the formula
-    let mut powers = [0.0; 3];
-    for (power, scale) in powers.iter_mut().zip(SCALES) {
-        let (first, second) = (growth(scale, 0)?, growth(scale, 1)?);
-        *power = math::elementary::ln(first) / math::elementary::ln(2.0);
-        if !power.is_finite() || (first - second).abs() > 1e-9 * first.abs() {
-            return Err(mixed());
-        }
-    }
-    let as_powers = |scale: [f64; 3]| -> f64 {
-        scale.iter().zip(powers).map(|(base, power)| math::elementary::pow(*base, power)).product()
-    };
-    let [.., last] = SCALES;
-    if (growth(last, 2)? - as_powers(last)).abs() > 1e-6 * as_powers(last) {
-        return Err(mixed());
-    }
-    let same = |dimension: Dimension| SCALES.iter().all(|s| (dimension.scale(*s) / as_powers(*s) - 1.0).abs() < 1e-9);
-    if same(Dimension::NONE) {
+    let point: Vec<Measure> = units.iter().map(|unit| Measure::of(1.0, unit.dimension)).collect();
+    let found = formula.eval(&point).map_err(StageError::new)?;
+    let dimension = found.dimension.map_err(|why| {
+        StageError::new(format!("`{name}`: {why}")).hint("divide each quantity by one of its kind before it is added")
+    })?;
+    if dimension == Dimension::NONE {
         return Ok(String::new());
     }
-    let of_factor = factors.iter().zip(&units).find(|(_, unit)| same(unit.dimension));
-    Ok(of_factor.map_or_else(|| si_text(powers), |((_, unit), _)| unit.clone()))
-}
-
-/// `kg*m^-1*s^-2` from the powers of metre, kilogram and second.
-fn si_text(powers: [f64; 3]) -> String {
-    let part = |(symbol, power): (&str, f64)| {
-        let rounded = (power * 1e4).round() / 1e4;
-        match rounded {
-            0.0 => None,
-            1.0 => Some(symbol.to_owned()),
-            power => Some(format!("{symbol}^{power}")),
-        }
-    };
-    ["m", "kg", "s"].into_iter().zip(powers).filter_map(part).collect::<Vec<_>>().join("*")
+    let of_factor = factors.iter().zip(&units).find(|(_, unit)| unit.dimension == dimension);
+    Ok(of_factor.map_or_else(|| dimension.to_string(), |((_, unit), _)| unit.clone()))
 }
 
 #[cfg(test)]
@@ -170,7 +133,7 @@ mod tests {
             ("scn/E", ""),
             ("ratio^2", ""),
             ("exp(-ratio)", ""),
-            ("E*R", "kg*s^-2"),
+            ("E*R", "kg s^-2"),
             ("sqrt(R)", "m^0.5"),
             ("max(scn, E)", "GPa"),
         ] {
@@ -178,7 +141,10 @@ mod tests {
         }
         for mixed in ["scn+ratio", "exp(scn)", "scn + R", "1+E"] {
             let message = Derived::of(mixed, unit).unwrap_err().message;
-            assert!(message.contains("different kinds"), "{mixed}: {message}");
+            assert!(
+                message.contains("cannot be added") || message.contains("needs a pure number"),
+                "{mixed}: {message}"
+            );
         }
         assert!(Derived::of("scn/foo", unit).unwrap_err().message.contains("`foo`"));
         assert!(Derived::of("2*3", unit).unwrap_err().message.contains("names no factor"));

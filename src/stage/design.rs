@@ -15,13 +15,15 @@ mod tests;
 
 pub use config::Design;
 
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work, data,
+};
 use crate::artifact::{Artifact, ArtifactKind, Table};
-use crate::unit::Unit;
 use design::report::power::Question;
 use design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
+use std::collections::BTreeMap;
 
 /// Parameters of the task: all that decides the table.
 #[derive(Serialize, Deserialize)]
@@ -32,6 +34,9 @@ struct Params {
     layout: Layout,
     #[serde(default, skip_serializing_if = "is_default")]
     power: Question,
+    /// Names of the levels of factors that are categories.
+    #[serde(default, skip_serializing_if = "is_default")]
+    names: BTreeMap<String, Vec<String>>,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -64,11 +69,8 @@ impl Stage for Design {
         }
     }
 
-    fn settings(&self) -> Value {
-        json!({
-            "design": self.method().ok(), "factors": self.factors, "file": self.file,
-            "replicates": self.replicates, "order": self.order, "power": self.power,
-        })
+    fn sketch(&self) -> Sketch {
+        Sketch { factors: Some(self.factors.clone()), ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -76,7 +78,8 @@ impl Stage for Design {
         let layout = self.layout();
         let draws = design.draws() || layout.order == Order::Random;
         let factors = self.factors(known.context);
-        let params = Params { design, factors, layout, power: self.power };
+        let names = self.names(known.context);
+        let params = Params { design, factors, layout, power: self.power, names };
         let mut task = Task::new("design", json!(params));
         if draws {
             task = task.seed(known.context.seed);
@@ -85,6 +88,14 @@ impl Stage for Design {
             task.files.push(known.library.file("rows", file)?);
         }
         Ok(Step::Finish(task))
+    }
+}
+
+impl Design {
+    /// Names of the levels of the factors that are categories.
+    fn names(&self, context: &Context) -> BTreeMap<String, Vec<String>> {
+        let names = |name: &String| Some((name.clone(), context.factors.get(name)?.names.clone()));
+        self.factors.iter().filter_map(names).filter(|(_, names)| !names.is_empty()).collect()
     }
 }
 
@@ -130,31 +141,14 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
     let table = build(&params.design, &params.factors, params.layout, job.seed.unwrap_or(0))
         .map_err(|error| StageError::new(error.to_string()))?;
     let report = report(&table, params.power);
-    Ok(tables::artifact(&table, &report))
+    Ok(tables::artifact(&table, &report, &params.names)?)
 }
 
 /// The columns of a file that are the factors, converted to the factors' units unless they are numbers of levels.
 fn rows(table: &Table, factors: &[Factor], by_level: bool) -> Result<Vec<Vec<f64>>, StageError> {
     let columns = factors.iter().map(|factor| {
-        let name = &factor.name;
-        let known = || table.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ");
-        let column = table.column(name).ok_or_else(|| {
-            StageError::new(format!("the file has no column `{name}`")).hint(format!("its columns are {}", known()))
-        })?;
-        let values = table.reals(name).ok_or_else(|| {
-            StageError::new(format!("column `{name}` holds texts")).hint("a factor needs a number in every row")
-        })?;
-        let unit = |text: &str| Unit::parse(text).map_err(|e| StageError::new(format!("factor `{name}`: {e}")));
-        let (from, to) = (unit(&column.unit)?, unit(&factor.unit)?);
-        if by_level {
-            return Ok(values);
-        }
-        if from.dimension != to.dimension {
-            let message = format!("column `{name}` is in `{}`, the factor in `{}`", column.unit, factor.unit);
-            return Err(StageError::new(message).hint("name the unit in the head of the column: `Ec [GPa]`"));
-        }
-        let scale = from.factor / to.factor;
-        Ok(values.into_iter().map(move |v| if scale == 1.0 { v } else { v * scale }).collect())
+        let column = table.find(&factor.name)?;
+        Ok(column.numbers(if by_level { &column.unit } else { &factor.unit })?)
     });
     let columns: Vec<Vec<f64>> = columns.collect::<Result<_, StageError>>()?;
     Ok((0..table.rows()).map(|i| columns.iter().map(|c| c[i]).collect()).collect())

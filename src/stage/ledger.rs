@@ -4,7 +4,7 @@
 //! runner knows the key and the result of an old row without making its task, and a [`Brief`] of it: all that gathering
 //! takes from a run. Briefs only spare work: with them, without them or with some, the gathered table is the same.
 
-use super::rows::Responses;
+use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
 
 /// A run that was made before and need not be looked at again.
@@ -59,7 +59,7 @@ pub struct Brief<'a> {
 
 impl<'a> Brief<'a> {
     /// As gathering sees a run.
-    pub(super) fn responses(&self) -> Responses<'a> {
+    pub(super) fn responses(&self) -> Outcome<'a> {
         let found = self.names.iter().zip(self.values);
         (self.failure, found.map(|((name, unit), value)| (name.as_str(), *value, unit.as_str())).collect())
     }
@@ -97,7 +97,7 @@ impl Briefs {
 
     /// Adds a run as its artifact holds it; false when it holds no responses.
     pub fn push_run(&mut self, run: &Artifact) -> bool {
-        let Ok((failure, responses)) = super::rows::responses(run) else { return false };
+        let Ok((failure, responses)) = Run::outcome(run) else { return false };
         let names: Vec<_> = responses.iter().map(|(name, _, unit)| ((*name).to_owned(), (*unit).to_owned())).collect();
         let values: Vec<f64> = responses.iter().map(|(_, value, _)| *value).collect();
         self.push(Brief { failure, names: &names, values: &values });
@@ -155,13 +155,10 @@ fn place_of<T>(list: &mut Vec<T>, is: impl Fn(&T) -> bool, make: impl FnOnce() -
 mod tests {
     use super::*;
     use crate::artifact::ArtifactKind;
-    use crate::stage::rows::response_table;
+    use crate::artifact::run::Responses;
 
     fn run(failure: &str, responses: &[(&str, f64, &str)]) -> Artifact {
-        let group = Group::new()
-            .with("failure", Node::Text(failure.to_owned()))
-            .with("responses", Node::Table(response_table(responses)));
-        Artifact::of(ArtifactKind::RUN, group)
+        Run::plain(failure, Responses::of(responses)).to_artifact()
     }
 
     #[test]
@@ -179,7 +176,7 @@ mod tests {
         let back = Briefs::from_bytes(&bytes).unwrap();
         assert_eq!((back.len(), back.shapes.len(), back.failures.len()), (4, 3, 2));
         for (number, run) in runs.iter().enumerate() {
-            assert_eq!(back.get(number).unwrap().responses(), crate::stage::rows::responses(run).unwrap());
+            assert_eq!(back.get(number).unwrap().responses(), Run::outcome(run).unwrap());
         }
         assert_eq!(back.get(4), None);
         assert!((0..bytes.len()).all(|end| Briefs::from_bytes(&bytes[..end]).is_none_or(|cut| cut != back)));

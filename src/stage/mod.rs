@@ -27,7 +27,8 @@
 //!
 //! # A new kind
 //! One file with the config struct (serde, schemars, `deny_unknown_fields`; quantities as [`crate::unit::Quantity`]),
-//! `impl Stage`, `impl Kind` and its work functions, and one line in the list below. `Kind` says what artifacts it can
+//! `impl Stage`, `impl Kind` and its work functions, and one line in the list below (`census.rs` is such a file, for
+//! the tests). `Kind` says what artifacts it can
 //! give and which class it belongs to; an artifact that no other kind gives is declared in the same file
 //! ([`ArtifactKind::new`]). Options added later are skipped when at their default (`skip_serializing_if`), so that they
 //! rerun nothing. Parameters of tasks are plain SI numbers (the domain's own spec types), built from the config in `next`.
@@ -35,6 +36,8 @@
 pub mod agreement;
 pub mod anova;
 pub mod calibrate;
+#[cfg(test)]
+pub mod census;
 mod columns;
 pub mod command;
 mod context;
@@ -45,6 +48,7 @@ pub mod figure;
 pub mod fitted;
 pub mod formula;
 pub mod ledger;
+pub mod material;
 mod notes;
 mod published;
 pub mod range;
@@ -57,19 +61,36 @@ pub mod specimen;
 pub mod table;
 mod task;
 pub mod units;
+pub mod vary;
 pub mod verify;
 
-pub use context::{Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler};
+pub use context::{
+    Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Scale, Sketch,
+    Varier,
+};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
-use crate::artifact::{Accepts, Artifact, ArtifactKind};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::Deserializer;
 use serde::de::DeserializeOwned;
+use serde::{Deserializer, Serialize};
 use serde_json::Value;
 
-/// One configured stage of a workflow.
-pub trait Stage: Send + Sync {
+/// The settings of a stage as canonical values.
+pub trait Settings {
+    /// All settings, defaults filled in, quantities as SI numbers: for recognising an unchanged stage at once, and for
+    /// `flow diff`, run records and the report. Every field of the config type is there: none can be forgotten.
+    fn settings(&self) -> Value;
+}
+
+impl<T: Serialize> Settings for T {
+    fn settings(&self) -> Value {
+        serde_json::to_value(self).unwrap_or_else(|e| panic!("BUG: settings that are no plain values: {e}"))
+    }
+}
+
+/// One configured stage of a workflow: its config type, which serde reads and writes.
+pub trait Stage: Settings + Send + Sync {
     /// The stages it takes as inputs, in a fixed order.
     fn inputs(&self) -> Vec<Port>;
 
@@ -79,8 +100,10 @@ pub trait Stage: Send + Sync {
     /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
     fn check(&self, context: &Context) -> Vec<Complaint>;
 
-    /// All settings as canonical values (SI numbers), for `flow diff` and for recognising an unchanged stage at once.
-    fn settings(&self) -> Value;
+    /// What other stages know of it before anything runs.
+    fn sketch(&self) -> Sketch {
+        Sketch::default()
+    }
 
     /// What to do next, given all that is known; a pure function.
     ///
@@ -214,6 +237,18 @@ impl StageError {
     }
 }
 
+impl From<Unread> for StageError {
+    fn from(unread: Unread) -> Self {
+        Self::new(unread.to_string())
+    }
+}
+
+impl From<Wanted> for StageError {
+    fn from(wanted: Wanted) -> Self {
+        Self::new(wanted.to_string())
+    }
+}
+
 /// What the list knows of one kind.
 pub struct KindEntry {
     /// The word after `kind =`.
@@ -233,9 +268,9 @@ pub struct KindEntry {
 /// Makes [`KINDS`] and [`read`] from the list of config types:
 /// `kinds! { data::Data }` becomes a constant with one entry per type, and a function that tries each name in turn.
 macro_rules! kinds {
-    ($($config:ty),* $(,)?) => {
+    ($($(#[$attribute:meta])* $config:ty),* $(,)?) => {
         /// Every kind of stage.
-        pub const KINDS: &[KindEntry] = &[$(KindEntry {
+        pub const KINDS: &[KindEntry] = &[$($(#[$attribute])* KindEntry {
             name: <$config as Kind>::NAME,
             about: <$config as Kind>::ABOUT,
             gives: <$config as Kind>::GIVES,
@@ -246,7 +281,7 @@ macro_rules! kinds {
 
         /// Reads the table of a stage of the named kind; `None` when there is no such kind.
         pub fn read<'de, D: Deserializer<'de>>(kind: &str, table: D) -> Option<Result<Box<dyn Stage>, D::Error>> {
-            $(if kind == <$config as Kind>::NAME {
+            $($(#[$attribute])* if kind == <$config as Kind>::NAME {
                 return Some(<$config as serde::Deserialize>::deserialize(table).map(|stage| Box::new(stage) as _));
             })*
             let _ = table;
@@ -259,6 +294,8 @@ kinds! {
     agreement::Agreement,
     anova::Anova,
     calibrate::Calibrate,
+    #[cfg(test)]
+    census::Census,
     command::Command,
     data::Data,
     design::Design,

@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(remarks[..2], ["as printed", "differs from print"]);
         assert_eq!(remarks[2], "within the rounding of the printed responses");
         assert_eq!(remarks[3], "differs from print: sign");
-        assert!((table.reals("deviation").unwrap()[3] - 3.0).abs() < 1e-12);
+        assert!((table.shown("deviation").unwrap().0[3] - 3.0).abs() < 1e-12);
     }
 
     #[test]

@@ -8,12 +8,12 @@ use super::notes::Notes;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use stats::range::{Range as Line, range_analysis};
 
 /// Settings of a `range` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Range {
     /// The stage whose runs are analysed.
@@ -39,10 +39,6 @@ impl Stage for Range {
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
         check_names(context, &self.factors, &self.responses)
-    }
-
-    fn settings(&self) -> Value {
-        json!({ "factors": self.factors, "responses": self.responses, "weights": self.weights })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

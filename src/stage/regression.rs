@@ -18,14 +18,14 @@ use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Ste
 use crate::artifact::{Accepts, ArtifactKind};
 use grouped::GROUPS;
 use schemars::JsonSchema;
-use serde::Deserialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use stats::selection::Direction;
 use stats::terms::Term;
 use std::collections::BTreeMap;
 
 /// Settings of a `regression` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Regression {
     /// The stage whose runs are fitted.
@@ -119,15 +119,6 @@ impl Stage for Regression {
         found.extend(self.check_groups());
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
-    }
-
-    fn settings(&self) -> Value {
-        let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
-        let groups = json!([self.by, self.through_origin, self.confidence]);
-        json!({
-            "terms": self.terms, "select": select, "weights": self.weights, "predict": self.predict,
-            "published": self.published, "groups": groups,
-        })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -8,9 +8,14 @@ mod points;
 pub use points::Rows;
 
 use super::ledger::{Briefs, KeptRuns};
-use super::{Complaint, Context, Failure, Input, Job, Known, Point, Source, Stage, StageError, Step, Task, Work};
+use super::material::{self, Material};
+use super::{
+    Complaint, Context, Failure, Input, Job, Known, Parameter, Point, Source, Stage, StageError, Step, Task, Work, vary,
+};
+use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
-use crate::unit::Unit;
+use crate::expression::Measure;
+use crate::unit::{Conversion, Dimension, Unit};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -23,33 +28,36 @@ fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a
     Ok(table.columns.iter().filter(|column| context.factors.contains_key(&column.name)).collect())
 }
 
-/// Parameters by path in SI units after a point of the factor space was applied to them.
+/// Values of a material by path after a point of the factor space was applied to it, and its formulas evaluated.
 ///
 /// # Errors
-/// A factor of the point is not known, or sets a parameter that is not there.
-pub fn apply(
-    base: &BTreeMap<String, f64>,
-    point: &Point,
-    context: &Context,
-) -> Result<BTreeMap<String, f64>, StageError> {
-    let mut set = base.clone();
+/// A factor of the point is not known or sets a value that is not there, or a formula needs what is not set.
+pub fn apply(material: &Material, point: &Point, context: &Context) -> Result<material::Values, StageError> {
+    let mut set = material::Values::new();
+    let mut measures: BTreeMap<&str, Measure> = BTreeMap::new();
     for (name, value) in point {
         let factor = context.factors.get(name).ok_or_else(|| StageError::new(format!("`{name}` is not a factor")))?;
-        if factor.sets.is_empty() {
-            continue;
+        let measure = factor.measure(*value);
+        let measure = measure.ok_or_else(|| StageError::new(format!("factor `{name}`: unit `{}`", factor.unit)))?;
+        measures.insert(name, measure);
+        for path in factor.sets.iter().filter(|path| !context.sets_stage(path)) {
+            if !material.takes(path) {
+                let known: Vec<String> = material.paths().collect();
+                let message = format!("factor `{name}` sets `{path}`, which the material does not have");
+                return Err(StageError::new(message).hint(format!("the material has {}", known.join(", "))));
+            }
+            let dimension = measure.dimension.unwrap_or(Dimension::NONE);
+            set.insert(path.clone(), Parameter { value: measure.value, dimension });
         }
-        let unit = Unit::parse(&factor.unit).map_err(|e| StageError::new(format!("factor `{name}`: {e}")))?;
-        let place = set.get_mut(&factor.sets).ok_or_else(|| {
-            let known: Vec<&str> = base.keys().map(String::as_str).collect();
-            StageError::new(format!("factor `{name}` sets `{}`, which the material does not have", factor.sets))
-                .hint(format!("the material has {}", known.join(", ")))
-        })?;
-        *place = value * unit.factor;
     }
-    Ok(set)
+    let (values, faults) = material.resolve(&set, &|name| measures.get(name).copied());
+    match faults.first() {
+        Some(fault) => Err(StageError::new(&fault.why).hint("let the design vary it, or give the value itself")),
+        None => Ok(values),
+    }
 }
 
-/// Everything a run may name at a point: the material's parameters by path (SI) after the point was applied, and the
+/// Everything a run may name at a point: the material's values by path (SI) after the point was applied, and the
 /// factors by name (in their units) that set something.
 ///
 /// # Errors
@@ -61,8 +69,7 @@ pub fn values(
 ) -> Result<BTreeMap<String, f64>, StageError> {
     let mut values = BTreeMap::new();
     if let Some(material) = material.and_then(|name| context.materials.get(name)) {
-        let base = material.iter().map(|(path, parameter)| (path.clone(), parameter.value)).collect();
-        values = apply(&base, point, context)?;
+        values = apply(material, point, context)?.into_iter().map(|(path, found)| (path, found.value)).collect();
     }
     let sets = |name: &str| context.factors.get(name).is_none_or(|factor| !factor.sets.is_empty());
     values.extend(point.iter().filter(|(name, _)| sets(name)).map(|(name, value)| (name.clone(), *value)));
@@ -91,7 +98,7 @@ struct GatherParams {
 /// The design cannot be read, or a row cannot be tried.
 pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError> {
     let Some(design) = known.port("design").next() else {
-        return Ok(Step::Finish(simulator.sample(known, &Point::new(), 1)?));
+        return Ok(Step::Finish(vary::sample(simulator, known, &Point::new(), 1)?));
     };
     let artifact = known.load(design)?;
     let mut task = gather(known, design, &artifact)?;
@@ -105,7 +112,7 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
                 Source::Content(kept.content)
             }
             None => {
-                let run = simulator.sample(known, &rows.point(index), rows.replicate(index))?;
+                let run = vary::sample(simulator, known, &rows.point(index), rows.replicate(index))?;
                 Source::Task(Arc::new(run.row(index)))
             }
         };
@@ -177,7 +184,7 @@ fn kept_runs(kept: &Artifact) -> Result<(&[i64], Briefs), StageError> {
 }
 
 /// What every run gave, in the order of the rows, whether it is at hand or kept.
-fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result<Vec<Responses<'a>>, StageError> {
+fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result<Vec<Outcome<'a>>, StageError> {
     let old = kept.into_iter().flat_map(|(places, briefs)| {
         let brief = |run: usize| briefs.get(run).ok_or_else(|| StageError::new("a kept run has no brief"));
         places.iter().enumerate().map(move |(run, place)| Ok((*place as usize, brief(run)?.responses())))
@@ -190,7 +197,7 @@ fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result
         match old.next_if(|(kept, _)| *kept == place) {
             Some((_, responses)) => all.push(responses),
             None => match new.next() {
-                Some((_, run)) => all.push(responses(run)?),
+                Some((_, run)) => all.push(Run::outcome(run)?),
                 None => break,
             },
         }
@@ -198,52 +205,26 @@ fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result
     Ok(all)
 }
 
-pub(super) type Responses<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
-
-/// Failure text and (name, value, unit) of every response of a run.
-pub(super) fn responses(run: &Artifact) -> Result<Responses<'_>, StageError> {
-    let wrong = |what: &str| StageError::new(format!("a run holds no {what}"));
-    let failure = match run.root.get("failure") {
-        Some(Node::Text(text)) => text.as_str(),
-        Some(_) | None => "",
-    };
-    let table = run.table("responses").ok_or_else(|| wrong("table `responses`"))?;
-    let texts = |name: &str| match table.column(name).map(|column| &column.values) {
-        Some(Values::Texts(texts)) => Ok(texts),
-        Some(_) | None => Err(wrong(&format!("texts `responses.{name}`"))),
-    };
-    let values = table.reals("value").ok_or_else(|| wrong("reals `responses.value`"))?;
-    let (names, units) = (texts("response")?, texts("unit")?);
-    let found = names.iter().zip(values).zip(units).map(|((name, value), unit)| (name.as_str(), value, unit.as_str()));
-    Ok((failure, found.collect()))
-}
-
 fn response_column(
     table: Table,
     name: &str,
     shown: Option<&String>,
-    results: &[Responses<'_>],
+    results: &[Outcome<'_>],
 ) -> Result<Table, StageError> {
-    let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("response `{name}`: {e}")));
     let mut last = None;
     let own = results.iter().flat_map(|(_, found)| found).find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
     let unit = shown.map_or(own, String::as_str);
-    let target = parse(unit)?;
     let mut values = Vec::with_capacity(results.len());
     for (failure, found) in results {
         let value = found.iter().find(|(n, _, _)| *n == name);
         values.push(match value {
             Some((_, value, from)) if failure.is_empty() => {
                 // Nearly always the unit of the row before.
-                let (_, from) = match &last {
-                    Some((text, unit)) if text == from => (*text, *unit),
-                    _ => *last.insert((*from, parse(from)?)),
+                let (_, conversion) = match &last {
+                    Some((text, conversion)) if text == from => (*text, *conversion),
+                    _ => *last.insert((*from, conversion(name, from, unit)?)),
                 };
-                if from.dimension != target.dimension {
-                    let message = format!("response `{name}` comes in `{own}` and cannot be shown in `{unit}`");
-                    return Err(StageError::new(message).hint("mend the unit of [response] in the workflow"));
-                }
-                value * (from.factor / target.factor)
+                conversion.of(*value)
             }
             Some(_) | None => f64::NAN,
         });
@@ -251,13 +232,11 @@ fn response_column(
     Ok(table.reals_column(name, unit, "", values))
 }
 
-/// A `run` artifact's table of responses, in SI units.
-pub fn response_table(responses: &[(&str, f64, &str)]) -> Table {
-    let texts = |pick: fn(&(&str, f64, &str)) -> String| responses.iter().map(pick).collect();
-    Table { about: "what the run gave".to_owned(), columns: Vec::new() }
-        .texts_column("response", "name", texts(|(name, _, _)| (*name).to_owned()))
-        .reals_column("value", "", "in the unit beside it", responses.iter().map(|(_, value, _)| *value).collect())
-        .texts_column("unit", "unit of the value", texts(|(_, _, unit)| (*unit).to_owned()))
+fn conversion(name: &str, from: &str, unit: &str) -> Result<Conversion, StageError> {
+    Conversion::between(from, unit).map_err(|e| {
+        StageError::new(format!("response `{name}` comes in `{from}` and cannot be shown in `{unit}`: {e}"))
+            .hint("mend the unit of [response] in the workflow")
+    })
 }
 
 #[cfg(test)]

@@ -8,14 +8,14 @@ use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, 
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use stats::selection::Direction;
 use stats::terms::Term;
 use std::collections::BTreeMap;
 
 /// Settings of an `rsm` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rsm {
     /// The stages whose runs are fitted: one per response, in the same order, or one for all.
@@ -84,12 +84,6 @@ impl Stage for Rsm {
         found
     }
 
-    fn settings(&self) -> Value {
-        let select = json!([self.select, self.select_alpha, self.outlier_alpha]);
-        let what = json!({ "responses": self.responses, "terms": self.terms });
-        json!({ "fit": what, "select": select, "weights": self.weights, "predict": self.predict, "published": self.published })
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let inputs: Vec<_> = known.port("tables").collect();
         let mut fittings = Vec::new();
@@ -132,7 +126,7 @@ impl Rsm {
         let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false };
         let columns = Columns::of(table, context, wanted)?;
         let varied = |name: &String| {
-            let values = table.reals(name).unwrap_or_default();
+            let values = table.shown(name).unwrap_or_default().0;
             values.iter().any(|v| *v != values[0])
         };
         let terms = match own {

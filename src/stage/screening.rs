@@ -12,12 +12,12 @@ use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, S
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use stats::screening::{Effect, Screening as Found, screen};
 use stats::terms::Term;
 
 /// Settings of a `screening` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Screening {
     /// The stage whose runs are analysed.
@@ -63,10 +63,6 @@ impl Stage for Screening {
         found.extend(terms.into_iter().map(|c| Complaint { path: vec!["terms".to_owned()], ..c }));
         found.extend(check_probability("alpha", self.alpha));
         found
-    }
-
-    fn settings(&self) -> Value {
-        json!({ "responses": self.responses, "terms": self.terms, "alpha": self.alpha, "weights": self.weights })
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -4,10 +4,10 @@
 //! k. What is computed and why: [`dem::genesis`].
 
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
 };
 use crate::artifact::specimen::Specimen as Stored;
-use crate::artifact::{Artifact, ArtifactKind, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::unit::{Density, Length};
 use dem::genesis::clump::{Clump, ClumpMass};
 use dem::genesis::gradation::{Gradation, GradationError};
@@ -19,10 +19,10 @@ use dem::genesis::specimen::{Aggregate, Quality, Recipe, Specimen as Made, Speci
 use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Settings of a `specimen` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Specimen {
     /// Width of a rectangle, across the axis of loading.
@@ -39,6 +39,9 @@ pub struct Specimen {
     pub radius_ratio: f64,
     /// Density of the discs.
     pub density: Density,
+    /// Group of the discs, as the material names it; a material of one group fits whatever its name.
+    #[serde(default = "discs")]
+    pub group: String,
     /// Largest share of discs with fewer than three contacts.
     #[serde(default)]
     pub floaters: f64,
@@ -47,9 +50,12 @@ pub struct Specimen {
 }
 
 /// Settings of the aggregate.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AggregateConfig {
+    /// Group of the aggregate, as the material names it.
+    #[serde(default = "stones")]
+    pub group: String,
     /// Law of the gradation.
     pub gradation: GradationName,
     /// Share of aggregate; not for `table`.
@@ -101,6 +107,14 @@ pub enum GradationName {
     Fuller,
     /// Sieve curve.
     Table,
+}
+
+fn discs() -> String {
+    "mortar".to_owned()
+}
+
+fn stones() -> String {
+    "aggregate".to_owned()
 }
 
 fn random_angles() -> AngleLaw {
@@ -262,8 +276,13 @@ impl Stage for Specimen {
         self.recipe().err().unwrap_or_default()
     }
 
-    fn settings(&self) -> Value {
-        self.recipe().map_or(Value::Null, |recipe| json!(recipe))
+    fn sketch(&self) -> Sketch {
+        let aggregate = self.aggregate.iter().map(|aggregate| aggregate.group.clone());
+        Sketch {
+            groups: std::iter::once(self.group.clone()).chain(aggregate).collect(),
+            varies: true,
+            ..Sketch::default()
+        }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -384,12 +403,10 @@ pub fn load(artifact: &Artifact) -> Result<Made, StageError> {
         }
         polygons[index].vertices.push(vertex);
     }
-    let column = |name: &str| stored.clumps.reals(name).ok_or_else(|| odd("clumps"));
-    let (mass, inertia, x, y) = (column("mass")?, column("inertia")?, column("x")?, column("y")?);
-    let polygon_of = match stored.clumps.column("polygon").map(|column| &column.values) {
-        Some(Values::Ints(polygons)) => polygons.clone(),
-        _ => return Err(odd("clumps")),
-    };
+    let clumps = &stored.clumps;
+    let (mass, inertia) = (clumps.numbers("mass", "kg/m")?, clumps.numbers("inertia", "kg*m")?);
+    let (x, y) = (clumps.numbers("x", "m")?, clumps.numbers("y", "m")?);
+    let polygon_of = clumps.ints("polygon")?;
     let mut clumps: Vec<Clump> = Vec::with_capacity(polygon_of.len());
     for (k, &polygon) in polygon_of.iter().enumerate() {
         let pebbles = (0..stored.clump_of.len()).filter(|&i| stored.clump_of[i] == k as i64).collect();

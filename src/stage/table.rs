@@ -28,11 +28,11 @@ use list::Given;
 pub use list::List;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `table` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// The stages whose tables are printed.
@@ -161,15 +161,6 @@ impl Stage for Table {
         found
     }
 
-    fn settings(&self) -> Value {
-        json!({
-            "of": self.of.list(), "table": self.table, "columns": self.columns, "where": self.only,
-            "compare": self.compare, "by": self.by, "caption": self.caption, "label": self.label, "notes": self.notes,
-            "digits": self.digits, "decimals": self.decimals, "symbols": self.symbols, "list": self.list,
-            "factors": self.factors, "materials": self.materials, "classes": self.classes, "published": self.published,
-        })
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let given = self.given(known)?;
         let columns = match &given {
@@ -227,7 +218,7 @@ impl Kind for Table {
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
-    /// 3: the main table of a result when none is named, and not the first by its name. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    /// 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
     const WORKS: &'static [Work] = &[Work { name: "table", version: 3, run: print }];
 }
 

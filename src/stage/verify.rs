@@ -9,11 +9,11 @@
 
 use super::calibrate::read_response;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table, Values};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use math::distribution::t_for_coverage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::sync::Arc;
 
 /// Settings of a `verify` stage.
@@ -68,10 +68,6 @@ impl Stage for Verify {
         if self.replicates < 2 { vec![few.hint("replicates = 5")] } else { Vec::new() }
     }
 
-    fn settings(&self) -> Value {
-        json!(self)
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let input = known.one("solution")?;
         let artifact = known.load(input)?;
@@ -83,8 +79,9 @@ impl Stage for Verify {
             Task::new("verify", json!(Params { factors: factors.clone(), replicates: self.replicates as usize }))
                 .input("solution", input.content);
         for set in 0..table.rows() {
-            let value = |name: &String| table.reals(name).map(|values| (name.clone(), values[set]));
-            let point: Point = factors.iter().filter_map(value).collect();
+            let unit = |name: &String| known.context.factors.get(name).map_or("", |factor| factor.unit.as_str());
+            let value = |name: &String| Ok((name.clone(), table.numbers(name, unit(name))?[set]));
+            let point: Point = factors.iter().map(value).collect::<Result<_, StageError>>()?;
             for replicate in 0..self.replicates {
                 task = task.after(
                     "run",
@@ -146,16 +143,12 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
 fn targets(solution: &Artifact) -> Result<Vec<Verified>, StageError> {
     let wrong = || StageError::new("the solution holds no table `prediction` with the targets");
     let table = solution.table("prediction").ok_or_else(wrong)?;
-    let texts = |name: &str| match table.column(name).map(|column| &column.values) {
-        Some(Values::Texts(texts)) => Ok(texts.clone()),
-        Some(_) | None => Err(wrong()),
-    };
-    let (sets, targets) = (table.reals("set").ok_or_else(wrong)?, table.reals("target").ok_or_else(wrong)?);
-    let names = texts("response")?.into_iter().zip(texts("unit")?);
-    let one = |((&set, &target), (response, unit)): ((&f64, &f64), (String, String))| Verified {
-        set: set as i64,
-        response,
-        unit,
+    let (sets, targets) = (table.ints("set")?, table.numbers("target", "")?);
+    let names = table.texts("response")?.iter().zip(table.texts("unit")?);
+    let one = |((&set, &target), (response, unit)): ((&i64, &f64), (&String, &String))| Verified {
+        set,
+        response: response.clone(),
+        unit: unit.clone(),
         target,
         values: Vec::new(),
     };
@@ -220,8 +213,7 @@ fn run_table(
         .ints_column("set", "target set, from 1", (0..failures.len()).map(|i| (i / n) as i64 + 1).collect())
         .ints_column("specimen", "counted from 1", (0..failures.len()).map(|i| (i % n) as i64 + 1).collect());
     for name in &params.factors {
-        let values = source.reals(name).ok_or_else(|| StageError::new(format!("the solution lost `{name}`")))?;
-        let unit = source.column(name).map_or("", |column| column.unit.as_str());
+        let (values, unit) = source.shown(name)?;
         table = table.reals_column(name, unit, "", (0..failures.len()).map(|i| values[i / n]).collect());
     }
     let mut seen: Vec<&str> = Vec::new();

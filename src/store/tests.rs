@@ -34,7 +34,7 @@ fn an_artifact_comes_back_with_the_bits_it_was_handed_out_with() {
     let (record, handed) = store.put("t", result(-0.0), &timing(0.2)).unwrap();
     let read = Store::open(folder.path()).unwrap().get(&record.content).unwrap();
     let bits = |artifact: &Artifact| -> Vec<u64> {
-        artifact.table("table").unwrap().reals("strength").unwrap().iter().map(|v| v.to_bits()).collect()
+        artifact.table("table").unwrap().shown("strength").unwrap().0.iter().map(|v| v.to_bits()).collect()
     };
     assert_eq!(bits(&handed), bits(&read));
     assert_eq!(bits(&read)[0], 0, "a zero with a sign would let equal inputs give different results");

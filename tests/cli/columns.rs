@@ -79,6 +79,10 @@ fn german_data_with_names(space: &Space) {
     let terms: Vec<&str> = column(&fit, "term").into_iter().filter_map(Value::as_str).collect();
     assert_eq!(terms, ["const", "A", "cement[slag]"]);
     assert!(notes(space, "cements").contains("dummy coding"));
+    let mixes = table(space, "mixes", "design");
+    let mut cements: Vec<&str> = column(&mixes, "cement").into_iter().filter_map(Value::as_str).collect();
+    cements.sort_unstable();
+    assert_eq!(cements, ["OPC", "OPC", "slag", "slag"]);
     let variance = table(space, "variance", "anova");
     assert_eq!(numbers(&variance, "df")[..2], [1.0, 1.0]);
 }
@@ -96,8 +100,10 @@ fn faults_in_terms_are_found_before_anything_runs() {
         assert!(!output.status.success(), "{to}: {}", told(&output));
         String::from_utf8(output.stderr).unwrap()
     };
-    assert!(message("scn/(1+ratio)", "scn/(1+R)").contains("different kinds"));
+    assert!(message("scn/(1+ratio)", "scn/(1+R)").contains("cannot be added"));
     assert!(message("scn/(1+ratio)", "scn/(1+ratoi)").contains("there is no [factor.ratoi]"));
     assert!(message("by = [\"R\", \"ratio\"]", "by = [\"R\", \"R\"]").contains("named twice"));
+    assert!(message("[\"OPC\", \"slag\"]", "[\"OPC\", 2]").contains("numbers and names"));
+    assert!(message("scn/(1+ratio)", "scn*exp(cement)").contains("levels are names"));
     assert!(message("fit = \"through-origin\"", "bins = 3").contains("`bins` has no effect"));
 }

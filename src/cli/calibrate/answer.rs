@@ -2,7 +2,8 @@
 
 use super::Asked;
 use crate::artifact::{Artifact, Column, Table, Values};
-use crate::cli::show::{csv_text, rows_json, text as shown};
+use crate::cli::show::{rows_json, text as shown};
+use crate::export::csv_text;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -37,10 +38,10 @@ fn parameters(asked: &Asked, solution: &Artifact) -> Table {
         .filter(|name| asked.workflow.context.factors.contains_key(*name))
         .collect();
     let ends = |name: &str| {
-        let values = others.reals(name).unwrap_or_default();
+        let values = others.shown(name).unwrap_or_default().0;
         values.iter().fold([f64::NAN; 2], |[low, high], &value| [value.min(low), value.max(high)])
     };
-    let one = |name: &str| best.reals(name).and_then(|values| values.first().copied()).unwrap_or(f64::NAN);
+    let one = |name: &str| best.shown(name).ok().and_then(|(values, _)| values.first().copied()).unwrap_or(f64::NAN);
     let unit = |name: &str| best.column(name).map_or_else(String::new, |column| column.unit.clone());
     let values = |pick: &dyn Fn(&str) -> f64| factors.iter().map(|name| pick(name)).collect::<Vec<f64>>();
     Table { about: String::new(), columns: Vec::new() }
@@ -69,7 +70,7 @@ fn warnings(prediction: &Table) -> String {
     for (name, reach) in names.iter().zip(reach).filter(|(_, reach)| reach.starts_with("out of reach")) {
         let _ = writeln!(text, "the target of `{name}` is {reach} over these ranges: the nearest is given");
     }
-    let deviations = prediction.reals("deviation_percent").unwrap_or_default();
+    let deviations = prediction.numbers("deviation_percent", "").unwrap_or_default();
     let missed = deviations.iter().any(|deviation| deviation.abs() > MET);
     if text.is_empty() && missed {
         text.push_str("each target can be met by itself, all together cannot: the nearest is given\n");
@@ -83,7 +84,7 @@ const MET: f64 = 0.1;
 /// How good the solution is, and how far it is the only one.
 fn remarks(asked: &Asked, solution: &Artifact) -> String {
     let best = table(solution, "solution");
-    let one = |name: &str| best.reals(name).and_then(|values| values.first().copied());
+    let one = |name: &str| best.shown(name).ok().and_then(|(values, _)| values.first().copied());
     let stop = match best.column("stop").map(|column| &column.values) {
         Some(Values::Texts(texts)) => texts.first().cloned().unwrap_or_default(),
         Some(_) | None => String::new(),

@@ -2,7 +2,7 @@
 
 use super::params::{FactorParam, ORDINATE, Params, TargetParam};
 use crate::stage::{Complaint, Context, StageError};
-use crate::unit::{Unit, parse_any};
+use crate::unit::{Unit, split_any};
 use optim::Error;
 use optim::misfit::{Denominator, Form};
 use optim::search::{Limits, Method};
@@ -131,24 +131,19 @@ impl Wanted {
     /// # Errors
     /// It is of another dimension or cannot be read.
     pub fn value_in(&self, unit: &str) -> Result<f64, String> {
-        let to = Unit::parse(unit).map_err(|e| e.to_string())?;
-        let (value, dimension) = match self {
-            Self::Number(value) => (*value, crate::unit::Dimension::NONE),
-            Self::Text(text) => parse_any(text).map_err(|e| e.to_string())?,
+        let (value, own) = match self {
+            Self::Number(value) => (*value, ""),
+            Self::Text(text) => split_any(text).map_err(|e| e.to_string())?,
         };
-        if dimension != to.dimension {
+        let wanted = Unit::parse(unit).map_err(|e| e.to_string())?;
+        let Ok(conversion) = Unit::parse(own).map_err(|e| e.to_string())?.to(wanted) else {
             let found = match self {
                 Self::Number(value) => value.to_string(),
                 Self::Text(text) => format!("\"{text}\""),
             };
             return Err(format!("{found} is not a value in `{unit}`; write for example \"30 {unit}\""));
-        }
-        // One exact step where the text has the unit itself: "59.67 MPa" is 59.67, not 59.67 · 10⁶ / 10⁶.
-        let plain = match self {
-            Self::Text(text) => text.trim().strip_suffix(unit).and_then(|number| number.trim().parse().ok()),
-            Self::Number(_) => None,
         };
-        Ok(plain.unwrap_or(value / to.factor))
+        Ok(conversion.of(value))
     }
 }
 
@@ -244,9 +239,10 @@ impl Calibrate {
     /// The value that the stage's material has for a factor, in the factor's unit.
     fn held(&self, context: &Context, name: &str) -> Option<f64> {
         let factor = context.factors.get(name)?;
-        let parameter = context.materials.get(self.material.as_ref()?)?.get(&factor.sets)?;
+        let values = context.materials.get(self.material.as_ref()?)?.resolve_alone();
+        let parameter = factor.sets.iter().find_map(|path| values.get(path))?;
         let unit = Unit::parse(&factor.unit).ok()?;
-        Some(parameter.value / unit.factor)
+        Some(unit.of_si(parameter.value))
     }
 
     /// Every fault of the settings.

@@ -1,13 +1,14 @@
 //! Responses for the optimiser: from surfaces, from single runs, from tables of runs.
 
 use super::params::{FactorParam, TargetParam};
+use crate::artifact::run::Run;
 use crate::artifact::{Artifact, Node, Table, Values};
 use crate::stage::StageError;
 use crate::stage::fitted::models;
-use crate::unit::Unit;
+use crate::unit::Conversion;
 use optim::Interval;
 use optim::misfit::ordinates;
-use optim::search::Run;
+use optim::search::Run as Trial;
 use optim::surrogate::Trend;
 use stats::model::Model;
 use std::sync::Arc;
@@ -91,20 +92,14 @@ fn places(model: &Model, response: &str, factors: &[FactorParam]) -> Result<Vec<
 }
 
 fn converted(value: f64, from: &str, to: &str, what: &str) -> Result<f64, StageError> {
-    if from == to {
-        return Ok(value);
-    }
-    let parse = |unit: &str| Unit::parse(unit).map_err(|e| StageError::new(format!("`{what}`: {e}")));
-    let (own, wanted) = (parse(from)?, parse(to)?);
-    if own.dimension != wanted.dimension {
-        return Err(StageError::new(format!("`{what}` comes in `{from}` and is wanted in `{to}`")));
-    }
-    Ok(value * (own.factor / wanted.factor))
+    let conversion = Conversion::between(from, to)
+        .map_err(|e| StageError::new(format!("`{what}` comes in `{from}` and is wanted in `{to}`: {e}")))?;
+    Ok(conversion.of(value))
 }
 
 /// The responses of one run in the order of the targets, or why it has none.
 pub(super) fn run(artifact: &Artifact, targets: &[TargetParam]) -> Result<Result<Vec<f64>, String>, StageError> {
-    let (failure, found) = crate::stage::rows::responses(artifact)?;
+    let (failure, found) = Run::outcome(artifact)?;
     if !failure.is_empty() {
         return Ok(Err(failure.to_owned()));
     }
@@ -134,10 +129,10 @@ pub(super) fn run(artifact: &Artifact, targets: &[TargetParam]) -> Result<Result
 /// Stress of a run's curve at a strain, in Pa; the inner error when the curve ends before.
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
-    let curve = artifact.table("curve").ok_or_else(missing)?;
-    let column = |name: &str| curve.reals(name).ok_or_else(missing);
-    let (strains, stresses) = (column("axial_strain")?, column("stress")?);
-    Ok(ordinates(&strains, &stresses, &[strain]).map(|values| values[0]).map_err(|fault| fault.to_string()))
+    let curve = Run::from_artifact(artifact)?.curve.ok_or_else(missing)?;
+    Ok(ordinates(&curve.axial_strain, &curve.stress, &[strain])
+        .map(|values| values[0])
+        .map_err(|fault| fault.to_string()))
 }
 
 /// The runs of a table, in the order of factors and targets; what a run lacks is NaN.
@@ -145,7 +140,7 @@ pub(super) fn runs(
     artifact: &Artifact,
     factors: &[FactorParam],
     targets: &[TargetParam],
-) -> Result<Vec<Run>, StageError> {
+) -> Result<Vec<Trial>, StageError> {
     let table =
         artifact.table("runs").ok_or_else(|| StageError::new("a stage of `learn_from` holds no table `runs`"))?;
     let points = factors.iter().map(|f| factor_values(table, f)).collect::<Result<Vec<_>, _>>()?;
@@ -156,7 +151,7 @@ pub(super) fn runs(
         let some = values.iter().any(|v| v.is_finite());
         let point = points.iter().map(|column| column[i]).collect();
         // A run that lacks every response without having failed says nothing.
-        (some || failed[i]).then_some(Run { point, responses: some.then_some(values) })
+        (some || failed[i]).then_some(Trial { point, responses: some.then_some(values) })
     };
     Ok((0..table.rows()).filter_map(row).collect())
 }
@@ -170,23 +165,21 @@ fn failures(table: &Table) -> Vec<bool> {
 
 fn factor_values(table: &Table, factor: &FactorParam) -> Result<Vec<f64>, StageError> {
     let name = &factor.name;
-    match (table.column(name), table.reals(name)) {
-        (Some(column), Some(values)) => {
-            values.into_iter().map(|v| converted(v, &column.unit, &factor.unit, name)).collect()
+    match (table.column(name), factor.fallback) {
+        (Some(column), _) => Ok(column.numbers(&factor.unit)?),
+        (None, Some(fallback)) => Ok(vec![fallback; table.rows()]),
+        (None, None) => {
+            Err(StageError::new(format!("a table of `learn_from` does not say at what `{name}` its runs were"))
+                .hint("name the `material` that they held it at"))
         }
-        (None, _) if factor.fallback.is_some() => Ok(vec![factor.fallback.unwrap_or_default(); table.rows()]),
-        _ => Err(StageError::new(format!("a table of `learn_from` does not say at what `{name}` its runs were"))
-            .hint("name the `material` that they held it at")),
     }
 }
 
 fn response_values(table: &Table, target: &TargetParam) -> Result<Vec<f64>, StageError> {
     let name = &target.response;
-    match (table.column(name), table.reals(name)) {
-        (Some(column), Some(values)) => {
-            values.into_iter().map(|v| converted(v, &column.unit, &target.unit, name)).collect()
-        }
-        _ => Ok(vec![f64::NAN; table.rows()]),
+    match table.column(name) {
+        Some(column) => Ok(column.numbers(&target.unit)?),
+        None => Ok(vec![f64::NAN; table.rows()]),
     }
 }
 

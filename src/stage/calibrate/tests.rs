@@ -1,12 +1,11 @@
 //! Calibration through the stage, with a simulator and a library that live in memory.
 
 use super::*;
-use crate::artifact::{Artifact, ArtifactKind, ContentHash, Group, Node};
-use crate::stage::rows::response_table;
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Artifact, ContentHash};
 use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
 use math::random::Stream;
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 
 /// Runs tasks on first sight; `patience` tasks, then it says that nothing is known of others.
 struct Laboratory {
@@ -35,10 +34,7 @@ impl Laboratory {
             Err(failure) if failure == "crash" => return Outcome::Failed(failure),
             Err(failure) => (Vec::new(), failure),
         };
-        let root = Group::new()
-            .with("failure", Node::Text(failure))
-            .with("responses", Node::Table(response_table(&responses)));
-        Outcome::Done(self.put(Artifact::of(ArtifactKind::RUN, root)))
+        Outcome::Done(self.put(Run::plain(&failure, Responses::of(&responses)).to_artifact()))
     }
 
     fn simulations(&self) -> usize {
@@ -83,8 +79,7 @@ fn context() -> Context {
         .map(|(name, factor)| (name.to_owned(), factor))
         .into(),
         responses: [("UCS", response("MPa")), ("E", response("GPa"))].map(|(n, r)| (n.to_owned(), r)).into(),
-        materials: BTreeMap::new(),
-        outline: Vec::new(),
+        ..Context::default()
     }
 }
 
@@ -92,8 +87,15 @@ fn known<'a>(context: &'a Context, laboratory: &'a Laboratory) -> Known<'a> {
     let sample = |point: &Point, number: u64| Ok(Task::new("run", json!({ "point": point, "number": number })));
     let content = ContentHash([0; 32]);
     let replicate = Box::new(|_| None);
-    let input = Input { key: "simulator", stage: "lab", content, replicate, sample: Box::new(sample) };
-    Known { context, inputs: vec![input], library: laboratory }
+    let input = Input {
+        key: "simulator",
+        stage: "lab",
+        content,
+        vary: Box::new(|_, _| Ok(None)),
+        replicate,
+        sample: Box::new(sample),
+    };
+    Known { name: "calibrate", context, inputs: vec![input], library: laboratory }
 }
 
 fn stage(text: &str) -> Calibrate {
@@ -145,19 +147,19 @@ fn simulations_in_the_loop_find_the_parameters_and_their_interval() {
     assert_eq!(laboratory.simulations(), 2 * 24 - 4);
     let artifact = finished(&laboratory, &task).unwrap();
     let solution = artifact.table("solution").unwrap();
-    let first = |name: &str| solution.reals(name).unwrap()[0];
+    let first = |name: &str| solution.shown(name).unwrap().0[0];
     assert!((first("sigma_c") / 19.0 - 1.0).abs() < 0.03, "{}", first("sigma_c"));
     assert!((first("Ec") / (31.0 / 1.5) - 1.0).abs() < 0.03, "{}", first("Ec"));
     assert_eq!((first("evaluations"), first("free")), (24.0, 1.0));
     let prediction = artifact.table("prediction").unwrap();
-    let at = |name: &str| prediction.reals(name).unwrap();
+    let at = |name: &str| prediction.shown(name).unwrap().0;
     assert!((0..3).all(|i| at("low")[i] < at("expected")[i] && at("expected")[i] < at("high")[i]));
     let history = artifact.table("history").unwrap();
     assert_eq!(history.rows(), 48);
-    let recommended = history.reals("recommended").unwrap();
+    let recommended = history.shown("recommended").unwrap().0;
     // One value per batch, and that of the solution at the end of each set.
     assert!(recommended[4] == recommended[7] && recommended[7] != recommended[8], "{recommended:?}");
-    assert_eq!([recommended[23], recommended[47]], solution.reals("misfit").unwrap()[..]);
+    assert_eq!([recommended[23], recommended[47]], solution.shown("misfit").unwrap().0[..]);
     assert!(artifact.table("solution_set").unwrap().rows() >= 50);
 }
 
@@ -197,7 +199,7 @@ fn failed_simulations_are_recorded_and_when_all_fail_it_says_so() {
     let (context, laboratory) = (context(), Laboratory::new(usize::MAX, some));
     let Step::Finish(task) = stage(COLD).next(&known(&context, &laboratory)).unwrap() else { panic!("it can go on") };
     let artifact = finished(&laboratory, &task).unwrap();
-    let failed = artifact.table("solution").unwrap().reals("failed").unwrap();
+    let failed = artifact.table("solution").unwrap().shown("failed").unwrap().0;
     assert_eq!(failed, [8.0, 8.0]);
     let all = Laboratory::new(usize::MAX, |_, _| Err("no peak".to_owned()));
     let Step::Finish(task) = stage(COLD).next(&known(&context, &all)).unwrap() else { panic!("it can go on") };

@@ -17,17 +17,20 @@ mod folder;
 mod read;
 
 use super::rows::{self, GATHER};
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node};
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
+};
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit;
 use read::Read;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `command` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Command {
     /// Program and arguments, such as `["python3", "engine.py", "input.json"]`; with `shell` one text for `sh -c`.
@@ -112,9 +115,9 @@ impl Stage for Command {
         if self.shell && self.run.len() > 1 {
             found.push(Complaint::new("run", "with `shell` the command is one text").hint("run = [\"a | b\"]"));
         }
-        let values = self.material.iter().filter_map(|name| context.materials.get(name)).flat_map(|m| m.keys());
-        let values: Vec<&str> =
-            values.chain(context.factors.keys()).map(String::as_str).chain(["seed", "replicate"]).collect();
+        let material = self.material.iter().filter_map(|name| context.materials.get(name));
+        let names = context.factors.keys().cloned().chain(["seed", "replicate"].map(str::to_owned));
+        let values: Vec<String> = material.flat_map(|material| material.paths()).chain(names).collect();
         if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument, &values)) {
             let message = format!("`{{{{{name}}}}}` is filled in templates, not in `run`");
             let hint = "put the value into a file of `templates` that the program reads";
@@ -132,12 +135,8 @@ impl Stage for Command {
         found
     }
 
-    fn settings(&self) -> Value {
-        json!({
-            "run": self.run, "shell": self.shell, "design": self.design, "material": self.material,
-            "files": self.files, "templates": self.templates, "environment": self.environment,
-            "time_limit": self.time_limit, "on_failure": self.on_failure, "read": self.read,
-        })
+    fn sketch(&self) -> Sketch {
+        Sketch { varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -175,9 +174,9 @@ impl Kind for Command {
 }
 
 /// The first of `{{name}}` in the text that names a value; other braces are the program's own.
-fn placeholder<'a>(text: &'a str, values: &[&str]) -> Option<&'a str> {
+fn placeholder<'a>(text: &'a str, values: &[String]) -> Option<&'a str> {
     let mut within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
-    within.find(|name| values.contains(&name.trim()))
+    within.find(|name| values.iter().any(|value| value == name.trim()))
 }
 
 fn execute(job: &Job) -> Result<Artifact, Failure> {
@@ -189,17 +188,10 @@ fn execute(job: &Job) -> Result<Artifact, Failure> {
     };
     let responses: Vec<(&String, f64, &str)> = match (outcome, params.on_failure) {
         (Ok(responses), _) => responses,
-        (Err(reason), OnFailure::Record) => return Ok(artifact(&[], &reason)),
+        (Err(reason), OnFailure::Record) => return Ok(Run::plain(&reason, Responses::default()).to_artifact()),
         (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
     };
     let responses: Vec<(&str, f64, &str)> =
         responses.iter().map(|(name, v, unit)| (name.as_str(), *v, *unit)).collect();
-    Ok(artifact(&responses, ""))
-}
-
-fn artifact(responses: &[(&str, f64, &str)], failure: &str) -> Artifact {
-    let root = Group::new()
-        .with("failure", Node::Text(failure.to_owned()))
-        .with("responses", Node::Table(rows::response_table(responses)));
-    Artifact::of(ArtifactKind::RUN, root)
+    Ok(Run::plain("", Responses::of(&responses)).to_artifact())
 }

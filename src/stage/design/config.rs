@@ -40,7 +40,7 @@ pub enum Name {
 }
 
 /// Settings of a `design` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
     /// Which design.

@@ -1,22 +1,27 @@
 //! The artifact of a design.
 
+use super::super::StageError;
 use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use design::{DesignTable, Report};
+use std::collections::BTreeMap;
+
+/// Names of the levels of categories, by factor.
+type Names = BTreeMap<String, Vec<String>>;
 
 /// The tables `design`, `coded` and `report`.
-pub(super) fn artifact(table: &DesignTable, report: &Report) -> Artifact {
+pub(super) fn artifact(table: &DesignTable, report: &Report, names: &Names) -> Result<Artifact, StageError> {
     let root = Group::new()
-        .with("design", Node::Table(design(table)))
+        .with("design", Node::Table(design(table, names)?))
         .with("coded", Node::Table(coded(table)))
         .with("report", Node::Table(lines(table, report)));
-    Artifact::of(ArtifactKind::DESIGN, root)
+    Ok(Artifact::of(ArtifactKind::DESIGN, root))
 }
 
 fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
     numbers.into_iter().map(|n| n as i64).collect()
 }
 
-fn design(table: &DesignTable) -> Table {
+fn design(table: &DesignTable, names: &Names) -> Result<Table, StageError> {
     let replicate = table.replicate().into_iter().map(|n| n as i64).collect();
     let types = table.point_type.iter().map(|p| p.word().to_owned()).collect();
     let mut found = Table { about: table.construction.clone(), columns: Vec::new() }
@@ -26,9 +31,17 @@ fn design(table: &DesignTable) -> Table {
         .texts_column("point_type", "centre, cube, axial, edge, grid, sample or given", types);
     for (j, factor) in table.factors.iter().enumerate() {
         let values = table.natural.iter().map(|row| row[j]).collect();
+        if let Some(names) = names.get(&factor.name) {
+            let name = |row: &Vec<f64>| names.get(row[j] as usize).filter(|_| row[j].fract() == 0.0).cloned();
+            let all: Option<Vec<String>> = table.natural.iter().map(name).collect();
+            let message = || format!("the design sets `{}` between its levels, which are names", factor.name);
+            let hint = "leave out centre points, or take a factorial or orthogonal design";
+            found = found.texts_column(&factor.name, "", all.ok_or_else(|| StageError::new(message()).hint(hint))?);
+            continue;
+        }
         found = found.reals_column(&factor.name, &factor.unit, "", values);
     }
-    found
+    Ok(found)
 }
 
 fn coded(table: &DesignTable) -> Table {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::stage::{FileInput, Library, Outcome};
+use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -43,7 +44,7 @@ fn stage(text: &str) -> Design {
 
 fn task(text: &str) -> Task {
     let context = context();
-    let known = Known { context: &context, inputs: vec![], library: &NoLibrary(None) };
+    let known = Known { name: "design", context: &context, inputs: vec![], library: &NoLibrary(None) };
     match stage(text).next(&known).unwrap() {
         Step::Finish(task) => task,
         Step::Ask(..) => panic!("a design asks for nothing"),
@@ -82,10 +83,10 @@ fn the_tables_hold_factors_in_their_units_and_the_report() {
     let made = ran("method = \"central-composite\"\nfactors = [\"sigma_c\", \"kn_ks\"]\ncentre_points = 3");
     let design = made.table("design").unwrap();
     assert_eq!((design.rows(), design.column("sigma_c").unwrap().unit.as_str()), (11, "MPa"));
-    assert_eq!(design.reals("kn_ks").unwrap()[..4], [1.0, 1.0, 4.0, 4.0]);
-    assert_eq!(design.reals("sigma_c").unwrap()[4], 5.85786437627);
-    assert_eq!(design.reals("replicate").unwrap()[8..], [1.0, 2.0, 3.0]);
-    assert_eq!(made.table("coded").unwrap().reals("kn_ks").unwrap()[7], 2.0_f64.sqrt());
+    assert_eq!(design.shown("kn_ks").unwrap().0[..4], [1.0, 1.0, 4.0, 4.0]);
+    assert_eq!(design.shown("sigma_c").unwrap().0[4], 5.85786437627);
+    assert_eq!(design.shown("replicate").unwrap().0[8..], [1.0, 2.0, 3.0]);
+    assert_eq!(made.table("coded").unwrap().shown("kn_ks").unwrap().0[7], 2.0_f64.sqrt());
     let report = made.table("report").unwrap();
     assert!(report.column("text").is_some() && report.rows() > 10);
 }
@@ -182,9 +183,9 @@ fn rows_of_a_file_are_converted_to_the_factors_units() {
     let factors = design.factors(&context());
     assert_eq!(rows(&table, &factors, false).unwrap(), [[10.0, 2.5], [20.0, 1.0]]);
     let message = |text: &[u8]| rows(&data::parse(text).unwrap(), &factors, false).unwrap_err().message;
-    assert!(message(b"Ec [mm],kn_ks\n1,2\n").contains("in `mm`, the factor in `GPa`"));
+    assert!(message(b"Ec [mm],kn_ks\n1,2\n").contains("is in `mm` and cannot be read in `GPa`"));
     assert!(message(b"Ec [GPa]\n1\n").contains("no column `kn_ks`"));
-    assert!(message(b"Ec [GPa],kn_ks\n1,x\n").contains("holds texts"));
+    assert!(message(b"Ec [GPa],kn_ks\n1,x\n").contains("row 1: `kn_ks` is `x`, which is not a finite number"));
     let numbers = data::parse(b"Ec,kn_ks\n1,3\n").unwrap();
     assert_eq!(rows(&numbers, &factors, true).unwrap(), [[1.0, 3.0]]);
 }
@@ -196,7 +197,7 @@ fn rows_by_level_are_checked_and_set() {
     };
     let made = ran(&design("[[1, 3, 2]]"));
     let table = made.table("design").unwrap();
-    assert_eq!(["Ec", "kn_ks", "tau_c"].map(|f| table.reals(f).unwrap()[0]), [10.0, 4.0, 20.0]);
+    assert_eq!(["Ec", "kn_ks", "tau_c"].map(|f| table.shown(f).unwrap().0[0]), [10.0, 4.0, 20.0]);
     assert!(complaints(&design("[[1, 3, 2]]")).is_empty());
     assert!(
         complaints(&design("[[1, 4, 2]]"))[0].contains("rows: row 1: `kn_ks` is 4 | its levels are numbered 1 to 3")

@@ -6,12 +6,12 @@ use crate::unit::Length;
 use figure::palette::Map;
 use figure::{DOUBLE, SINGLE};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Settings of a `figure` stage.
-#[derive(Debug, Deserialize, JsonSchema)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Figure {
     /// What is drawn.
@@ -75,7 +75,7 @@ pub struct Figure {
 }
 
 /// One name or several.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Names {
     /// None.
@@ -86,6 +86,13 @@ pub enum Names {
     One(String),
     /// Several.
     Many(Vec<String>),
+}
+
+/// As the list of names, however many were written.
+impl Serialize for Names {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.list().serialize(serializer)
+    }
 }
 
 impl Names {
@@ -103,6 +110,13 @@ impl Names {
 #[serde(try_from = "String")]
 #[schemars(with = "String")]
 pub struct Width(f64);
+
+/// As the number of millimetres.
+impl Serialize for Width {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.0)
+    }
+}
 
 impl TryFrom<String> for Width {
     type Error = String;

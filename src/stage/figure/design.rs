@@ -27,9 +27,9 @@ fn ranges(source: Source, params: &Params, response: &Label) -> Result<Vec<Range
     let (range, levels) = (source.rows(&["range"])?, source.rows(&["levels"])?);
     let mine = range.where_is("response", &response.key)?;
     let (factor, owner) = (range.texts("factor")?, levels.texts("factor")?);
-    let spans = range.reals("range")?;
+    let spans = range.reals("range", "")?;
     let names: Vec<String> = (1..).map(|k| format!("level_{k}")).take_while(|name| range.has(name)).collect();
-    let read = |rows: Rows<'_>| names.iter().map(|name| rows.reals(name)).collect::<Result<Vec<_>, _>>();
+    let read = |rows: Rows<'_>| names.iter().map(|name| rows.reals(name, "")).collect::<Result<Vec<_>, _>>();
     let (means, values) = (read(range)?, read(levels)?);
     let of = |columns: &[Vec<f64>], row: usize| -> Vec<f64> {
         columns.iter().map(|c| c[row]).take_while(|v| v.is_finite()).collect()
@@ -109,7 +109,7 @@ pub(super) fn points(params: &Params, sources: &Sources) -> Result<DesignPoints,
         let message = format!("points are drawn in two or three factors, not in {}", params.factors.len());
         return Err(StageError::new(message).hint("name them with `factors`"));
     }
-    let columns = params.factors.iter().map(|f| rows.reals(&f.key)).collect::<Result<Vec<_>, _>>()?;
+    let columns = params.factors.iter().map(|f| rows.reals(&f.key, &f.unit)).collect::<Result<Vec<_>, _>>()?;
     let points: Vec<Vec<f64>> = (0..rows.len()).map(|i| columns.iter().map(|c| c[i]).collect()).collect();
     let kinds = if rows.has("point_type") { rows.texts("point_type")? } else { vec!["run".to_owned(); rows.len()] };
     let side = |(label, column): (&Label, &Vec<f64>)| {
@@ -134,7 +134,7 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
             if !ours.has(&response.key) || !theirs.has(&response.key) {
                 continue;
             }
-            let (x, y, rows) = matched(ours, theirs, &response.key, &params.factors)?;
+            let (x, y, rows) = matched(ours, theirs, response, &params.factors)?;
             if !x.is_empty() {
                 let name = params.series.get(i).cloned().unwrap_or_default();
                 clouds.push(Cloud { name, x, y, rows });
@@ -167,14 +167,14 @@ type Matched = (Vec<f64>, Vec<f64>, Vec<String>);
 
 /// Pairs of values (theirs, ours) of rows with equal factors, replicate by replicate, and the row number in theirs.
 /// Levels count as equal within a thousandth, because published ones are rounded.
-fn matched(ours: Rows<'_>, theirs: Rows<'_>, response: &str, keys: &[Label]) -> Result<Matched, StageError> {
-    let shared = keys.iter().map(|label| label.key.as_str()).filter(|key| ours.has(key) && theirs.has(key));
-    let factors: Vec<&str> = shared.collect();
+fn matched(ours: Rows<'_>, theirs: Rows<'_>, response: &Label, keys: &[Label]) -> Result<Matched, StageError> {
+    let shared = keys.iter().filter(|label| ours.has(&label.key) && theirs.has(&label.key));
+    let factors: Vec<&Label> = shared.collect();
     if factors.is_empty() {
         return Err(StageError::new("the two tables share no factor by which rows could be matched"));
     }
-    let read = |rows: Rows<'_>| factors.iter().map(|f| rows.reals(f)).collect::<Result<Vec<_>, _>>();
-    let (y, x) = (ours.reals(response)?, theirs.reals(response)?);
+    let read = |rows: Rows<'_>| factors.iter().map(|f| rows.reals(&f.key, &f.unit)).collect::<Result<Vec<_>, _>>();
+    let (y, x) = (ours.reals(&response.key, &response.unit)?, theirs.reals(&response.key, &response.unit)?);
     let mut out: Matched = (Vec::new(), Vec::new(), Vec::new());
     for (i, j) in pair_rows(&read(ours)?, &read(theirs)?, 1e-3) {
         if x[j].is_finite() && y[i].is_finite() {

@@ -40,7 +40,7 @@ use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use figure::palette::Map;
 use figure::{self, Figure as Picture, Style, column, text};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 pub use config::{Figure, Names, Show, Width};
@@ -150,14 +150,6 @@ impl Stage for Figure {
         found
     }
 
-    fn settings(&self) -> Value {
-        json!({
-            "show": self.show, "of": self.of.list(), "compare": self.compare.list(),
-            "response": self.response.list(), "factors": self.factors, "at": self.at, "names": self.names,
-            "band": self.band, "plot": Plot::of(self), "width": self.width.millimetres(), "points": self.points, "colors": self.colors,
-        })
-    }
-
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let plot = self.show.is_plot().then(|| Plot::of(self));
         let labels = plot.as_ref().map(|plot| plot.labels(self.show, known.context, &self.names)).unwrap_or_default();
@@ -264,13 +256,19 @@ impl Figure {
         }
         if self.show == Show::Agreement {
             // Rows are matched by them; their labels are not drawn.
-            return Ok(keys.into_iter().map(|key| Label { key, ..Label::default() }).collect());
+            let unit = |key: &String| known.context.factors.get(key).map_or(String::new(), |own| own.unit.clone());
+            return Ok(keys.into_iter().map(|key| Label { unit: unit(&key), key, ..Label::default() }).collect());
         }
         let label = |key: &String| {
             let factor = known.context.factors.get(key).cloned().unwrap_or_default();
             let (low, high) = figure::axis::extent(factor.levels.iter().copied());
             let range = factor.range.or((!factor.levels.is_empty()).then_some([low, high]));
-            let group = factor.sets.split_once('.').map(|(group, _)| group.to_owned()).unwrap_or_default();
+            let group = factor
+                .sets
+                .first()
+                .and_then(|path| path.split_once('.'))
+                .map(|(group, _)| group.to_owned())
+                .unwrap_or_default();
             let name = self.names.get(key).cloned().unwrap_or_default();
             Label { key: key.clone(), name, symbol: factor.symbol, unit: factor.unit, group, range }
         };
@@ -296,8 +294,9 @@ impl Kind for Figure {
     /// 3: surfaces say where their axes lie. 4: empty columns in the legend of contributions; normal plots.
     /// 5: several targets of a solution set one below the other; circles of PNG files without the system's cosines.
     /// 6: descriptions in plain letters, without stray blanks. 7: a stage named after its kind says it once; force
-    /// chains say when.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 7, run: draw }];
+    /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
+    /// units than their factors and responses are converted and no longer taken as they stand.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 8, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

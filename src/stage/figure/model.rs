@@ -29,7 +29,7 @@ impl Polynomial {
     fn read(rows: Rows<'_>, response: &str) -> Result<Self, StageError> {
         let which = rows.where_is("response", response)?;
         let terms = pick(&rows.texts("term")?, &which);
-        let values = pick(&rows.reals("estimate")?, &which);
+        let values = pick(&rows.reals("estimate", "")?, &which);
         let parsed = terms.iter().map(|t| Term::parse(t).map_err(|e| StageError::new(e.to_string())));
         Ok(Self(parsed.collect::<Result<Vec<_>, _>>()?.into_iter().zip(values).collect()))
     }
@@ -103,7 +103,7 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
         xs,
         ys,
         values,
-        points: marks(sources, &x.key, &y.key)?,
+        points: marks(sources, x, y)?,
         note,
     })
 }
@@ -116,7 +116,7 @@ impl Domain {
     fn read(source: Source, response: &str) -> Self {
         let read = || {
             let rows = source.rows(&["domain"])?;
-            let (factors, low, high) = (rows.texts("factor")?, rows.reals("low")?, rows.reals("high")?);
+            let (factors, low, high) = (rows.texts("factor")?, rows.reals("low", "")?, rows.reals("high", "")?);
             let which = rows.where_is("response", response)?;
             Ok::<_, StageError>(which.into_iter().map(|i| (factors[i].clone(), [low[i], high[i]])).collect())
         };
@@ -129,11 +129,11 @@ impl Domain {
 }
 
 /// Places of the runs on which a surface rests, in its two factors.
-fn marks(sources: &Sources, x: &str, y: &str) -> Result<Vec<[f64; 2]>, StageError> {
+fn marks(sources: &Sources, x: &Label, y: &Label) -> Result<Vec<[f64; 2]>, StageError> {
     let mut marks: Vec<[f64; 2]> = Vec::new();
     for source in &sources.compare {
         let rows = source.rows(&["design", "runs"])?;
-        for (u, v) in rows.reals(x)?.into_iter().zip(rows.reals(y)?) {
+        for (u, v) in rows.reals(&x.key, &x.unit)?.into_iter().zip(rows.reals(&y.key, &y.unit)?) {
             if !marks.contains(&[u, v]) {
                 marks.push([u, v]);
             }
@@ -157,7 +157,7 @@ pub(super) fn residuals(params: &Params, sources: &Sources) -> Result<Residuals,
     let source = sources.first()?;
     let rows = source.rows(&["residuals"])?;
     let which = rows.where_is("response", &response.key)?;
-    let column = |name: &str| rows.reals(name).map(|v| pick(&v, &which));
+    let column = |name: &str| rows.reals(name, "").map(|v| pick(&v, &which));
     let studentized = column("studentized")?;
     let leverage = column("leverage")?;
     let runs = if rows.has("row") {
@@ -196,7 +196,7 @@ pub(super) fn observed(params: &Params, sources: &Sources) -> Result<Agreement, 
     let mut pairs = Vec::new();
     for response in &params.responses {
         let Ok(which) = rows.where_is("response", &response.key) else { continue };
-        let (x, y) = (pick(&rows.reals("observed")?, &which), pick(&rows.reals("fitted")?, &which));
+        let (x, y) = (pick(&rows.reals("observed", "")?, &which), pick(&rows.reals("fitted", "")?, &which));
         let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
         let total: f64 = x.iter().map(|v| (v - mean) * (v - mean)).sum();
         let left: f64 = x.iter().zip(&y).map(|(a, b)| (a - b) * (a - b)).sum();
@@ -235,12 +235,13 @@ fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
     let limits = source.rows(&["limits", "fit"])?;
     let mine = limits.where_is("response", &response.key)?;
     let limit = |name: &str| -> Option<f64> {
-        limits.reals(name).ok().and_then(|v| pick(&v, &mine).first().copied()).filter(|v| v.is_finite())
+        limits.reals(name, "").ok().and_then(|v| pick(&v, &mine).first().copied()).filter(|v| v.is_finite())
     };
     let names: Vec<String> = pick(&rows.texts("term")?, &which).iter().map(|t| term_label(t, params)).collect();
-    let (normal, half_normal) = (pick(&rows.reals("normal")?, &which), pick(&rows.reals("half_normal")?, &which));
+    let (normal, half_normal) =
+        (pick(&rows.reals("normal", "")?, &which), pick(&rows.reals("half_normal", "")?, &which));
     if let Some(critical) = limit("critical") {
-        let values = pick(&rows.reals("standardized")?, &which);
+        let values = pick(&rows.reals("standardized", "")?, &which);
         let margin = Some(("critical value".to_owned(), critical));
         return Ok(Effects {
             names,
@@ -255,7 +256,7 @@ fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
     }
     Ok(Effects {
         names,
-        values: pick(&rows.reals("effect")?, &which),
+        values: pick(&rows.reals("effect", "")?, &which),
         normal,
         half_normal,
         error: limit("pse").unwrap_or(f64::NAN),
@@ -271,8 +272,8 @@ fn chi_plot(params: &Params, source: Source) -> Result<EffectPlot, StageError> {
     let response = one_response(params)?;
     let rows = source.rows(&["anova"])?;
     let which = rows.where_is("response", &response.key)?;
-    let (names, df) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("df")?, &which));
-    let (squares, words) = (pick(&rows.reals("ss")?, &which), pick(&rows.texts("significance")?, &which));
+    let (names, df) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("df", "")?, &which));
+    let (squares, words) = (pick(&rows.reals("ss", "")?, &which), pick(&rows.texts("significance")?, &which));
     let effects: Vec<usize> = (0..names.len()).filter(|&i| names[i] != "residual" && names[i] != "total").collect();
     let degrees = effects.first().map_or(0.0, |&i| df[i]);
     if !(degrees == 1.0 || degrees == 2.0) || effects.iter().any(|&i| df[i] != degrees) {
@@ -354,7 +355,7 @@ fn shares(params: &Params, source: Source) -> Result<RankedBars, StageError> {
     let response = one_response(params)?;
     let rows = source.rows(&["anova"])?;
     let which = rows.where_is("response", &response.key)?;
-    let (names, squares) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("eta2")?, &which));
+    let (names, squares) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("eta2", "")?, &which));
     // Where factors set properties of groups, one that sets nothing is an empty column.
     let grouped = params.factors.iter().any(|l| !l.group.is_empty());
     let mut bars = Vec::new();

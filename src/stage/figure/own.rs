@@ -1,11 +1,12 @@
 //! Plots of a user's own columns from any table of a result.
 
-use super::super::units::{field_unit, scale};
+use super::super::units::field_unit;
 use super::super::{Failure, Job, StageError, data};
 use super::plot::{Bars, Direction, Fit, Labels, Plot};
 use super::source::{Source, Sources};
 use super::{Label, Params};
 use crate::artifact::{Column, Table, Values};
+use crate::unit::Conversion;
 use figure::Quantity;
 use figure::axis::significant;
 use figure::boxes::{self, BoxPlot};
@@ -36,15 +37,15 @@ impl Shown {
             StageError::new(format!("the table has no column `{}`", label.key)).hint(format!("it has {there}"))
         })?;
         let (all, names) = numbers(column);
-        let mut values: Vec<f64> = rows.iter().map(|&row| all[row]).collect();
+        let values: Vec<f64> = rows.iter().map(|&row| all[row]).collect();
         let largest = values.iter().copied().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
         let unit = match label.unit.as_str() {
             "" if names.is_empty() => field_unit(&column.unit, largest),
             own => own.to_owned(),
         };
-        let factor =
-            scale(&column.unit, &unit).map_err(|e| StageError::new(format!("column `{}`: {e}", column.name)))?;
-        values.iter_mut().for_each(|v| *v *= factor);
+        let to = Conversion::between(&column.unit, &unit);
+        let to = to.map_err(|e| StageError::new(format!("column `{}`: {e}", column.name)))?;
+        let values = to.of_all(values);
         Ok(Self { quantity: Quantity { unit, ..label.quantity() }, values, names })
     }
 
@@ -263,9 +264,10 @@ fn overlay(job: &Job, x: &Quantity, y: &Quantity) -> Result<Option<bundle::Line>
     };
     let read = |column: &Column, q: &Quantity| {
         // a head without a unit is in that of the plot
-        let factor = if column.unit.is_empty() { Ok(1.0) } else { scale(&column.unit, &q.unit) };
-        let factor = factor.map_err(|e| StageError::new(format!("overlay, column `{}`: {e}", column.name)))?;
-        Ok::<Vec<f64>, StageError>(numbers(column).0.into_iter().map(|v| v * factor).collect())
+        let own = if column.unit.is_empty() { &q.unit } else { &column.unit };
+        let to = Conversion::between(own, &q.unit);
+        let to = to.map_err(|e| StageError::new(format!("overlay, column `{}`: {e}", column.name)))?;
+        Ok::<Vec<f64>, StageError>(to.of_all(numbers(column).0))
     };
     let stem = file.path.file_stem().map(|stem| stem.to_string_lossy().replace('_', " ")).unwrap_or_default();
     Ok(Some(bundle::Line { name: stem, x: read(first, x)?, y: read(second, y)? }))

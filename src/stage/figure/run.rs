@@ -2,7 +2,9 @@
 
 use super::super::StageError;
 use super::Params;
-use super::source::{Rows, Source, Sources};
+use super::source::{Source, Sources};
+use crate::artifact::run::{CrackMode, Cracks as StoredCracks, Curve as Stored, Run};
+use crate::unit::Conversion;
 use figure::chains::{Chains, Link};
 use figure::cracks::{Crack, Cracks, Moment};
 use figure::curve::{Curve, StressStrain};
@@ -16,58 +18,55 @@ const MM: f64 = 1e3;
 pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<StressStrain, StageError> {
     let mut curves = Vec::new();
     for (k, source) in sources.of.iter().enumerate() {
-        let rows = source.rows(&["curve"])?;
-        let axial = rows.reals("axial_strain")?;
-        let cracks = match source.rows(&["cracks"]) {
-            Ok(cracks) => counts(cracks, &axial)?,
-            Err(_) => Vec::new(),
-        };
+        let run = Run::from_artifact(source.0)?;
+        let curve = curve_of(&run)?;
+        let cracks = run.cracks.as_ref().map(|cracks| counts(cracks, &curve.axial_strain)).unwrap_or_default();
         let several = sources.of.len() > 1;
         curves.push(Curve {
             name: params.series.get(k).cloned().unwrap_or_default(),
-            lateral: if several { Vec::new() } else { lateral(rows) },
-            stress: rows.reals("stress")?.into_iter().map(|s| s / 1e6).collect(),
+            // Negative when the specimen widens.
+            lateral: if several { Vec::new() } else { curve.lateral_strain.iter().map(|e| -e).collect() },
+            stress: shown(&curve.stress, "Pa", "MPa"),
             cracks,
-            modulus: if several { None } else { response(*source, "E").map(|e| e / 1e9) },
-            axial,
+            modulus: if several { None } else { response(&run, "E", "GPa") },
+            axial: curve.axial_strain.clone(),
         });
     }
     Ok(StressStrain { curves })
 }
 
-/// Lateral strain, negative when the specimen widens; empty when there is none.
-fn lateral(rows: Rows<'_>) -> Vec<f64> {
-    rows.reals("lateral_strain").map(|strain| strain.into_iter().map(|e| -e).collect()).unwrap_or_default()
+fn curve_of(run: &Run) -> Result<&Stored, StageError> {
+    run.curve.as_ref().ok_or_else(|| StageError::new("the run has no stress–strain curve"))
 }
 
-/// A response of a run in SI units.
-fn response(source: Source, name: &str) -> Option<f64> {
-    let rows = source.rows(&["responses"]).ok()?;
-    let names = rows.texts("response").ok()?;
-    let at = names.iter().position(|n| n == name)?;
-    rows.reals("value").ok()?.get(at).copied().filter(|v| v.is_finite())
+/// Numbers of a declared unit in the unit that they are drawn in.
+fn shown(values: &[f64], from: &str, to: &str) -> Vec<f64> {
+    Conversion::between(from, to).unwrap_or_else(|e| panic!("BUG: {from} in {to}: {e}")).of_all(values.to_vec())
 }
 
-/// Words of the modes of a table of cracks, in the order in which they appear; tension first.
-fn modes(cracks: Rows<'_>) -> Result<(Vec<String>, Vec<usize>), StageError> {
-    let words = cracks.texts("mode")?;
-    let mut names: Vec<String> = words.clone();
-    names.sort_by_key(|name| (!name.starts_with("tens"), name.clone()));
-    names.dedup();
-    let index = words.iter().map(|w| names.iter().position(|n| n == w).unwrap_or(0)).collect();
-    Ok((names, index))
+/// A response of a run.
+fn response(run: &Run, name: &str, unit: &str) -> Option<f64> {
+    let at = run.responses.response.iter().position(|own| own == name)?;
+    let value = Conversion::between(&run.responses.unit[at], unit).ok()?.of(run.responses.value[at]);
+    Some(value).filter(|value| value.is_finite())
+}
+
+/// The modes that occur, in the order in which they are drawn, and the index of each crack's mode among them.
+fn modes(cracks: &StoredCracks) -> (Vec<CrackMode>, Vec<usize>) {
+    let found: Vec<CrackMode> = CrackMode::ALL.into_iter().filter(|mode| cracks.mode.contains(mode)).collect();
+    let index = cracks.mode.iter().map(|own| found.iter().position(|mode| mode == own).unwrap_or(0)).collect();
+    (found, index)
 }
 
 /// Number of cracks of each mode up to each axial strain of the curve.
-fn counts(cracks: Rows<'_>, axial: &[f64]) -> Result<Vec<(String, Vec<f64>)>, StageError> {
-    let (names, mode) = modes(cracks)?;
-    let strain = cracks.reals("axial_strain")?;
-    let of_mode = |(k, name): (usize, String)| {
-        let mut at: Vec<f64> = strain.iter().zip(&mode).filter(|(_, m)| **m == k).map(|(s, _)| *s).collect();
+fn counts(cracks: &StoredCracks, axial: &[f64]) -> Vec<(String, Vec<f64>)> {
+    let of_mode = |mode: &CrackMode| {
+        let own = cracks.axial_strain.iter().zip(&cracks.mode).filter(|(_, own)| *own == mode);
+        let mut at: Vec<f64> = own.map(|(strain, _)| *strain).collect();
         at.sort_by(f64::total_cmp);
-        (name, axial.iter().map(|e| at.partition_point(|s| s <= e) as f64).collect())
+        (mode.word().to_owned(), axial.iter().map(|e| at.partition_point(|s| s <= e) as f64).collect())
     };
-    Ok(names.into_iter().enumerate().map(of_mode).collect())
+    modes(cracks).0.iter().map(of_mode).collect()
 }
 
 /// Lower left and upper right corner of a specimen in mm; its centre is the origin.
@@ -134,27 +133,29 @@ fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> 
 /// Names of the modes, and the cracks with the strain at which they opened.
 type CrackList = (Vec<String>, Vec<(f64, Crack)>);
 
-fn crack_list(cracks: Rows<'_>) -> Result<CrackList, StageError> {
-    let (names, mode) = modes(cracks)?;
-    let read = |name: &str| cracks.reals(name);
-    let (strain, x, y, size) = (read("axial_strain")?, read("x")?, read("y")?, read("size")?);
-    let (nx, ny) = (read("normal_x")?, read("normal_y")?);
+fn crack_list(run: &Run) -> Result<CrackList, StageError> {
+    let cracks = run.cracks.as_ref().ok_or_else(|| StageError::new("the run has no table of cracks"))?;
+    let (found, mode) = modes(cracks);
+    if cracks.position.ncols() != 2 {
+        return Err(StageError::new("cracks are drawn in the plane, and these are in space"));
+    }
+    let (length, to_mm) = (shown(&cracks.size, "m", "mm"), |row: usize, axis: usize| cracks.position[[row, axis]] * MM);
     // The line of a crack is across its normal.
     let crack = |i: usize| Crack {
-        at: [x[i] * MM, y[i] * MM],
-        angle: atan2(nx[i], -ny[i]),
-        length: size[i] * MM,
+        at: [to_mm(i, 0), to_mm(i, 1)],
+        angle: atan2(cracks.normal[[i, 0]], -cracks.normal[[i, 1]]),
+        length: length[i],
         mode: mode[i],
     };
-    Ok((names, (0..x.len()).map(|i| (strain[i], crack(i))).collect()))
+    let names = found.into_iter().map(|mode| mode.word().to_owned()).collect();
+    Ok((names, (0..length.len()).map(|i| (cracks.axial_strain[i], crack(i))).collect()))
 }
 
 /// Half, four fifths and all of the peak stress, and the end of the test.
 pub(super) fn cracks(sources: &Sources) -> Result<Cracks, StageError> {
-    let source = sources.first()?;
-    let (names, list) = crack_list(source.rows(&["cracks"])?)?;
-    let curve = source.rows(&["curve"])?;
-    let (axial, stress) = (curve.reals("axial_strain")?, curve.reals("stress")?);
+    let run = Run::from_artifact(sources.first()?.0)?;
+    let (names, list) = crack_list(&run)?;
+    let Stored { axial_strain: axial, stress, .. } = curve_of(&run)?;
     let pairs = stress.iter().copied().enumerate().filter(|(_, s)| s.is_finite());
     let peak = pairs.max_by(|a, b| a.1.total_cmp(&b.1)).ok_or_else(|| StageError::new("the curve has no stress"))?;
     let reached = |share: f64| {
@@ -177,30 +178,34 @@ pub(super) fn cracks(sources: &Sources) -> Result<Cracks, StageError> {
 }
 
 pub(super) fn rose(sources: &Sources) -> Result<Rose, StageError> {
-    let (names, list) = crack_list(sources.first()?.rows(&["cracks"])?)?;
+    let (names, list) = crack_list(&Run::from_artifact(sources.first()?.0)?)?;
     let of = |k: usize| list.iter().filter(|(_, c)| c.mode == k).map(|(_, c)| c.angle).collect();
     Ok(Rose { modes: names.into_iter().enumerate().map(|(k, name)| (name, of(k))).collect(), petals: 18 })
 }
 
-/// The state of the largest stress among those that were kept.
-fn state_at_peak(source: Source) -> Result<(usize, Vec<[f64; 2]>), StageError> {
-    let stress = source.rows(&["snapshots/states"])?.reals("stress")?;
-    let peak = (0..stress.len()).max_by(|&a, &b| stress[a].total_cmp(&stress[b]).then(b.cmp(&a)));
-    let peak = peak.ok_or_else(|| StageError::new("the run kept no state"))?;
-    let centres = source.states().ok_or_else(|| source.lacks("snapshots/centres"))?;
-    let discs = centres.len() / stress.len();
-    Ok((peak, centres[peak * discs..][..discs].to_vec()))
+/// The state of the largest stress, and the centres of the discs in it in mm.
+fn state_at_peak(run: &Run) -> Result<(usize, Vec<[f64; 2]>), StageError> {
+    let missing = || StageError::new("the run holds no states");
+    let (states, centres) = run.states.as_ref().zip(run.state_centres.as_ref()).ok_or_else(missing)?;
+    let stress = &states.stress;
+    let peak =
+        (0..stress.len()).max_by(|&a, &b| stress[a].total_cmp(&stress[b]).then(b.cmp(&a))).ok_or_else(missing)?;
+    let (count, discs, axes) = centres.dim();
+    if peak >= count || axes != 2 {
+        return Err(StageError::new("force chains are drawn in the plane, one set of centres for each state"));
+    }
+    Ok((peak, (0..discs).map(|disc| [0, 1].map(|axis| centres[[peak, disc, axis]] * MM)).collect()))
 }
 
 pub(super) fn chains(sources: &Sources) -> Result<Chains, StageError> {
-    let source = sources.first()?;
-    let rows = source.rows(&["forces"]).map_err(|e| e.hint("write `forces = true` in the stage of the run"))?;
-    let (peak, centres) = state_at_peak(source)?;
-    let read = |name: &str| rows.reals(name);
-    let (state, first, second, force) = (read("state")?, read("first")?, read("second")?, read("normal_force")?);
-    let place = |disc: f64| centres.get(disc as usize).map(|c| c.map(|v| v * MM));
-    let link = |i: usize| Some(Link { from: place(first[i])?, to: place(second[i])?, force: force[i] / 1e3 });
-    let links: Option<Vec<Link>> = (0..force.len()).filter(|&i| state[i] == peak as f64).map(link).collect();
+    let run = Run::from_artifact(sources.first()?.0)?;
+    let missing = || StageError::new("the run holds no forces").hint("write `forces = true` in the stage of the run");
+    let forces = run.forces.as_ref().ok_or_else(missing)?;
+    let (peak, centres) = state_at_peak(&run)?;
+    let force = shown(&forces.normal_force, "N", "kN");
+    let centre = |disc: usize| centres.get(disc).copied();
+    let link = |i: usize| Some(Link { from: centre(forces.first[i])?, to: centre(forces.second[i])?, force: force[i] });
+    let links: Option<Vec<Link>> = (0..force.len()).filter(|&i| forces.state[i] == peak).map(link).collect();
     let links = links.ok_or_else(|| StageError::new("the forces name discs that the run does not have"))?;
     let points: Vec<[f64; 2]> = links.iter().flat_map(|l| [l.from, l.to]).collect();
     let (low, high, _) = ground(sources, &points)?;

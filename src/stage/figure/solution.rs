@@ -42,7 +42,7 @@ pub(super) fn convergence(params: &Params, sources: &Sources) -> Result<Converge
     let mut runs = Vec::new();
     for (k, source) in sources.of.iter().enumerate() {
         let rows = source.rows(&["history"])?;
-        let (effort, best) = (rows.reals("evaluation")?, rows.reals("best")?);
+        let (effort, best) = (rows.reals("evaluation", "")?, rows.reals("best", "")?);
         for (target, group) in by_target(&sets_of(rows)?) {
             let name = prefixed(params, k, &target_name(&target));
             let [effort, best] = [&effort, &best].map(|v| pick(v, &group));
@@ -64,7 +64,7 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
         let further = source.rows(&["solution_set"]).ok();
         let others = further.map(sets_of).transpose()?.unwrap_or_default();
         let point = |rows: Rows<'_>, i: usize| -> Result<Vec<f64>, StageError> {
-            labels.iter().map(|l| Ok(rows.reals(&l.key)?[i])).collect()
+            labels.iter().map(|l| Ok(rows.reals(&l.key, &l.unit)?[i])).collect()
         };
         for (i, target) in sets_of(best)?.into_iter().enumerate() {
             let mut rows = vec![point(best, i)?];
@@ -87,11 +87,11 @@ pub(super) fn verification(params: &Params, sources: &Sources) -> Result<Verific
     let source: Source = sources.first()?;
     let (runs, summary) = (source.rows(&["runs"])?, source.rows(&["summary"])?);
     let (of_run, of_line) = (sets_of(runs)?, sets_of(summary)?);
-    let (responses, targets) = (summary.texts("response")?, summary.reals("target")?);
+    let (responses, targets) = (summary.texts("response")?, summary.reals("target", "")?);
     let sets: Vec<String> = by_target(&of_line).into_iter().map(|(set, _)| set).collect();
     let mut checks = Vec::new();
     for response in params.responses.iter().filter(|r| runs.has(&r.key) && responses.contains(&r.key)) {
-        let values = runs.reals(&response.key)?;
+        let values = runs.reals(&response.key, &response.unit)?;
         let of = |set: &String| -> Vec<f64> {
             let hits = (0..values.len()).filter(|&i| of_run[i] == *set && values[i].is_finite());
             hits.map(|i| values[i]).collect()

@@ -56,17 +56,6 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Centres of the discs in the states of a run, state after state.
-    pub(super) fn states(self) -> Option<Vec<[f64; 2]>> {
-        let Node::Group(group) = self.0.root.get("snapshots")? else { return None };
-        match group.get("centres") {
-            Some(Node::Array(Array { values: Values::Reals(values), shape, .. })) if shape.last() == Some(&2) => {
-                Some(values.as_chunks::<2>().0.to_vec())
-            }
-            _ => None,
-        }
-    }
-
     /// A plain array of numbers.
     pub(super) fn numbers(self, name: &str) -> Option<Vec<f64>> {
         match self.0.root.get(name) {
@@ -129,8 +118,9 @@ impl Rows<'_> {
         self.table.rows()
     }
 
-    pub(super) fn reals(self, column: &str) -> Result<Vec<f64>, StageError> {
-        self.table.reals(column).ok_or_else(|| self.lacks(column, "numbers"))
+    /// The numbers of a column in the unit in which they are drawn.
+    pub(super) fn reals(self, column: &str, unit: &str) -> Result<Vec<f64>, StageError> {
+        Ok(self.table.numbers(column, unit)?)
     }
 
     pub(super) fn texts(self, column: &str) -> Result<Vec<String>, StageError> {

@@ -1,6 +1,8 @@
 use super::*;
+use crate::artifact::run::{CrackMode, Cracks, Curve, Forces, Responses, Run, States};
 use crate::artifact::{Array, ArtifactKind, ContentHash, Values};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
+use ndarray::{Array2, Array3};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -43,45 +45,44 @@ fn results(shift: f64) -> Artifact {
 }
 
 fn run() -> Artifact {
-    let strain: Vec<f64> = (0..40).map(|i| f64::from(i) * 5e-5).collect();
-    let stress = strain.iter().map(|e| 3e10 * e * (1.0 - e / 2e-3)).collect();
-    let curve = table()
-        .reals_column("axial_strain", "", "", strain.clone())
-        .reals_column("stress", "Pa", "", stress)
-        .reals_column("lateral_strain", "", "", strain.iter().map(|e| 0.2 * e).collect());
+    let axial_strain: Vec<f64> = (0..40).map(|i| f64::from(i) * 5e-5).collect();
+    let lateral_strain: Vec<f64> = axial_strain.iter().map(|e| 0.2 * e).collect();
     let n = 30;
     let count = |f: fn(f64) -> f64| (0..n).map(|i| f(f64::from(i))).collect::<Vec<f64>>();
-    let cracks = table()
-        .reals_column("axial_strain", "", "", count(|i| 5e-5 * i))
-        .texts_column("mode", "", (0..n).map(|i| if i % 3 == 0 { "shear" } else { "tension" }.to_owned()).collect())
-        .reals_column("x", "m", "", count(|i| 1e-3 * (i - 15.0)))
-        .reals_column("y", "m", "", count(|i| 2e-3 * (15.0 - i)))
-        .reals_column("normal_x", "", "", count(|_| 1.0))
-        .reals_column("normal_y", "", "", count(|_| 0.0))
-        .reals_column("size", "m", "", count(|_| 1e-3));
-    let forces = table()
-        .ints_column("state", "", (0..n).map(i64::from).map(|i| i % 2).collect())
-        .ints_column("first", "", (0..n).map(i64::from).collect())
-        .ints_column("second", "", (0..n).map(i64::from).map(|i| i + 1).collect())
-        .reals_column("normal_force", "N", "", count(|i| 100.0 * (i - 4.0)));
-    let states = table().reals_column("stress", "Pa", "", vec![1e6, 3e7]);
-    let centres = Array {
-        shape: vec![2, 31, 2],
-        unit: "m".into(),
-        about: String::new(),
-        values: Values::Reals(
-            (0..62).flat_map(|i| [1e-3 * f64::from(i % 31 - 15), 1e-2 * f64::from(i / 31)]).collect(),
-        ),
+    let curve = Curve {
+        stress: axial_strain.iter().map(|e| 3e10 * e * (1.0 - e / 2e-3)).collect(),
+        volumetric_strain: axial_strain.iter().zip(&lateral_strain).map(|(a, l)| a - l).collect(),
+        cracks: vec![0; 40],
+        axial_strain,
+        lateral_strain,
     };
-    let snapshots = Group::new().with("states", Node::Table(states)).with("centres", Node::Array(centres));
-    let responses = table()
-        .texts_column("response", "", words(["E"]))
-        .reals_column("value", "", "", vec![3e10])
-        .texts_column("unit", "", words(["Pa"]));
-    let tables = vec![("curve", curve), ("cracks", cracks), ("forces", forces), ("responses", responses)];
-    let mut run = artifact("run", tables);
-    run.root.put("snapshots", Node::Group(snapshots));
-    run
+    let cracks = Cracks {
+        axial_strain: count(|i| 5e-5 * i),
+        mode: (0..n).map(|i| if i % 3 == 0 { CrackMode::Shear } else { CrackMode::Tension }).collect(),
+        group: vec!["mortar".to_owned(); 30],
+        position: Array2::from_shape_fn((30, 2), |(i, axis)| [1e-3, -2e-3][axis] * (i as f64 - 15.0)),
+        normal: Array2::from_shape_fn((30, 2), |(_, axis)| [1.0, 0.0][axis]),
+        size: count(|_| 1e-3),
+    };
+    let forces = Forces {
+        state: (0..30).map(|i| i % 2).collect(),
+        first: (0..30).collect(),
+        second: (1..31).collect(),
+        normal_force: count(|i| 100.0 * (i - 4.0)),
+        shear_force: count(|_| 0.0),
+        bonded: vec![true; 30],
+    };
+    let states = States { axial_strain: vec![1e-4, 1e-3], stress: vec![1e6, 3e7], cracks: vec![0, 0] };
+    let centre = |(state, disc, axis)| [1e-3 * (disc as f64 - 15.0), 1e-2 * state as f64][axis];
+    let run = Run {
+        curve: Some(curve),
+        cracks: Some(cracks),
+        forces: Some(forces),
+        states: Some(states),
+        state_centres: Some(Array3::from_shape_fn((2, 31, 2), centre)),
+        ..Run::plain("", Responses::of(&[("E", 3e10, "Pa")]))
+    };
+    run.to_artifact()
 }
 
 fn specimen() -> Artifact {
@@ -199,12 +200,14 @@ fn verification() -> Artifact {
 fn context() -> Context {
     let mut context = Context::default();
     let mut add = |name: &str, sets: &str, symbol: &str, levels: &[f64]| {
-        let factor = Factor { sets: sets.into(), symbol: symbol.into(), levels: levels.to_vec(), ..Factor::default() };
+        let factor =
+            Factor { sets: vec![sets.into()], symbol: symbol.into(), levels: levels.to_vec(), ..Factor::default() };
         context.factors.insert(name.into(), factor);
     };
     add("Ec", "mortar.Ec", "E_c", &[10.0, 20.0]);
     add("mu", "mortar.mu", r"\mu", &[0.5, 1.0, 1.5]);
     add("null", "", "", &[1.0, 2.0, 3.0]);
+    context.factors.get_mut("Ec").unwrap().unit = "GPa".into();
     context.responses.insert("UCS".into(), Response { unit: "MPa".into(), symbol: r"\sigma_u".into() });
     context
 }
@@ -236,10 +239,11 @@ fn task_of(figure: &Figure, context: &Context, from: &[Artifact], compare: &[Art
         key: if i < from.len() { "of" } else { "compare" },
         stage: "s",
         content: ContentHash([i as u8; 32]),
+        vary: Box::new(|_, _| Ok(None)),
         replicate: Box::new(|_| None),
         sample: Box::new(|_, _| Err(StageError::new("none"))),
     };
-    let known = Known { context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
+    let known = Known { name: "figure", context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
     match figure.next(&known).unwrap() {
         Step::Finish(task) => task,
         Step::Ask(..) => panic!("a figure asks for nothing"),
@@ -316,11 +320,11 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
 fn the_numbers_are_those_of_the_inputs() {
     let ranges = made("show = 'range'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
     let data = ranges.table("data").unwrap();
-    assert_eq!(data.reals("value").unwrap(), [10.0, 2.0]);
-    assert_eq!(data.reals("empty column").unwrap(), [0.5, 0.5]);
+    assert_eq!(data.shown("value").unwrap().0, [10.0, 2.0]);
+    assert_eq!(data.shown("empty column").unwrap().0, [0.5, 0.5]);
 
     let means = made("show = 'main-effects'\nof = 'a'\nresponse = 'UCS'", &[range_analysis()], &[]).unwrap();
-    assert_eq!(means.table("data").unwrap().reals("mean").unwrap(), [30.0, 40.0, 34.0, 35.0, 36.0, 34.5, 35.0, 34.6]);
+    assert_eq!(means.table("data").unwrap().shown("mean").unwrap().0, [30.0, 40.0, 34.0, 35.0, 36.0, 34.5, 35.0, 34.6]);
 
     for (show, sizes, quantiles) in
         [("normal", [9.0, -3.0, 0.4], [0.97, -0.97, 0.0]), ("half-normal", [9.0, 3.0, 0.4], [1.38, 0.67, 0.21])]
@@ -329,7 +333,7 @@ fn the_numbers_are_those_of_the_inputs() {
         let data = plot.table("data").unwrap();
         let name = data.columns[1].name.clone();
         assert_eq!(
-            (data.reals(&name).unwrap(), data.reals("quantile").unwrap()),
+            (data.shown(&name).unwrap().0, data.shown("quantile").unwrap().0),
             (sizes.to_vec(), quantiles.to_vec()),
             "{show}"
         );
@@ -338,21 +342,21 @@ fn the_numbers_are_those_of_the_inputs() {
     let pairs = "show = 'agreement'\nof = 'a'\nresponse = 'UCS'\ncompare = 'b'";
     let agreement = made(pairs, &[results(1.0)], &[results(0.0)]).unwrap();
     let data = agreement.table("data").unwrap();
-    let (x, y) = (data.reals("published").unwrap(), data.reals("computed").unwrap());
+    let (x, y) = (data.shown("published").unwrap().0, data.shown("computed").unwrap().0);
     assert_eq!(x.len(), 6);
     assert!(x.iter().zip(&y).all(|(x, y)| y - x == 1.0));
 
     // Of the forces, those of the state with the largest stress: the odd ones, where its discs are.
     let chains = made("show = 'force-chains'\nof = 'a'", &[run()], &[]).unwrap();
     let data = chains.table("data").unwrap();
-    assert_eq!(data.reals("normal_force").unwrap()[..3], [-0.3, -0.1, 0.1]);
-    let first = ["x1", "x2", "y1"].map(|name| data.reals(name).unwrap()[0].round());
+    assert_eq!(data.shown("normal_force").unwrap().0[..3], [-0.3, -0.1, 0.1]);
+    let first = ["x1", "x2", "y1"].map(|name| data.shown(name).unwrap().0[0].round());
     assert_eq!(first, [-14.0, -13.0, 10.0]);
 
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['mu', 'Ec']";
     let field = made(contour, &[surfaces()], &[]).unwrap();
     let data = field.table("data").unwrap();
-    let z = data.reals("UCS").unwrap();
+    let z = data.shown("UCS").unwrap().0;
     // At mu = 0.4, Ec = 8: 1 + 16 − 1.2 + 1.6.
     assert!((z[0] - 17.4).abs() < 1e-12, "{}", z[0]);
 }
@@ -430,7 +434,7 @@ fn sweep() -> Artifact {
 
 #[test]
 fn plots_of_own_columns_hold_the_numbers_of_the_table() {
-    let numbers = |picture: &Artifact, name: &str| picture.table("data").unwrap().reals(name).unwrap();
+    let numbers = |picture: &Artifact, name: &str| picture.table("data").unwrap().shown(name).unwrap().0;
     let text = "show = 'xy'\nof = 'a'\nx = 'Ec'\ny = 'UCS'\nby = 'mu'\nfit = 'through-origin'\nbars = 'deviation'";
     let xy = made(text, &[sweep()], &[]).unwrap();
     // Means of the three packings, bars of one deviation: 2 % of the mean.
@@ -453,7 +457,7 @@ fn plots_of_own_columns_hold_the_numbers_of_the_table() {
     assert!((numbers(&heat, "scatter")[0] - 0.01).abs() < 1e-12);
 
     let boxes = made("show = 'box'\nof = 'a'\ny = 'UCS'\nby = 'cement'", &[sweep()], &[]).unwrap();
-    assert_eq!(boxes.table("data").unwrap().reals("n").unwrap(), [20.0, 10.0]);
+    assert_eq!(boxes.table("data").unwrap().shown("n").unwrap().0, [20.0, 10.0]);
     let bins = made("show = 'histogram'\nof = 'a'\nx = 'stiffness'\nbins = 5", &[sweep()], &[]).unwrap();
     assert_eq!(numbers(&bins, "count").iter().sum::<f64>(), 30.0);
     // Pascal are told in the unit that the field uses.

@@ -2,7 +2,7 @@
 
 use super::super::StageError;
 use super::{named, reals, unreadable};
-use crate::artifact::{Artifact, Group, Node, Table, Values, take};
+use crate::artifact::{Artifact, Field, Group, Node, Table, Values};
 use crate::stage::columns::Rows;
 use stats::model::{Axis, Model};
 use stats::terms::Term;
@@ -51,9 +51,9 @@ pub fn models(surfaces: &Artifact) -> Result<Vec<(String, Model)>, StageError> {
 
 fn read(group: &Group) -> Result<Model, StageError> {
     let wrong = |e: crate::artifact::Wanted| unreadable(&e.to_string());
-    let factors: Table = take(group, "model", "factors").map_err(wrong)?;
-    let listed: Table = take(group, "model", "terms").map_err(wrong)?;
-    let column = |table: &Table, name: &str| table.reals(name).ok_or_else(|| unreadable(&format!("no reals `{name}`")));
+    let factors: Table = Field::take(group, "factors", "").map_err(wrong)?;
+    let listed: Table = Field::take(group, "terms", "").map_err(wrong)?;
+    let column = |table: &Table, name: &str| table.numbers(name, "").map_err(|e| unreadable(&e.to_string()));
     let [centre, half, low, high] = ["centre", "half", "low", "high"].map(|name| column(&factors, name));
     let (centre, half, low, high) = (centre?, half?, low?, high?);
     let names = texts(&factors, "factor")?;
@@ -75,8 +75,8 @@ fn read(group: &Group) -> Result<Model, StageError> {
         },
         Some(_) | None => return Err(unreadable("`root` is not the square of the terms")),
     };
-    let s: f64 = take(group, "model", "s").map_err(wrong)?;
-    let df: i64 = take(group, "model", "df_residual").map_err(wrong)?;
+    let s: f64 = Field::take(group, "s", "").map_err(wrong)?;
+    let df: i64 = Field::take(group, "df_residual", "").map_err(wrong)?;
     Ok(Model {
         powers: terms.iter().flat_map(|t| axes.iter().map(|axis| t.power_of(&axis.name))).collect(),
         axes,
@@ -85,7 +85,7 @@ fn read(group: &Group) -> Result<Model, StageError> {
         root,
         s: (!s.is_nan()).then_some(s),
         df_residual: usize::try_from(df).map_err(|_| unreadable("`df_residual` is negative"))?,
-        greatest_leverage: take(group, "model", "greatest_leverage").map_err(wrong)?,
+        greatest_leverage: Field::take(group, "greatest_leverage", "").map_err(wrong)?,
     })
 }
 

@@ -1,9 +1,13 @@
 use super::*;
+use crate::artifact::run::Responses;
 use crate::stage::Factor;
+use crate::stage::material::MaterialTable;
 
 fn context() -> Context {
     let mut context = Context::default();
-    context.factors.insert("Ec".into(), Factor { sets: "mortar.Ec".into(), unit: "GPa".into(), ..Factor::default() });
+    context
+        .factors
+        .insert("Ec".into(), Factor { sets: vec!["mortar.Ec".into()], unit: "GPa".into(), ..Factor::default() });
     context.factors.insert("null".into(), Factor::default());
     context
 }
@@ -37,22 +41,18 @@ fn rows_are_told_apart_by_point_and_replicate() {
 
 #[test]
 fn a_point_sets_parameters_in_si_units() {
-    let base = BTreeMap::from([("mortar.Ec".to_owned(), 1.0), ("mortar.mu".to_owned(), 0.5)]);
+    let base: MaterialTable = toml::from_str("mortar = { Ec = '1 Pa', mu = 0.5 }").unwrap();
     let point = Point::from([("Ec".to_owned(), 16.0), ("null".to_owned(), 2.0)]);
-    let set = apply(&base, &point, &context()).unwrap();
-    assert_eq!(set.into_values().collect::<Vec<_>>(), [1.6e10, 0.5]);
-    let error = apply(&BTreeMap::new(), &point, &context()).unwrap_err();
+    let set = apply(&base.0, &point, &context()).unwrap();
+    assert_eq!(set.into_values().map(|found| found.value).collect::<Vec<_>>(), [1.6e10, 0.5]);
+    let error = apply(&Material::default(), &point, &context()).unwrap_err();
     assert!(error.message.contains("mortar.Ec"));
 }
 
 #[test]
 fn gathering_converts_units_and_keeps_failures() {
-    let run = |ucs: f64, failure: &str| {
-        let group = Group::new()
-            .with("failure", Node::Text(failure.to_owned()))
-            .with("responses", Node::Table(response_table(&[("UCS", ucs, "Pa")])));
-        Arc::new(Artifact::of(ArtifactKind::RUN, group))
-    };
+    let run =
+        |ucs: f64, failure: &str| Arc::new(Run::plain(failure, Responses::of(&[("UCS", ucs, "Pa")])).to_artifact());
     let inputs = vec![
         ("design".to_owned(), Arc::new(design(&[10.0, 20.0]))),
         ("run".to_owned(), run(3e7, "")),
@@ -71,6 +71,6 @@ fn gathering_converts_units_and_keeps_failures() {
         stop: &stop,
     };
     let results = gathered(&job).unwrap();
-    let strengths = results.table("runs").unwrap().reals("UCS").unwrap();
+    let strengths = results.table("runs").unwrap().shown("UCS").unwrap().0;
     assert!((strengths[0] - 30.0).abs() < 1e-12 && strengths[1].is_nan());
 }

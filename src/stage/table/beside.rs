@@ -25,7 +25,8 @@ pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String
         .collect();
     let mut out = Vec::new();
     for column in columns {
-        let printed = if by.contains(&column.key) { None } else { other.reals(&column.key) };
+        let theirs = other.column(&column.key).filter(|other| !by.contains(&other.name) && other.values.are_numbers());
+        let printed = theirs.map(|theirs| theirs.numbers(&column.unit)).transpose()?;
         let ours: Option<Vec<f64>> = match &column.values {
             Values::Reals(values) => Some(values.clone()),
             Values::Whole(values) => Some(values.iter().map(|&v| v as f64).collect()),

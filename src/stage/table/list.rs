@@ -135,7 +135,7 @@ impl Table {
         let ranges: Vec<_> = factors.iter().map(|factor| range(factor)).collect();
         let mut list = Given(Vec::new())
             .texts("factor", names.clone())
-            .texts("parameter", factors.iter().map(|factor| factor.sets.clone()).collect())
+            .texts("parameter", factors.iter().map(|factor| factor.sets.join(", ")).collect())
             .texts("unit", factors.iter().map(|factor| factor.unit.clone()).collect())
             .reals("low", "", ranges.iter().map(|range| range.map(|[low, _]| low)).collect())
             .reals("high", "", ranges.iter().map(|range| range.map(|[_, high]| high)).collect());
@@ -148,23 +148,28 @@ impl Table {
 
     /// Parameters by path, in the units of the factors that set them.
     fn material_list(&self, context: &Context) -> Result<Given, StageError> {
-        let materials: Vec<_> =
-            self.materials.iter().filter_map(|name| Some((name, context.materials.get(name)?))).collect();
+        let materials: Vec<_> = self
+            .materials
+            .iter()
+            .filter_map(|name| Some((name, context.materials.get(name)?.resolve_alone())))
+            .collect();
         let mut paths: Vec<&String> = materials.iter().flat_map(|(_, material)| material.keys()).collect();
         paths.sort();
         paths.dedup();
         let unit_of = |path: &str| {
-            let factor = context.factors.values().find(|factor| factor.sets == path);
-            factor.map_or(String::new(), |factor| factor.unit.clone())
+            let factor = context.factors.values().find(|factor| factor.sets.iter().any(|set| set == path));
+            let declared = || path.split_once('.').and_then(|(_, key)| dem::parameter::Parameter::from_key(key));
+            let own = || declared().map_or("", |parameter| parameter.declaration().quantity.unit()).to_owned();
+            factor.map_or_else(own, |factor| factor.unit.clone())
         };
         let units: Vec<String> = paths.iter().map(|path| unit_of(path)).collect();
-        let scales = units.iter().map(|unit| Unit::parse(unit).map(|unit| unit.factor));
-        let scales = scales.collect::<Result<Vec<f64>, _>>().map_err(|e| StageError::new(e.to_string()))?;
+        let shown = units.iter().map(|unit| Unit::parse(unit));
+        let shown = shown.collect::<Result<Vec<Unit>, _>>().map_err(|e| StageError::new(e.to_string()))?;
         let list = Given(Vec::new()).texts("parameter", paths.iter().map(|path| (*path).clone()).collect());
         let list = list.texts("unit", units);
         Ok(materials.iter().fold(list, |list, (name, material)| {
-            let value = |(path, scale): (&&String, &f64)| material.get(*path).map(|p| p.value / scale);
-            list.reals(name, "", paths.iter().zip(&scales).map(value).collect())
+            let value = |(path, unit): (&&String, &Unit)| material.get(*path).map(|p| unit.of_si(p.value));
+            list.reals(name, "", paths.iter().zip(&shown).map(value).collect())
         }))
     }
 
@@ -177,7 +182,7 @@ impl Table {
             rows.push((name.clone(), factor.map_or(String::new(), |f| f.unit.clone()), factor.and_then(range)));
         }
         let table = surfaces.table("residuals").ok_or_else(|| StageError::new("`of` names no fitted surfaces"))?;
-        let observed = table.reals("observed").unwrap_or_default();
+        let observed = table.numbers("observed", "").unwrap_or_default();
         let Some(Values::Texts(responses)) = table.column("response").map(|column| &column.values) else {
             return Err(StageError::new("the residuals do not name their responses"));
         };

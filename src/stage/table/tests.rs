@@ -1,5 +1,7 @@
 use super::*;
 use crate::artifact::Table as Data;
+use crate::stage::material::MaterialTable;
+use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -46,7 +48,7 @@ fn rows_and_columns_are_chosen_and_heads_have_symbols() {
     assert_eq!(text(&made, "csv"), "source,F\nEc,3003.4242\nerror,\n");
     assert_eq!(text(&made, "markdown"), "| source | $F_{2,36}$ |\n| :-- | --: |\n| Ec | 3003 |\n| error | – |\n");
     assert!(text(&made, "latex").contains("source & $F_{2,36}$ \\\\\n\\midrule\nEc & 3003 \\\\\nerror & -- \\\\"));
-    assert_eq!(made.table("table").unwrap().reals("F").unwrap()[0], 3003.4242);
+    assert_eq!(made.table("table").unwrap().shown("F").unwrap().0[0], 3003.4242);
 }
 
 #[test]
@@ -56,8 +58,8 @@ fn published_values_stand_beside_ours_with_the_deviation() {
     let made =
         run(params, &[("of", ours), ("compare", anova(ArtifactKind::RESULTS, [100.0, f64::NAN, 50.0]))]).unwrap();
     let table = made.table("table").unwrap();
-    assert_eq!(table.reals("F published").unwrap()[..1], [100.0]);
-    let deviation = table.reals("F deviation").unwrap();
+    assert_eq!(table.shown("F published").unwrap().0[..1], [100.0]);
+    let deviation = table.shown("F deviation").unwrap().0;
     assert!((deviation[0] - 10.0).abs() < 1e-9 && deviation[1].is_nan() && deviation[2] == 0.0);
     let markdown = text(&made, "markdown");
     assert!(markdown.contains("| UCS | Ec | 2 | 2 | 0.0 | 110 | 100 | 10.0 |"), "{markdown}");
@@ -99,29 +101,28 @@ fn given(text: &str) -> Option<Given> {
     }
     let mut context = Context::default();
     let factor = |sets: &str, unit: &str, levels: &[f64]| crate::stage::Factor {
-        sets: sets.into(),
+        sets: vec![sets.into()],
         unit: unit.into(),
         levels: levels.to_vec(),
         ..Default::default()
     };
     context.factors.insert("Ec".into(), factor("mortar.Ec", "GPa", &[30.0, 10.0, 20.0]));
     context.factors.insert("mu".into(), factor("mortar.mu", "", &[0.5, 1.5]));
-    let values = [("mortar.Ec", 1.6e10), ("mortar.mu", 0.5)];
-    let parameter = |value| crate::stage::Parameter { value, dimension: crate::unit::Dimension::NONE };
-    context.materials.insert("trial".into(), values.map(|(path, value)| (path.to_owned(), parameter(value))).into());
+    let trial: MaterialTable = toml::from_str("mortar = { Ec = '16 GPa', mu = 0.5 }").unwrap();
+    context.materials.insert("trial".into(), trial.0);
     let stage: super::Table = toml::from_str(text).unwrap();
     assert_eq!(stage.check(&context), []);
-    stage.given(&Known { context: &context, inputs: Vec::new(), library: &Nothing }).unwrap()
+    stage.given(&Known { name: "table", context: &context, inputs: Vec::new(), library: &Nothing }).unwrap()
 }
 
 #[test]
 fn factors_and_materials_of_the_workflow_are_listed() {
     let table = given("list = 'factors'").unwrap().table();
-    assert_eq!((table.reals("low").unwrap(), table.reals("high").unwrap()), (vec![10.0, 0.5], vec![30.0, 1.5]));
-    assert_eq!(table.reals("level_1").unwrap(), [30.0, 0.5]);
-    assert!(table.reals("level_3").unwrap()[1].is_nan());
+    assert_eq!((table.shown("low").unwrap().0, table.shown("high").unwrap().0), (vec![10.0, 0.5], vec![30.0, 1.5]));
+    assert_eq!(table.shown("level_1").unwrap().0, [30.0, 0.5]);
+    assert!(table.shown("level_3").unwrap().0[1].is_nan());
     let table = given("list = 'materials'\nmaterials = ['trial']").unwrap().table();
-    assert_eq!(table.reals("trial").unwrap(), [16.0, 0.5]);
+    assert_eq!(table.shown("trial").unwrap().0, [16.0, 0.5]);
     assert_eq!(given("of = 'anova'"), None);
 }
 

@@ -3,7 +3,8 @@
 //! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`, another quantity that of the
 //! field ([`super::super::units`]).
 
-use super::super::units::{scale, shown_unit};
+use super::super::units::shown_unit;
+use crate::unit::Conversion;
 use figure::column::{Column, Digits, Values};
 use std::collections::BTreeMap;
 
@@ -27,14 +28,15 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
         return;
     };
     let rows = names.iter().zip(&units).zip(&values);
-    let shown: Vec<(String, f64)> = rows.map(|((name, unit), &value)| one(wanted.get(name), unit, value)).collect();
+    let shown: Vec<(String, Conversion)> =
+        rows.map(|((name, unit), &value)| one(wanted.get(name), unit, value)).collect();
     for column in columns {
         match &mut column.values {
             Values::Words(words) if column.key == "unit" => {
                 words.iter_mut().zip(&shown).for_each(|(word, (unit, _))| word.clone_from(unit));
             }
             Values::Reals(values) if column.key == "value" || column.key == "value published" => {
-                values.iter_mut().zip(&shown).for_each(|(value, (_, factor))| *value /= factor);
+                values.iter_mut().zip(&shown).for_each(|(value, (_, shown))| *value = shown.of(*value));
                 if let Digits::Significant(digits) = column.digits {
                     column.digits = Digits::Unlike(digits);
                 }
@@ -44,9 +46,9 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
     }
 }
 
-/// The unit to show a value in, and what one of it is in the value's own unit.
-fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, f64) {
+/// The unit to show a value in, and the conversion to it; its own where it cannot be shown in the one that is wanted.
+fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, Conversion) {
     let shown = shown_unit(wanted, unit, value);
-    let factor = scale(&shown, unit).unwrap_or(1.0);
-    (shown, factor)
+    let conversion = Conversion::between(unit, &shown).unwrap_or(Conversion::NONE);
+    (shown, conversion)
 }

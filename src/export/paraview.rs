@@ -3,22 +3,24 @@
 //! | file | cells | fields |
 //! |---|---|---|
 //! | `NAME.particles.vtu` | discs as points | `radius`, `group` (0 mortar, 1 aggregate), `clump` (-1 none); of a run `displacement` |
-//! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 mortar, 1 interface, 2 aggregate), `gap` |
+//! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 between discs, 1 of a disc and aggregate, 2 within aggregate), `gap` |
 //! | `NAME.clumps.vtu` | polygons of aggregate | `polygon`, `clump` (-1 when no disc lies in it), `mass` |
 //! | `NAME.forces.vtu` | contacts of a run as lines, where it kept forces | `normal_force` (compression positive), `shear_force`, `bonded`, `chain` (1 from the mean force on) |
-//! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact | `mode` (0 tension, 1 shear), `group` (0 mortar, 1 interface), `axial_strain` |
+//! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact | `mode` (0 tension, 1 shear), `group` (number of the contact among those of all cracks by name), `axial_strain` |
 //! | `NAME.pvd` | all states of a run over the axial strain | |
 //!
 //! In ParaView: *Glyph* with `radius` as scale shows the discs, *Tube* the forces.
 
 use super::File;
-use super::bodies::{column, contacts};
+use super::bodies::contacts;
 use super::vtu::{Cells, Field, Grid, pvd};
-use crate::artifact::{Array, Artifact, Node, Values};
+use crate::artifact::Artifact;
+use crate::artifact::run::{CrackMode, Run};
 use dem::genesis::specimen::Specimen;
+use std::collections::BTreeSet;
 
 /// The files of a specimen.
-pub(super) fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
+pub fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
     let particles = Grid { on_points: bodies(specimen), ..points(specimen.centres.clone()) };
     let mut files = vec![
         (format!("{name}.particles.vtu"), particles.vtu().into_bytes()),
@@ -31,9 +33,10 @@ pub(super) fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
 }
 
 /// The files of a run on a specimen.
-pub(super) fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec<File>, String> {
-    let strains = column(run, "snapshots/states", "axial_strain")?;
-    let centres = states(run, strains.len(), specimen.radii.len())?;
+pub fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec<File>, String> {
+    let run = Run::from_artifact(run).map_err(|e| e.to_string())?;
+    let strains = run.states.as_ref().map(|states| states.axial_strain.clone()).ok_or("the run holds no states")?;
+    let centres = states(&run, strains.len(), specimen.radii.len())?;
     let mut files = Vec::new();
     let mut series = Vec::new();
     for (state, (&strain, centres)) in strains.iter().zip(&centres).enumerate() {
@@ -43,8 +46,8 @@ pub(super) fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec
         fields.push(Field::Vectors("displacement", moved));
         let grids = [
             ("particles", Some(Grid { on_points: fields, ..points(centres.clone()) })),
-            ("forces", forces(run, state, centres)?),
-            ("cracks", cracks(run, strain)?),
+            ("forces", forces(&run, state, centres)?),
+            ("cracks", cracks(&run, strain)?),
         ];
         for (part, (what, grid)) in grids.into_iter().enumerate() {
             let Some(grid) = grid else { continue };
@@ -78,7 +81,7 @@ fn links(specimen: &Specimen) -> Grid {
         cells: Cells::Lines(contacts.iter().map(|c| c.ends).collect()),
         on_points: Vec::new(),
         on_cells: vec![
-            Field::Ints("group", contacts.iter().map(|c| c.group as i64).collect()),
+            Field::Ints("group", contacts.iter().map(|c| (c.groups[0] + c.groups[1]) as i64).collect()),
             Field::Reals("gap", contacts.iter().map(|c| c.gap).collect()),
         ],
     }
@@ -106,34 +109,24 @@ fn clumps(specimen: &Specimen) -> Grid {
 }
 
 /// Centres of the discs in each state.
-fn states(run: &Artifact, count: usize, discs: usize) -> Result<Vec<Vec<[f64; 2]>>, String> {
-    let group = match run.root.get("snapshots") {
-        Some(Node::Group(group)) => group.get("centres"),
-        Some(_) | None => None,
-    };
-    match group {
-        Some(Node::Array(Array { values: Values::Reals(values), .. })) if values.len() == 2 * count * discs => {
-            Ok(values.as_chunks::<2>().0.chunks(discs.max(1)).map(<[_]>::to_vec).collect())
-        }
-        Some(_) => Err("the states of the run are those of another specimen".to_owned()),
-        None => Err("the run kept no states".to_owned()),
+fn states(run: &Run, count: usize, discs: usize) -> Result<Vec<Vec<[f64; 2]>>, String> {
+    let centres = run.state_centres.as_ref().ok_or("the run holds no states")?;
+    if centres.dim() != (count, discs, 2) {
+        return Err("the states of the run are those of another specimen".to_owned());
     }
+    let centre = |state, disc| [0, 1].map(|axis| centres[[state, disc, axis]]);
+    Ok((0..count).map(|state| (0..discs).map(|disc| centre(state, disc)).collect()).collect())
 }
 
-fn forces(run: &Artifact, state: usize, centres: &[[f64; 2]]) -> Result<Option<Grid>, String> {
-    if run.table("forces").is_none() {
-        return Ok(None);
-    }
-    let read = |name: &str| column(run, "forces", name);
-    let of = read("state")?;
-    let rows: Vec<usize> = (0..of.len()).filter(|&row| of[row] == state as f64).collect();
-    let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-    let (first, second) = (pick(&read("first")?), pick(&read("second")?));
-    let lines: Vec<[usize; 2]> = first.iter().zip(&second).map(|(&a, &b)| [a as usize, b as usize]).collect();
+fn forces(run: &Run, state: usize, centres: &[[f64; 2]]) -> Result<Option<Grid>, String> {
+    let Some(forces) = &run.forces else { return Ok(None) };
+    let rows: Vec<usize> = (0..forces.state.len()).filter(|&row| forces.state[row] == state).collect();
+    let lines: Vec<[usize; 2]> = rows.iter().map(|&row| [forces.first[row], forces.second[row]]).collect();
     if lines.iter().flatten().any(|&disc| disc >= centres.len()) {
         return Err("the forces name discs that the run does not have".to_owned());
     }
-    let (normal, shear, bonded) = (pick(&read("normal_force")?), pick(&read("shear_force")?), pick(&read("bonded")?));
+    let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
+    let (normal, shear) = (pick(&forces.normal_force), pick(&forces.shear_force));
     let mean = normal.iter().map(|force| force.abs()).sum::<f64>() / normal.len().max(1) as f64;
     Ok(Some(Grid {
         points: centres.to_vec(),
@@ -143,35 +136,37 @@ fn forces(run: &Artifact, state: usize, centres: &[[f64; 2]]) -> Result<Option<G
             Field::Ints("chain", normal.iter().map(|force| i64::from(force.abs() >= mean)).collect()),
             Field::Reals("normal_force", normal),
             Field::Reals("shear_force", shear),
-            Field::Ints("bonded", bonded.iter().map(|&bonded| bonded as i64).collect()),
+            Field::Ints("bonded", rows.iter().map(|&row| i64::from(forces.bonded[row])).collect()),
         ],
     }))
 }
 
 /// The cracks up to an axial strain; none is no grid.
-fn cracks(run: &Artifact, until: f64) -> Result<Option<Grid>, String> {
-    let read = |name: &str| column(run, "cracks", name);
-    let words = |name: &str| match run.table("cracks").and_then(|table| table.column(name)).map(|c| &c.values) {
-        Some(Values::Texts(texts)) => Ok(texts.clone()),
-        Some(_) | None => Err(format!("the cracks have no column `{name}`")),
-    };
-    let (strain, x, y, size) = (read("axial_strain")?, read("x")?, read("y")?, read("size")?);
-    let (nx, ny) = (read("normal_x")?, read("normal_y")?);
-    let (mode, group) = (words("mode")?, words("group")?);
-    let open: Vec<usize> = (0..strain.len()).filter(|&crack| strain[crack] <= until).collect();
+fn cracks(run: &Run, until: f64) -> Result<Option<Grid>, String> {
+    let Some(cracks) = &run.cracks else { return Ok(None) };
+    if cracks.position.ncols() != 2 {
+        return Err("cracks in space are no lines; write them with --to csv".to_owned());
+    }
+    let open: Vec<usize> = (0..cracks.size.len()).filter(|&crack| cracks.axial_strain[crack] <= until).collect();
     if open.is_empty() {
         return Ok(None);
     }
-    let ends = |&c: &usize| [-0.5, 0.5].map(|half| [x[c] - half * size[c] * ny[c], y[c] + half * size[c] * nx[c]]);
-    let is = |texts: &[String], word: &str| open.iter().map(|&c| i64::from(texts[c] == word)).collect();
+    let ends = |&c: &usize| {
+        let ([x, y], [nx, ny]) =
+            ([0, 1].map(|axis| cracks.position[[c, axis]]), [0, 1].map(|axis| cracks.normal[[c, axis]]));
+        [-0.5, 0.5].map(|half| [x - half * cracks.size[c] * ny, y + half * cracks.size[c] * nx])
+    };
+    let names: BTreeSet<&String> = cracks.group.iter().collect();
+    let number = |name: &String| names.iter().position(|known| *known == name).map_or(-1, |place| place as i64);
+    let marked = |is: &dyn Fn(usize) -> bool| open.iter().map(|&crack| i64::from(is(crack))).collect();
     Ok(Some(Grid {
         points: open.iter().flat_map(ends).collect(),
         cells: Cells::Lines((0..open.len()).map(|k| [2 * k, 2 * k + 1]).collect()),
         on_points: Vec::new(),
         on_cells: vec![
-            Field::Ints("mode", is(&mode, "shear")),
-            Field::Ints("group", is(&group, "interface")),
-            Field::Reals("axial_strain", open.iter().map(|&c| strain[c]).collect()),
+            Field::Ints("mode", marked(&|crack| cracks.mode[crack] == CrackMode::Shear)),
+            Field::Ints("group", open.iter().map(|&crack| number(&cracks.group[crack])).collect()),
+            Field::Reals("axial_strain", open.iter().map(|&crack| cracks.axial_strain[crack]).collect()),
         ],
     }))
 }

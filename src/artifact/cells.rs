@@ -1,0 +1,203 @@
+//! Columns of typed tables: one [`Cells`] per type of column.
+
+use super::{Table, Unread};
+use ndarray::Array2;
+
+/// A type whose values fill one column of a table, or several.
+pub trait Cells: Sized {
+    /// Adds the column or columns; unit and description come from the declaration.
+    fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str);
+
+    /// Reads them back, numbers in the declared unit.
+    ///
+    /// # Errors
+    /// The column that is missing or has another type or unit.
+    fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread>;
+}
+
+/// Adds a column through the methods that build tables.
+fn add(table: &mut Table, with: impl FnOnce(Table) -> Table) {
+    *table = with(std::mem::take(table));
+}
+
+impl Cells for Vec<f64> {
+    fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str) {
+        add(table, |table| table.reals_column(name, unit, about, self.clone()));
+    }
+    fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread> {
+        table.numbers(name, unit)
+    }
+}
+
+impl Cells for Vec<i64> {
+    fn put(&self, table: &mut Table, name: &str, _unit: &str, about: &str) {
+        add(table, |table| table.ints_column(name, about, self.clone()));
+    }
+    fn take(table: &Table, name: &str, _unit: &str) -> Result<Self, Unread> {
+        Ok(table.ints(name)?.to_vec())
+    }
+}
+
+/// Counts, and indices from 0.
+impl Cells for Vec<usize> {
+    fn put(&self, table: &mut Table, name: &str, _unit: &str, about: &str) {
+        add(table, |table| table.ints_column(name, about, self.iter().map(|&value| value as i64).collect()));
+    }
+    fn take(table: &Table, name: &str, _unit: &str) -> Result<Self, Unread> {
+        let index = |&value: &i64| usize::try_from(value);
+        let all: Result<Vec<usize>, _> = table.ints(name)?.iter().map(index).collect();
+        all.map_err(|_| Unread::Type { name: name.to_owned(), found: "a negative number", wanted: "counts" })
+    }
+}
+
+/// Flags, stored as 1 and 0.
+impl Cells for Vec<bool> {
+    fn put(&self, table: &mut Table, name: &str, _unit: &str, about: &str) {
+        add(table, |table| table.ints_column(name, about, self.iter().map(|&flag| i64::from(flag)).collect()));
+    }
+    fn take(table: &Table, name: &str, _unit: &str) -> Result<Self, Unread> {
+        Ok(table.ints(name)?.iter().map(|&flag| flag != 0).collect())
+    }
+}
+
+impl Cells for Vec<String> {
+    fn put(&self, table: &mut Table, name: &str, _unit: &str, about: &str) {
+        add(table, |table| table.texts_column(name, about, self.clone()));
+    }
+    fn take(table: &Table, name: &str, _unit: &str) -> Result<Self, Unread> {
+        Ok(table.texts(name)?.to_vec())
+    }
+}
+
+/// The axes of space: a table in the plane has the first two.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Vectors of the plane or of space, row by row: a column for each axis, `NAME_x`, `NAME_y` and in space `NAME_z`.
+impl Cells for Array2<f64> {
+    fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str) {
+        for (axis, values) in AXES.iter().zip(self.columns()) {
+            add(table, |table| table.reals_column(&format!("{name}_{axis}"), unit, about, values.to_vec()));
+        }
+    }
+    fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread> {
+        let there = |axis: &&str| table.column(&format!("{name}_{axis}")).is_some();
+        let axes = if AXES.iter().all(|axis| there(&axis)) { &AXES[..] } else { &AXES[..2] };
+        let columns = axes.iter().map(|axis| table.numbers(&format!("{name}_{axis}"), unit));
+        let columns = columns.collect::<Result<Vec<_>, _>>()?;
+        Ok(Array2::from_shape_fn((table.rows(), axes.len()), |(row, axis)| columns[axis][row]))
+    }
+}
+
+/// Columns that only some tables have.
+impl<C: Cells> Cells for Option<C> {
+    fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str) {
+        if let Some(cells) = self {
+            cells.put(table, name, unit, about);
+        }
+    }
+    fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread> {
+        match C::take(table, name, unit) {
+            Err(Unread::Missing { .. }) => Ok(None),
+            read => read.map(Some),
+        }
+    }
+}
+
+/// Declares words that stand in a column: an enum that is a column of texts.
+///
+/// ```
+/// flow::words! {
+///     /// How a bond broke.
+///     pub enum CrackMode {
+///         /// Pulled apart.
+///         Tension = "tension",
+///         /// Sheared.
+///         Shear = "shear",
+///     }
+/// }
+/// assert_eq!(CrackMode::ALL.map(CrackMode::word), ["tension", "shear"]);
+/// ```
+#[macro_export]
+macro_rules! words {
+    ($(#[$attribute:meta])* $visible:vis enum $name:ident {
+        $($(#[$variant_attribute:meta])* $variant:ident = $word:literal,)*
+    }) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        $visible enum $name { $($(#[$variant_attribute])* $variant,)* }
+
+        impl $name {
+            /// All of them, in the order of their declaration.
+            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$variant),*];
+
+            /// The word in files and pictures.
+            pub const fn word(self) -> &'static str {
+                match self { $(Self::$variant => $word,)* }
+            }
+        }
+
+        impl $crate::artifact::Cells for Vec<$name> {
+            fn put(&self, table: &mut $crate::artifact::Table, name: &str, unit: &str, about: &str) {
+                let words: Vec<String> = self.iter().map(|own| own.word().to_owned()).collect();
+                $crate::artifact::Cells::put(&words, table, name, unit, about);
+            }
+            fn take(
+                table: &$crate::artifact::Table,
+                name: &str,
+                _unit: &str,
+            ) -> Result<Self, $crate::artifact::Unread> {
+                let own = |word: &String| $name::ALL.into_iter().find(|own| own.word() == word);
+                let all: Option<Vec<$name>> = table.texts(name)?.iter().map(own).collect();
+                all.ok_or_else(|| $crate::artifact::Unread::Type {
+                    name: name.to_owned(),
+                    found: "other texts",
+                    wanted: concat!("one of" $(, " ", $word)*),
+                })
+            }
+        }
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    crate::table! {
+        /// columns of every type
+        struct Sample {
+            /// where
+            at: Array2<f64>, "mm";
+            /// which
+            index: Vec<usize>, "";
+            /// whether
+            met: Vec<bool>, "";
+            /// only sometimes
+            mass: Option<Vec<f64>>, "kg";
+        }
+    }
+
+    #[test]
+    fn a_table_comes_back_in_the_plane_and_in_space() {
+        let plane = Sample { at: array![[1.0, 2.0]], index: vec![3], met: vec![true], mass: None };
+        let space = Sample { at: array![[1.0, 2.0, 3.0]], mass: Some(vec![0.5]), ..plane.clone() };
+        for sample in [plane, space] {
+            assert_eq!(Sample::from_table(&sample.to_table()), Ok(sample));
+        }
+    }
+
+    #[test]
+    fn faults_name_the_column() {
+        let message = |table: Table| Sample::from_table(&table).unwrap_err().to_string();
+        let at =
+            || Table::default().reals_column("at_x", "m", "", vec![0.001]).reals_column("at_y", "m", "", vec![0.0]);
+        assert_eq!(message(Table::default()), "the table has no column `at_x`; it has ");
+        assert!(message(at()).starts_with("the table has no column `index`"));
+        assert_eq!(
+            message(at().ints_column("index", "", vec![-1])),
+            "column `index` holds a negative number, wanted counts"
+        );
+        let whole = at().ints_column("index", "", vec![1]).ints_column("met", "", vec![0]);
+        assert_eq!(Sample::from_table(&whole).unwrap().at, array![[1.0, 0.0]]);
+    }
+}

@@ -1,0 +1,224 @@
+//! One run of a simulator as it is stored.
+
+use super::{Artifact, ArtifactKind, Node, Unread, Wanted};
+use ndarray::{Array2, Array3};
+
+crate::artifact! {
+    /// One run of a simulator. External programs and formulas give responses only.
+    pub struct Run = ArtifactKind::RUN {
+        /// why the run gave no result; empty when it did
+        pub failure: String, "";
+        /// what should be known before its results are believed
+        pub warnings: Option<Vec<String>>, "";
+        /// what the run gave
+        pub responses: Responses, "";
+        /// numbers by which the run is judged
+        pub judgement: Option<Quantities>, "";
+        /// whether the specimen failed as the test supposes
+        pub checks: Option<Checks>, "";
+        /// stress and strains
+        pub curve: Option<Curve>, "";
+        /// energies
+        pub energies: Option<Energies>, "";
+        /// broken bonds
+        pub cracks: Option<Cracks>, "";
+        /// states at shares of the peak
+        pub states: Option<States>, "";
+        /// centres of the bodies in each state: state, body, axis
+        pub state_centres: Option<Array3<f64>>, "m";
+        /// forces between bodies in each state
+        pub forces: Option<Forces>, "";
+    }
+}
+
+crate::table! {
+    /// what the run gave
+    pub struct Responses {
+        /// name
+        pub response: Vec<String>, "";
+        /// in the unit beside it
+        pub value: Vec<f64>, "";
+        /// unit of the value
+        pub unit: Vec<String>, "";
+    }
+}
+
+crate::table! {
+    /// numbers by which the result is judged
+    pub struct Quantities {
+        /// name
+        pub quantity: Vec<String>, "";
+        /// in the unit beside it
+        pub value: Vec<f64>, "";
+        /// unit of the value
+        pub unit: Vec<String>, "";
+    }
+}
+
+crate::table! {
+    /// whether the specimen failed as the test supposes
+    pub struct Checks {
+        /// what is checked
+        pub check: Vec<String>, "";
+        /// what was found
+        pub value: Vec<f64>, "";
+        /// what must not be passed
+        pub bound: Vec<f64>, "";
+        /// 1 when within the bound
+        pub met: Vec<bool>, "";
+    }
+}
+
+crate::table! {
+    /// stress and strains at even axial strains
+    pub struct Curve {
+        /// shortening positive
+        pub axial_strain: Vec<f64>, "";
+        /// compression positive
+        pub stress: Vec<f64>, "Pa";
+        /// extension positive
+        pub lateral_strain: Vec<f64>, "";
+        /// contraction positive
+        pub volumetric_strain: Vec<f64>, "";
+        /// broken bonds so far
+        pub cracks: Vec<usize>, "";
+    }
+}
+
+crate::table! {
+    /// energies per metre of thickness since the start of loading
+    pub struct Energies {
+        /// shortening positive
+        pub axial_strain: Vec<f64>, "";
+        /// given by platens or grips
+        pub boundary: Vec<f64>, "J";
+        /// with the masses that move the bodies
+        pub kinetic: Vec<f64>, "J";
+        /// stored in linear springs
+        pub spring: Vec<f64>, "J";
+        /// stored in bonds
+        pub bond: Vec<f64>, "J";
+        /// lost with the bonds that broke
+        pub broken: Vec<f64>, "J";
+        /// spent by friction
+        pub slip: Vec<f64>, "J";
+        /// spent by local damping
+        pub damping: Vec<f64>, "J";
+    }
+}
+
+crate::words! {
+    /// How a bond broke.
+    pub enum CrackMode {
+        /// Pulled apart.
+        Tension = "tension",
+        /// Sheared.
+        Shear = "shear",
+    }
+}
+
+crate::table! {
+    /// broken bonds in the order of breaking
+    pub struct Cracks {
+        /// of the specimen when it broke
+        pub axial_strain: Vec<f64>, "";
+        /// tension or shear
+        pub mode: Vec<CrackMode>, "";
+        /// group of the contact
+        pub group: Vec<String>, "";
+        /// position of the contact
+        pub position: Array2<f64>, "m";
+        /// normal of the contact; the crack lies across it
+        pub normal: Array2<f64>, "";
+        /// length of the crack
+        pub size: Vec<f64>, "m";
+    }
+}
+
+crate::table! {
+    /// states at shares of the peak
+    pub struct States {
+        /// shortening positive
+        pub axial_strain: Vec<f64>, "";
+        /// compression positive
+        pub stress: Vec<f64>, "Pa";
+        /// broken bonds so far
+        pub cracks: Vec<usize>, "";
+    }
+}
+
+crate::table! {
+    /// forces between bodies in each state, per metre of thickness in the plane; single precision
+    pub struct Forces {
+        /// row of the table of states, from 0
+        pub state: Vec<usize>, "";
+        /// body, from 0
+        pub first: Vec<usize>, "";
+        /// body, from 0
+        pub second: Vec<usize>, "";
+        /// compression positive
+        pub normal_force: Vec<f64>, "N";
+        /// size
+        pub shear_force: Vec<f64>, "N";
+        /// 1 while a bond holds the two
+        pub bonded: Vec<bool>, "";
+    }
+}
+
+impl Run {
+    /// A run that holds responses only.
+    pub fn plain(failure: &str, responses: Responses) -> Self {
+        Self {
+            failure: failure.to_owned(),
+            warnings: None,
+            responses,
+            judgement: None,
+            checks: None,
+            curve: None,
+            energies: None,
+            cracks: None,
+            states: None,
+            state_centres: None,
+            forces: None,
+        }
+    }
+
+    /// Why a run gave no result (empty when it did), and name, value and unit of each response, without a copy of the
+    /// rest: for gathering many runs.
+    ///
+    /// # Errors
+    /// The artifact is no run.
+    pub fn outcome(artifact: &Artifact) -> Result<Outcome<'_>, Wanted> {
+        let lacks = |name: &str, wanted: &str| Wanted::new(name, wanted, "nothing").within(Self::KIND.name());
+        let Some(Node::Text(failure)) = artifact.root.get("failure") else { return Err(lacks("failure", "text")) };
+        let Some(Node::Table(table)) = artifact.root.get("responses") else { return Err(lacks("responses", "table")) };
+        let wrong = |unread: Unread| Wanted::new("responses", "its columns", unread.to_string());
+        let (names, units) = (table.texts("response").map_err(wrong)?, table.texts("unit").map_err(wrong)?);
+        let values = table.numbers("value", "").map_err(wrong)?;
+        let all =
+            names.iter().zip(values).zip(units).map(|((name, value), unit)| (name.as_str(), value, unit.as_str()));
+        Ok((failure, all.collect()))
+    }
+}
+
+/// Failure (empty when there is none), and name, value and unit of every response.
+pub type Outcome<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
+
+impl Responses {
+    /// Responses from names, values and units.
+    pub fn of(responses: &[(&str, f64, &str)]) -> Self {
+        Self {
+            response: responses.iter().map(|(name, ..)| (*name).to_owned()).collect(),
+            value: responses.iter().map(|(_, value, _)| *value).collect(),
+            unit: responses.iter().map(|(.., unit)| (*unit).to_owned()).collect(),
+        }
+    }
+}
+
+impl Quantities {
+    /// Quantities from names, values and units.
+    pub fn of(quantities: &[(&str, f64, &str)]) -> Self {
+        let Responses { response, value, unit } = Responses::of(quantities);
+        Self { quantity: response, value, unit }
+    }
+}

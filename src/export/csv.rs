@@ -1,0 +1,35 @@
+//! Tables as CSV.
+
+use crate::artifact::{Column, Table, Values};
+
+/// A table as CSV, with units in the first line and all digits.
+pub fn csv_text(table: &Table) -> String {
+    let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
+    let mut out = csv::Writer::from_writer(Vec::new());
+    let written = out.write_record(table.columns.iter().map(head)).and_then(|()| {
+        (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))
+    });
+    match (written, out.into_inner()) {
+        (Ok(()), Ok(bytes)) => String::from_utf8_lossy(&bytes).into_owned(),
+        (Err(_), _) | (_, Err(_)) => panic!("BUG: writing a table to memory failed"),
+    }
+}
+
+/// The head of a column: its name, and its unit in brackets.
+pub fn head(column: &Column) -> String {
+    match column.unit.as_str() {
+        "" => column.name.clone(),
+        unit => format!("{} [{unit}]", column.name),
+    }
+}
+
+/// The values as texts with all digits; empty where one is missing.
+pub fn cells(values: &Values) -> Vec<String> {
+    match values {
+        Values::Reals(values) => {
+            values.iter().map(|v| if v.is_nan() { String::new() } else { v.to_string() }).collect()
+        }
+        Values::Ints(values) => values.iter().map(i64::to_string).collect(),
+        Values::Texts(values) => values.clone(),
+    }
+}

@@ -1,0 +1,201 @@
+//! `--to particles`: a specimen as plain lists that any code can read, and for a run its microparameters too. CSV, SI
+//! units in the heads, numbers of discs and clumps from 0; the specimen as it stands before loading, free of force.
+//!
+//! | file | a row for each |
+//! |---|---|
+//! | `NAME.particles.csv` | disc: place, radius, group, clump, and the density of single discs; the mass of pebbles is that of their clump |
+//! | `NAME.clumps.csv` | rigid clump: mass and moment of inertia per metre of thickness, centre of mass |
+//! | `NAME.groups.csv` | contact group: microparameters of its spring and bond (of a run) |
+//! | `NAME.contacts.csv` | contact: its discs, group, gap, and whether it is bonded (of a run) |
+//! | `NAME.columns.csv` | column of these files: unit and meaning |
+
+use super::bodies::{Contact, contacts};
+use super::{File, csv_text};
+use crate::artifact::Table;
+use dem::genesis::specimen::Specimen;
+use dem::loading::material::{BondKind, Contact as Values, Material};
+use dem::parameter::{Parameter, Quantity};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+
+/// Parameters of a run by their paths in its task, as they stand there.
+pub type Parameters = BTreeMap<String, String>;
+
+/// Groups of a specimen that no run names.
+const GROUPS: [&str; 2] = ["discs", "aggregate"];
+
+/// What the files say of groups: their names, and for a run the values of their contacts.
+struct Named {
+    groups: Vec<String>,
+    material: Option<Material>,
+}
+
+impl Named {
+    fn of(parameters: Option<&Parameters>) -> Result<Self, String> {
+        let material = parameters.map(material).transpose()?;
+        let own = material.as_ref().map(|material| material.groups.clone());
+        Ok(Self { groups: own.unwrap_or_else(|| GROUPS.map(str::to_owned).to_vec()), material })
+    }
+
+    fn group(&self, number: usize) -> String {
+        self.groups.get(number).cloned().unwrap_or_default()
+    }
+
+    /// The name of the contacts of two groups, and whether they are bonded.
+    fn contact(&self, [a, b]: [usize; 2]) -> (String, bool) {
+        let found = self.material.as_ref().and_then(|material| material.contact(a, b));
+        match found {
+            Some((name, contact)) => (name.to_owned(), contact.bond != BondKind::None),
+            None if a == b => (self.group(a), false),
+            None => (format!("{}-{}", self.group(a), self.group(b)), false),
+        }
+    }
+}
+
+/// The microparameters of a run from the parameters of its task.
+fn material(parameters: &Parameters) -> Result<Material, String> {
+    let mut root = Map::new();
+    for (path, text) in parameters {
+        let Some(path) = path.strip_prefix("material.") else { continue };
+        let value: Value =
+            serde_json::from_str(text).map_err(|e| format!("the parameter `{path}` cannot be read: {e}"))?;
+        let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
+        let mut table = &mut root;
+        for name in tables.split('.').filter(|name| !name.is_empty()) {
+            let below = table.entry(name).or_insert_with(|| Value::Object(Map::new()));
+            table = below.as_object_mut().ok_or_else(|| format!("the parameter `{path}` lies below a value"))?;
+        }
+        table.insert(key.to_owned(), value);
+    }
+    serde_json::from_value(Value::Object(root)).map_err(|e| format!("the run's material cannot be read: {e}"))
+}
+
+/// The files; without parameters, those of the specimen alone.
+pub fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
+    let named = Named::of(parameters)?;
+    let margin = named.material.as_ref().map_or(0.0, |material| material.gap) * specimen.mean_radius();
+    let contacts = contacts(specimen, margin);
+    let mut tables = vec![("particles", particles(specimen, &named)), ("clumps", clumps(specimen))];
+    if let Some(material) = &named.material {
+        tables.push(("groups", groups(material)));
+    }
+    tables.push(("contacts", contact_table(&contacts, &named)));
+    tables.push(("columns", columns(&tables)));
+    Ok(tables.iter().map(|(what, table)| (format!("{name}.{what}.csv"), csv_text(table).into_bytes())).collect())
+}
+
+fn numbered(about: &str, count: usize) -> Table {
+    let numbers = (0..count).map(|i| i as i64).collect();
+    Table::default().ints_column("id", about, numbers)
+}
+
+fn particles(specimen: &Specimen, named: &Named) -> Table {
+    let clump = specimen.clump_of_balls();
+    let group = |clump: &Option<usize>| named.group(usize::from(clump.is_some()));
+    let density = |clump: &Option<usize>| if clump.is_some() { f64::NAN } else { specimen.density };
+    numbered("number of the disc", clump.len())
+        .reals_column("x", "m", "centre, across the load, from the middle of the specimen", axis(&specimen.centres, 0))
+        .reals_column("y", "m", "centre, along the load, from the middle of the specimen", axis(&specimen.centres, 1))
+        .reals_column("radius", "m", "radius", specimen.radii.clone())
+        .texts_column("group", "group of the disc", clump.iter().map(group).collect())
+        .ints_column("clump", "its clump, -1 for none", clump.iter().map(|c| c.map_or(-1, |c| c as i64)).collect())
+        .reals_column(
+            "density",
+            "kg/m^3",
+            "of discs that are no pebbles; empty for pebbles",
+            clump.iter().map(density).collect(),
+        )
+}
+
+fn axis(points: &[[f64; 2]], axis: usize) -> Vec<f64> {
+    points.iter().map(|point| point[axis]).collect()
+}
+
+fn clumps(specimen: &Specimen) -> Table {
+    let clumps = &specimen.clumps;
+    let centres: Vec<[f64; 2]> = clumps.iter().map(|clump| clump.centre).collect();
+    numbered("number of the clump", clumps.len())
+        .ints_column("pebbles", "discs in it", clumps.iter().map(|clump| clump.pebbles.len() as i64).collect())
+        .reals_column("x", "m", "centre of mass", axis(&centres, 0))
+        .reals_column("y", "m", "centre of mass", axis(&centres, 1))
+        .reals_column("mass", "kg/m", "per metre of thickness", clumps.iter().map(|clump| clump.mass).collect())
+        .reals_column(
+            "inertia",
+            "kg*m",
+            "about the centre of mass, per metre of thickness",
+            clumps.iter().map(|clump| clump.inertia).collect(),
+        )
+}
+
+fn contact_table(contacts: &[Contact], named: &Named) -> Table {
+    let whole = |pick: fn(&Contact) -> usize| contacts.iter().map(|c| pick(c) as i64).collect::<Vec<i64>>();
+    let table = Table::default()
+        .ints_column("first", "disc", whole(|c| c.ends[0]))
+        .ints_column("second", "disc", whole(|c| c.ends[1]))
+        .texts_column("group", "contact group", contacts.iter().map(|c| named.contact(c.groups).0).collect())
+        .reals_column(
+            "gap",
+            "m",
+            "distance of the surfaces, negative where they overlap",
+            contacts.iter().map(|c| c.gap).collect(),
+        );
+    if named.material.is_none() {
+        return table;
+    }
+    let bonded = contacts.iter().map(|c| i64::from(named.contact(c.groups).1)).collect();
+    table.ints_column("bonded", "1 where a bond is put at the start", bonded)
+}
+
+/// A row for each contact of the material, a column for each microparameter that one of them has.
+fn groups(material: &Material) -> Table {
+    let all: Vec<(&String, &Values)> = material.contacts.iter().collect();
+    let texts =
+        |pick: &dyn Fn(&Values) -> String| all.iter().map(|(_, contact)| pick(contact)).collect::<Vec<String>>();
+    let mut table = Table::default()
+        .texts_column("group", "contact", all.iter().map(|(name, _)| (*name).clone()).collect())
+        .texts_column("first", "group of one disc", texts(&|contact| contact.between[0].clone()))
+        .texts_column("second", "group of the other", texts(&|contact| contact.between[1].clone()))
+        .texts_column("bond", "parallel, contact or none", texts(&|contact| word(contact.bond)));
+    for parameter in Parameter::ALL {
+        let one = parameter.declaration();
+        let value = |contact: &Values| {
+            let acts = one.laws.iter().any(|law| contact.bond.laws().contains(law));
+            contact.values.get(parameter).copied().unwrap_or(if acts { one.default } else { f64::NAN })
+        };
+        let values: Vec<f64> = all.iter().map(|(_, contact)| value(contact)).collect();
+        if values.iter().any(|value| !value.is_nan()) {
+            let (unit, about) = match one.quantity {
+                Quantity::Deviation => ("", format!("{}, over its mean", one.meaning)),
+                quantity => (quantity.unit(), one.meaning.to_owned()),
+            };
+            table = table.reals_column(one.key, unit, &about, values);
+        }
+    }
+    table
+        .texts_column("distribution", "of the strengths", texts(&|contact| word(contact.distribution)))
+        .reals_column(
+            "gap",
+            "",
+            "bonds form at gaps up to this share of the mean radius",
+            vec![material.gap; all.len()],
+        )
+        .texts_column("convention", "how a modulus becomes a stiffness", vec![word(material.convention); all.len()])
+}
+
+/// The word for an alternative in the workflow.
+fn word(value: impl Serialize) -> String {
+    serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
+}
+
+/// What the columns of the files mean.
+fn columns(tables: &[(&'static str, Table)]) -> Table {
+    let all = tables.iter().flat_map(|(file, table)| table.columns.iter().map(move |column| (*file, column)));
+    let all: Vec<_> = all.collect();
+    let texts = |pick: &dyn Fn(usize) -> String| (0..all.len()).map(pick).collect::<Vec<String>>();
+    Table::default()
+        .texts_column("file", "", texts(&|i| all[i].0.to_owned()))
+        .texts_column("column", "", texts(&|i| all[i].1.name.clone()))
+        .texts_column("unit", "", texts(&|i| all[i].1.unit.clone()))
+        .texts_column("meaning", "", texts(&|i| all[i].1.about.clone()))
+}
