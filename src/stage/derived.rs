@@ -134,7 +134,7 @@ mod tests {
             ("ratio^2", ""),
             ("exp(-ratio)", ""),
             ("E*R", "kg s^-2"),
-            ("sqrt(R)", "m^0.5"),
+            ("sqrt(R)", "m^(1/2)"),
             ("max(scn, E)", "GPa"),
         ] {
             assert_eq!(Derived::of(text, unit).unwrap().unit, wanted, "{text}");

@@ -39,10 +39,16 @@ fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
     let known = |unit: &str| !unit.is_empty() && unit != "1" && Unit::parse(unit).is_ok();
     let round = head.strip_suffix(')').and_then(|rest| rest.split_once('(')).filter(|(name, _)| !name.ends_with('/'));
     // the first stroke: a unit may hold another, as in `v / m/s`
-    let stroke = head.split_once('/');
+    let stroke = head.split_once('/').filter(|(_, unit)| is_plain_unit(bare(unit.trim())));
     let both = [round, stroke].into_iter().flatten().map(|(name, unit)| (name.trim(), unit.trim()));
     let found = both.into_iter().find(|(name, unit)| !name.is_empty() && known(bare(unit)));
     Ok(found.map_or((head, ""), |(name, unit)| (name, bare(unit))))
+}
+
+/// Whether a text behind a stroke is surely a unit: `ks` and `t` are units too, but `kn/ks` and `R/t` are ratios.
+fn is_plain_unit(unit: &str) -> bool {
+    let marked = unit.contains(|c: char| c.is_uppercase() || c.is_ascii_digit() || "%°µ/".contains(c));
+    marked || ["m", "cm", "mm", "g", "kg", "s", "ms", "min", "rad", "deg"].contains(&unit)
 }
 
 /// `(kg/m^3)` of the head `density/(kg/m^3)`.
@@ -126,7 +132,9 @@ mod tests {
         assert_eq!(read("UCS/MPa"), ("UCS", "MPa"));
         assert_eq!(read("v / m/s"), ("v", "m/s"));
         assert_eq!(read("density/(kg/m^3)"), ("density", "kg/m^3"));
+        assert_eq!(read("d/mm"), ("d", "mm"));
         assert_eq!(read("kn/ks"), ("kn/ks", ""));
+        assert_eq!(read("R/t"), ("R/t", ""));
         assert_eq!(read("strength (mean)"), ("strength (mean)", ""));
         assert_eq!(read("nu"), ("nu", ""));
     }
