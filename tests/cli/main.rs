@@ -13,3 +13,4 @@ mod report;
 mod reruns;
 mod space;
 mod stop;
+mod trust;

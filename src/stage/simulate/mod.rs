@@ -105,7 +105,7 @@ const REPORT_EVERY: usize = 50;
 
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let specimen = super::specimen::load(job.input("specimen")?)?;
+    let specimen = super::specimen::load(job.input("specimen")?)?.plane()?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
     for warning in uniaxial::warnings(&params.test, &specimen, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));
