@@ -76,6 +76,10 @@ impl<'de> Deserialize<'de> for Level {
             fn visit_str<E: de::Error>(self, value: &str) -> Result<Level, E> {
                 Ok(Level::Name(value.to_owned()))
             }
+            // a hole, where a fault was found already
+            fn visit_unit<E: de::Error>(self) -> Result<Level, E> {
+                Ok(Level::Number(1.0))
+            }
         }
         deserializer.deserialize_any(Reader)
     }
