@@ -360,6 +360,8 @@ kinds! {
     Pressure, PressureKind = (-1, 1, -2), "stress or modulus", "16 GPa";
     /// Metres per second.
     Velocity, VelocityKind = (1, 0, -1), "velocity", "0.02 m/s";
+    /// Per second.
+    Rate, RateKind = (0, 0, -1), "strain rate", "0.1 s^-1";
     /// Kilograms per cubic metre.
     Density, DensityKind = (-3, 1, 0), "density", "2650 kg/m^3";
     /// Metres per second squared.

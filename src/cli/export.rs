@@ -73,7 +73,7 @@ impl Export {
             let csv = self.to == Form::Csv;
             let artifact = if csv { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
             let files = self.files(&store, one, &artifact).map_err(|why| {
-                eprintln!("error: {}: {why}", one.name);
+                err!("error: {}: {why}", one.name);
                 Exit::BadInput
             })?;
             for (name, bytes) in files {
@@ -85,11 +85,11 @@ impl Export {
             }
         }
         if !missing.is_empty() {
-            eprintln!("error: no result yet of {}; run them first", missing.join(", "));
+            err!("error: no result yet of {}; run them first", missing.join(", "));
             return Ok(Exit::Failed);
         }
         if written == 0 {
-            eprintln!("error: nothing of these stages can be written in this form");
+            err!("error: nothing of these stages can be written in this form");
             return Ok(Exit::BadInput);
         }
         Ok(Exit::Done)

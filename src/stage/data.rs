@@ -1,19 +1,21 @@
 //! `kind = "data"`: a table from a CSV file or a workbook stands wherever a simulated table stands.
 //!
 //! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or `sigma_c/MPa`.
-//! A column whose cells are all numbers (or missing) holds reals, any other holds texts. The result is an artifact
-//! `results` with the table `runs`, as `simulate` gives it, and the table `notes`, which says how the file was read where
-//! that was detected and is not the plain way (UTF-8, commas between cells, decimal points).
+//! A column whose cells are all numbers (or missing) holds reals, any other holds texts. Comments (`#`) stand above the
+//! line of names only. The result is an artifact `results` with the table `runs`, as `simulate` gives it, and the table
+//! `notes`, which says how the file was read where that was detected and is not the plain way (UTF-8, commas between
+//! cells, decimal points).
 
 mod cells;
 mod dialect;
 mod workbook;
 
+use super::beside::Beside;
 use super::notes::Notes;
+use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use cells::Cells;
-use design::table::MOST_RUNS;
 use dialect::Dialect;
 pub use dialect::{Decimal, Delimiter, Encoding};
 use schemars::JsonSchema;
@@ -64,6 +66,10 @@ impl Stage for Data {
         if self.file.trim().is_empty() { vec![empty] } else { Vec::new() }
     }
 
+    fn beside(&self, _context: &super::Context, found: &mut Beside) {
+        found.file("file", &self.file);
+    }
+
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let mut task = Task::new("data", json!(self.dialect()));
         task.files.push(known.library.file("table", &self.file)?);
@@ -92,64 +98,42 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
 }
 
 /// Reads the whole table in whatever way it is written, or says what is wrong with it.
-pub(super) fn parse(bytes: &[u8]) -> Result<Table, StageError> {
+///
+/// # Errors
+/// What is wrong with it, and where.
+pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
     parse_as(bytes, &Dialect::default()).map(|(table, _)| table)
 }
 
 /// Reads the table as `how` fixes it; the second is what was detected, where that is not plain CSV.
 fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), StageError> {
-    let (lines, decimal, said) = if workbook::is_workbook(bytes) {
-        (workbook::lines(bytes, how.sheet.as_deref())?, Decimal::Point, None)
+    let (sheet, decimal, said) = if workbook::is_workbook(bytes) {
+        (workbook::sheet(bytes, how.sheet.as_deref())?, Decimal::Point, None)
     } else {
-        text_lines(bytes, how)?
+        text(bytes, how)?
     };
-    let mut lines = lines.into_iter();
-    let heads = lines.next().unwrap_or_default();
-    let mut cells = vec![Vec::new(); heads.len()];
-    for (row, line) in lines.enumerate() {
-        if row == MOST_RUNS {
-            return Err(StageError::new(format!("the table has more than {MOST_RUNS} rows")).hint("name a part of it"));
-        }
-        for (column, cell) in cells.iter_mut().zip(line) {
-            column.push(cell);
-        }
-    }
-    if cells.first().is_none_or(Vec::is_empty) {
+    if sheet.rows() == 0 {
         return Err(StageError::new("the file has no rows below its first line"));
     }
     let how = Cells { decimal, missing: how.missing.as_deref() };
-    let table = heads
-        .iter()
-        .zip(cells)
-        .try_fold(Table::default(), |table, (head, cells)| cells::column(table, head.trim(), cells, &how))?;
+    let add = |table, (head, cells): (&String, _)| cells::column(table, head, cells, &how);
+    let table = sheet.heads.iter().zip(sheet.columns).try_fold(Table::default(), add)?;
     Ok((table, said))
 }
 
-/// The lines of a text file cell by cell, its decimal sign, and what was detected.
-type TextLines = (Vec<Vec<String>>, Decimal, Option<String>);
-
-fn text_lines(bytes: &[u8], how: &Dialect) -> Result<TextLines, StageError> {
+/// The cells of a text file, its decimal sign, and what was detected.
+fn text(bytes: &[u8], how: &Dialect) -> Result<(Sheet, Decimal, Option<String>), StageError> {
     let (text, encoding) = dialect::decode(bytes, how.encoding)?;
     let delimiter = how.delimiter.unwrap_or_else(|| dialect::delimiter(&text));
-    let mut reader = csv::ReaderBuilder::new()
-        .delimiter(delimiter.byte())
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .has_headers(false)
-        .from_reader(text.as_bytes());
-    let fail = |e: csv::Error| StageError::new(e.to_string()).hint("every line must have the cells of the first line");
-    let mut lines: Vec<Vec<String>> = Vec::new();
-    for record in reader.records().take(MOST_RUNS + 2) {
-        lines.push(record.map_err(fail)?.iter().map(str::to_owned).collect());
-    }
-    let cells = lines.iter().skip(1).flatten().map(String::as_str);
+    let sheet = Sheet::of(&text, delimiter.byte(), |_| Ok(()))?;
+    let cells = sheet.columns.iter().flatten().map(String::as_str);
     let decimal = how.decimal.map_or_else(|| dialect::decimal(cells), Ok)?;
     let said = dialect::said(
         encoding,
         Some(delimiter).filter(|_| how.delimiter.is_none()),
         Some(decimal).filter(|_| how.decimal.is_none()),
     );
-    Ok((lines, decimal, said))
+    Ok((sheet, decimal, said))
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@
 mod grouped;
 pub(super) mod origin;
 
+use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -119,6 +120,10 @@ impl Stage for Regression {
         found.extend(self.check_groups());
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("published", self.published.as_ref());
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

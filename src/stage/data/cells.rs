@@ -32,7 +32,11 @@ pub(super) fn column(table: Table, head: &str, cells: Vec<String>, how: &Cells) 
 /// `UCS [MPa]`, `UCS (MPa)`, `UCS/MPa` or `UCS`. A bracket or stroke that holds no unit, as in `kn/ks`, is part of the name.
 fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
     if let Some((name, unit)) = head.split_once('[') {
-        let unit = unit.trim_end_matches(']').trim();
+        let alone = unit.trim_end().strip_suffix(']').filter(|unit| !unit.contains(['[', ']']));
+        let unit = alone.map(str::trim).ok_or_else(|| {
+            StageError::new(format!("column `{head}`: the unit must stand alone in brackets at the end"))
+                .hint("write for example `Ec [GPa]`")
+        })?;
         Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
         return Ok((name.trim(), unit));
     }

@@ -1,6 +1,7 @@
 //! How a text file writes its table: encoding, delimiter, decimal sign; detected from the bytes, or fixed by settings.
 
 use super::super::StageError;
+use super::super::sheet::below_comments;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -117,13 +118,13 @@ pub(super) fn decode(bytes: &[u8], fixed: Option<Encoding>) -> Result<(String, O
 
 /// The delimiter under which all lines have the same number of cells, the greatest such number.
 pub(super) fn delimiter(text: &str) -> Delimiter {
+    let (body, _) = below_comments(text);
     let score = |delimiter: Delimiter| {
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter.byte())
-            .comment(Some(b'#'))
             .has_headers(false)
             .flexible(true)
-            .from_reader(text.as_bytes());
+            .from_reader(body.as_bytes());
         let widths: Vec<usize> = reader.records().take(200).flatten().map(|record| record.len()).collect();
         let first = widths.first().copied().unwrap_or(1);
         let even = first > 1 && widths.iter().all(|w| *w == first);

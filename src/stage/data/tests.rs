@@ -14,7 +14,9 @@ fn units_numbers_and_missing_cells_are_read() {
 #[test]
 fn faults_name_line_or_column() {
     let message = |text: &[u8]| parse(text).unwrap_err().message;
-    assert!(message(b"a,b\n1\n").contains("line: 2"), "{}", message(b"a,b\n1\n"));
+    assert!(message(b"a,b\n1\n").contains("line 2"), "{}", message(b"a,b\n1\n"));
+    assert!(message(b"a [MPa\n1\n").contains("brackets"));
+    assert!(message(b"a [MPa] x\n1\n").contains("brackets"));
     assert!(message(b"a [ell]\n1\n").contains("`a [ell]`"));
     assert!(message(b"a,a\n1,2\n").contains("name of its own"));
     assert!(message(b"a\n").contains("no rows"));

@@ -1,7 +1,9 @@
 //! Workbooks of Excel and LibreOffice (xlsx, xlsb, xls, ods): one sheet as a table of text.
 
 use super::super::StageError;
+use super::super::sheet::Sheet;
 use calamine::{Data, Reader, open_workbook_auto_from_rs};
+use design::table::MOST_RUNS;
 use std::io::Cursor;
 
 /// Whether these are the first bytes of a workbook: a zip archive, or the container of old Office files.
@@ -9,8 +11,24 @@ pub(super) fn is_workbook(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1")
 }
 
-/// The lines of a sheet, the first one with the heads, all of one length; rows without any cell are left out.
-pub(super) fn lines(bytes: &[u8], sheet: Option<&str>) -> Result<Vec<Vec<String>>, StageError> {
+/// The cells of a sheet, the first row with the heads; rows without any cell are left out.
+pub(super) fn sheet(bytes: &[u8], sheet: Option<&str>) -> Result<Sheet, StageError> {
+    let mut lines = lines(bytes, sheet)?.into_iter();
+    let heads: Vec<String> = lines.next().unwrap_or_default().iter().map(|head| head.trim().to_owned()).collect();
+    let mut columns = vec![Vec::new(); heads.len()];
+    for (row, line) in lines.enumerate() {
+        if row == MOST_RUNS {
+            return Err(StageError::new(format!("the table has more than {MOST_RUNS} rows")).hint("name a part of it"));
+        }
+        for (column, cell) in columns.iter_mut().zip(line) {
+            column.push(cell);
+        }
+    }
+    Ok(Sheet { heads, columns })
+}
+
+/// The lines of a sheet, all of one length.
+fn lines(bytes: &[u8], sheet: Option<&str>) -> Result<Vec<Vec<String>>, StageError> {
     let fault = |e: calamine::Error| StageError::new(format!("the workbook cannot be read: {e}"));
     let mut book = open_workbook_auto_from_rs(Cursor::new(bytes.to_vec())).map_err(fault)?;
     let names = book.sheet_names();
