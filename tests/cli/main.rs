@@ -15,3 +15,4 @@ mod reruns;
 mod space;
 mod stop;
 mod trust;
+mod vocabulary;
