@@ -26,6 +26,12 @@ impl Sheet {
         let text = std::str::from_utf8(bytes).map_err(|e| not_text(bytes, e.valid_up_to()))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let (body, skipped) = below_comments(text);
+        if let Some(line) = open_quote(body) {
+            let message = format!("line {}: a double quote has no partner", skipped + line);
+            return Err(
+                StageError::new(message).hint("all below it would be one cell; write a quote within quotes twice")
+            );
+        }
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(body.as_bytes());
         let fail = |e: &csv::Error| unequal(e, skipped);
         let heads: Vec<String> = reader.headers().map_err(|e| fail(&e))?.iter().map(str::to_owned).collect();
@@ -81,6 +87,12 @@ fn empty_line(text: &str) -> Option<usize> {
     })
 }
 
+/// The first line, from 1, with an odd number of quotes, when the whole text has one.
+fn open_quote(text: &str) -> Option<usize> {
+    let odd = |text: &str| text.matches('"').count() % 2 == 1;
+    if odd(text) { text.lines().position(odd).map(|at| at + 1) } else { None }
+}
+
 fn not_text(bytes: &[u8], valid: usize) -> StageError {
     let line = bytes[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
     StageError::new(format!("line {line} holds a byte that is not UTF-8 text"))
@@ -133,6 +145,7 @@ mod tests {
         assert_eq!(message(b"# c\na,b\n1\n"), "line 3 has 1 cells where the first line has 2");
         assert_eq!(message(b"a,b\n1,2,3\n"), "line 2 has 3 cells where the first line has 2");
         assert_eq!(message(b"a,b\n1,2\n\xf6,3\n"), "line 3 holds a byte that is not UTF-8 text");
+        assert_eq!(message(b"# c\na,b\n1,\"2\n3,4\n"), "line 3: a double quote has no partner");
         assert_eq!(message(b"a;b\n1,5;2\n"), "the cells of the first line are separated by `;`");
         assert_eq!(message(b"a\tb\n1\t2\n"), "the cells of the first line are separated by tabs");
     }
