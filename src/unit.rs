@@ -103,8 +103,8 @@ pub enum UnitError {
     /// A number without a unit.
     #[error("`{0}` needs a unit; write for example \"{1}\"")]
     NoUnit(String, &'static str),
-    /// A sign of multiplication or division with nothing beside it.
-    #[error("`{0}` has a sign with no unit beside it; write for example \"kg/m^3\"")]
+    /// A sign of multiplication or division with nothing beside it, or a bracket without its partner.
+    #[error("`{0}` has a sign with no unit beside it, or an open bracket; write for example \"kg/m^3\"")]
     Incomplete(String),
     /// A power that is not a number, or beyond all use.
     #[error(

@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod cases;
+mod columns;
 mod command;
 mod export;
 mod faults;
@@ -14,3 +15,4 @@ mod reruns;
 mod space;
 mod stop;
 mod trust;
+mod vocabulary;

@@ -29,6 +29,7 @@ mod lattice;
 mod limit;
 mod measuring;
 mod memory;
+mod moduli;
 mod packing;
 mod page;
 mod piece;
