@@ -81,7 +81,7 @@ impl Stage for Calibrate {
             }
         }
         if self.simulator.is_none() {
-            task.params = json!(params);
+            task.params = json!(params).into();
             return Ok(Step::Finish(task));
         }
         let (mut wanted, mut stands) = (Vec::new(), Vec::new());
@@ -97,7 +97,7 @@ impl Stage for Calibrate {
         if !wanted.is_empty() {
             return Ok(Step::Ask(wanted, in_words(&stands)));
         }
-        task.params = json!(params);
+        task.params = json!(params).into();
         Ok(Step::Finish(task))
     }
 }

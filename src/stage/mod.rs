@@ -49,6 +49,7 @@ pub mod formula;
 pub mod ledger;
 pub mod material;
 mod notes;
+mod packed;
 mod published;
 pub mod range;
 pub mod regression;
@@ -66,6 +67,7 @@ pub use context::{
     Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Scale, Sketch,
     Varier,
 };
+pub use packed::Packed;
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};

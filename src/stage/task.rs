@@ -1,7 +1,7 @@
 //! The unit of work, and what runs it.
 
-use super::StageError;
 use super::ledger::KeptRuns;
+use super::{Packed, StageError};
 use crate::artifact::{Artifact, ContentHash};
 use dem::Watch;
 use serde::de::DeserializeOwned;
@@ -17,7 +17,7 @@ pub struct Task {
     /// Name of its [`Work`].
     pub work: &'static str,
     /// Parameters it really uses, SI numbers; read back by [`Job::params`].
-    pub params: Value,
+    pub params: Packed,
     /// Its seed, when it draws random numbers.
     pub seed: Option<u64>,
     /// Named inputs in a fixed order.
@@ -37,7 +37,7 @@ impl Task {
     pub fn new(work: &'static str, params: Value) -> Self {
         Self {
             work,
-            params,
+            params: params.into(),
             seed: None,
             inputs: Vec::new(),
             files: Vec::new(),
