@@ -7,13 +7,18 @@
 //!
 //! The artifact `verification` holds the tables `summary` and `runs`.
 
-use super::calibrate::read_response;
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
+use super::calibrate::{Unmet, read_response};
+use super::notes::short;
+use super::{
+    Class, Complaint, Context, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work,
+};
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use math::distribution::t_for_coverage;
+use optim::misfit::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Settings of a `verify` stage.
@@ -23,10 +28,19 @@ pub struct Verify {
     /// The calibration to verify.
     pub solution: String,
     /// The stage whose simulation is run: its specimen, material and test.
-    pub simulator: String,
+    pub simulator: Option<String>,
+    /// Several such stages, as the calibration has them.
+    #[serde(default)]
+    pub simulators: Vec<String>,
+    /// The simulator that a response is taken from, when several give it; the first that does when not given.
+    #[serde(default)]
+    pub from: BTreeMap<String, String>,
     /// Fresh specimens per set.
     #[serde(default = "five")]
     pub replicates: u64,
+    /// What `flow run` makes of targets that lie outside the interval of the mean.
+    #[serde(default)]
+    pub unmet: Unmet,
 }
 
 fn five() -> u64 {
@@ -41,21 +55,23 @@ const FRESH: u64 = 1_000_001;
 struct Params {
     factors: Vec<String>,
     replicates: usize,
+    /// The simulators, in the order of their runs at one specimen.
+    simulators: Vec<String>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    from: BTreeMap<String, String>,
 }
 
 impl Stage for Verify {
     fn inputs(&self) -> Vec<Port> {
+        let simulators = Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::RUN]);
         vec![
             Port {
                 key: "solution",
                 stages: vec![self.solution.clone()],
                 accepts: Accepts::Only(&[ArtifactKind::SOLUTION]),
             },
-            Port {
-                key: "simulator",
-                stages: vec![self.simulator.clone()],
-                accepts: Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::RUN]),
-            },
+            Port { key: "simulator", stages: self.simulator.iter().cloned().collect(), accepts: simulators },
+            Port { key: "simulators", stages: self.simulators.clone(), accepts: simulators },
         ]
     }
 
@@ -64,8 +80,19 @@ impl Stage for Verify {
     }
 
     fn check(&self, _context: &Context) -> Vec<Complaint> {
-        let few = Complaint::new("replicates", "a standard deviation needs at least two specimens");
-        if self.replicates < 2 { vec![few.hint("replicates = 5")] } else { Vec::new() }
+        let mut found = Vec::new();
+        if self.replicates < 2 {
+            let few = Complaint::new("replicates", "a standard deviation needs at least two specimens");
+            found.push(few.hint("replicates = 5"));
+        }
+        let simulators: Vec<&String> = self.simulator.iter().chain(&self.simulators).collect();
+        if simulators.is_empty() {
+            found.push(Complaint::new("simulator", "no simulator is named").hint("name that of the calibration"));
+        }
+        for name in self.from.values().filter(|name| !simulators.contains(name)) {
+            found.push(Complaint::new("from", format!("`{name}` is none of the simulators")));
+        }
+        found
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -74,25 +101,41 @@ impl Stage for Verify {
         let table = artifact.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
         let factors: Vec<String> =
             table.columns.iter().map(|c| c.name.clone()).filter(|n| known.context.factors.contains_key(n)).collect();
-        let simulator = known.one("simulator")?;
-        let mut task =
-            Task::new("verify", json!(Params { factors: factors.clone(), replicates: self.replicates as usize }))
-                .input("solution", input.content);
+        let simulators: Vec<&Input<'_>> = known.port("simulator").chain(known.port("simulators")).collect();
+        let params = Params {
+            factors: factors.clone(),
+            replicates: self.replicates as usize,
+            simulators: simulators.iter().map(|simulator| simulator.stage.to_owned()).collect(),
+            from: self.from.clone(),
+        };
+        let mut task = Task::new("verify", json!(params)).input("solution", input.content);
         for set in 0..table.rows() {
             let unit = |name: &String| known.context.factors.get(name).map_or("", |factor| factor.unit.as_str());
             let value = |name: &String| Ok((name.clone(), table.numbers(name, unit(name))?[set]));
-            let point: Point = factors.iter().map(value).collect::<Result<_, StageError>>()?;
+            let mut point = factors.iter().map(value).collect::<Result<Point, StageError>>()?;
+            // What other sets hold and this one does not.
+            point.retain(|_, value| value.is_finite());
             for replicate in 0..self.replicates {
-                task = task.after(
-                    "run",
-                    Arc::new(
-                        (simulator.sample)(&point, FRESH + replicate)?
-                            .row(set * self.replicates as usize + replicate as usize),
-                    ),
-                );
+                let index = set * self.replicates as usize + replicate as usize;
+                for (k, simulator) in simulators.iter().enumerate() {
+                    let run = (simulator.sample)(&point, FRESH + replicate)?.row(index * simulators.len() + k);
+                    task = task.after("run", Arc::new(run));
+                }
             }
         }
         Ok(Step::Finish(task))
+    }
+
+    fn unmet(&self, result: &Artifact) -> Option<String> {
+        if self.unmet != Unmet::Fail {
+            return None;
+        }
+        let table = result.table("summary")?;
+        let (responses, inside) = (table.texts("response").ok()?, table.texts("target_inside").ok()?);
+        let (sets, means) = (table.ints("set").ok()?, table.numbers("mean", "").ok()?);
+        let missed = |i: usize| format!("set {}: the mean of `{}` is {}", sets[i], responses[i], short(means[i]));
+        let missed: Vec<String> = (0..inside.len()).filter(|&i| inside[i] != "yes").map(missed).collect();
+        (!missed.is_empty()).then(|| format!("{}, and the target is not in its interval", missed.join("; ")))
     }
 }
 
@@ -109,8 +152,21 @@ struct Verified {
     set: i64,
     response: String,
     unit: String,
-    target: f64,
+    target: Target,
     values: Vec<f64>,
+}
+
+impl Verified {
+    /// How far a value lies from what is wanted.
+    fn off(&self, value: f64) -> f64 {
+        (value - self.target.nearest(value)).abs()
+    }
+
+    /// The wanted value that others are measured by: the target, or the end of the band that is nearest.
+    fn wanted(&self, value: f64) -> f64 {
+        let nearest = self.target.nearest(value);
+        if nearest == value { self.target.value() } else { nearest }
+    }
 }
 
 fn verify(job: &Job) -> Result<Artifact, Failure> {
@@ -119,11 +175,13 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
     let runs: Vec<&Artifact> = job.inputs.iter().filter(|(name, _)| name == "run").map(|(_, run)| &**run).collect();
     let mut verified = targets(solution)?;
     let mut failures = Vec::new();
-    for (i, run) in runs.iter().enumerate() {
+    for (i, runs) in runs.chunks(params.simulators.len()).enumerate() {
         let set = (i / params.replicates) as i64 + 1;
+        let runs: Vec<(&str, &Artifact)> =
+            params.simulators.iter().map(String::as_str).zip(runs.iter().copied()).collect();
         let mut failure = String::new();
         for one in verified.iter_mut().filter(|one| one.set == set) {
-            match read_response(run, &one.response, &one.unit)? {
+            match read_response(&runs, &params.from, &one.response, &one.unit)? {
                 Ok(value) => one.values.push(value),
                 Err(reason) => {
                     one.values.push(f64::NAN);
@@ -143,13 +201,19 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
 fn targets(solution: &Artifact) -> Result<Vec<Verified>, StageError> {
     let wrong = || StageError::new("the solution holds no table `prediction` with the targets");
     let table = solution.table("prediction").ok_or_else(wrong)?;
-    let (sets, targets) = (table.ints("set")?, table.numbers("target", "")?);
+    let (sets, values) = (table.ints("set")?, table.numbers("target", "")?);
+    let end = |name: &str, open: f64| match table.numbers(name, "") {
+        Ok(ends) => ends.into_iter().map(|end| if end.is_nan() { open } else { end }).collect(),
+        Err(_) => values.clone(),
+    };
+    let (low, high): (Vec<f64>, Vec<f64>) = (end("at_least", f64::NEG_INFINITY), end("at_most", f64::INFINITY));
+    let targets: Vec<[f64; 2]> = low.into_iter().zip(high).map(|(low, high)| [low, high]).collect();
     let names = table.texts("response")?.iter().zip(table.texts("unit")?);
-    let one = |((&set, &target), (response, unit)): ((&i64, &f64), (&String, &String))| Verified {
+    let one = |((&set, &ends), (response, unit)): ((&i64, &[f64; 2]), (&String, &String))| Verified {
         set,
         response: response.clone(),
         unit: unit.clone(),
-        target,
+        target: Target::band(response, ends, 1.0),
         values: Vec::new(),
     };
     Ok(sets.iter().zip(&targets).zip(names).map(one).collect())
@@ -171,7 +235,7 @@ fn summary(verified: &[Verified]) -> Table {
     type Row<'a> = (&'a Verified, &'a (f64, f64, f64, usize));
     let reals = |pick: fn(&Row) -> f64| all.iter().map(pick).collect::<Vec<_>>();
     let inside = |(one, (mean, _, half, _)): &Row| {
-        let inside = (one.target - mean).abs() <= *half;
+        let inside = one.off(*mean) <= *half;
         let known = if inside { "yes" } else { "no" };
         if half.is_nan() { "unknown".to_owned() } else { known.to_owned() }
     };
@@ -179,7 +243,7 @@ fn summary(verified: &[Verified]) -> Table {
         .ints_column("set", "target set, from 1", verified.iter().map(|one| one.set).collect())
         .texts_column("response", "", verified.iter().map(|one| one.response.clone()).collect())
         .texts_column("unit", "of the numbers beside it", verified.iter().map(|one| one.unit.clone()).collect())
-        .reals_column("target", "", "wanted", reals(|(one, _)| one.target))
+        .reals_column("target", "", "wanted", reals(|(one, _)| one.target.value()))
         .reals_column("mean", "", "of the runs", reals(|(_, m)| m.0))
         .reals_column("std", "", "standard deviation of a run", reals(|(_, m)| m.1))
         .reals_column("cv_percent", "", "standard deviation over mean", reals(|(_, m)| 100.0 * m.1 / m.0.abs()))
@@ -187,13 +251,13 @@ fn summary(verified: &[Verified]) -> Table {
             "relative_error_percent",
             "",
             "of the mean against the target",
-            reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / one.target.abs()),
+            reals(|(one, m)| 100.0 * one.off(m.0) / one.wanted(m.0).abs()),
         )
         .reals_column(
             "error_of_mean_percent",
             "",
             "the same difference against the mean",
-            reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / m.0.abs()),
+            reals(|(one, m)| 100.0 * one.off(m.0) / m.0.abs()),
         )
         .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|(_, m)| m.0 - m.2))
         .reals_column("high", "", "upper end", reals(|(_, m)| m.0 + m.2))
