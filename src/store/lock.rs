@@ -18,16 +18,18 @@
 //! runs may compute the same task, and each may find that the other took its file for one left behind and removed it:
 //! it then writes its result anew, and the store holds one of the two equal results.
 
-use super::StoreError;
 use super::disk::Disk;
 use super::folder::{Folder, Strange};
 use super::object::is_hex;
+use super::{StoreError, memo, object};
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
 /// Longer than network file systems show old names, and than most tasks that are worth waiting for by nobody.
 const PATIENCE: Duration = Duration::from_secs(12);
+/// A claim's file that holds a result already is about to be let go of.
+const WRITING: Duration = Duration::from_secs(1);
 
 /// Folder of the claims.
 pub(super) const FOLDER: &str = "locks";
@@ -101,7 +103,7 @@ pub struct Waiting {
     name: String,
     file: File,
     /// Since when its lock is known to be free though its holder may be alive.
-    unsure: Option<Instant>,
+    unsure: Option<(Instant, Duration)>,
     /// Who computes it.
     pub holder: Holder,
 }
@@ -109,9 +111,9 @@ pub struct Waiting {
 impl Waiting {
     /// Whether the other process has let go of the task, finished or dead. Claim it again to know.
     pub fn is_over(&self) -> bool {
-        if let Some(since) = self.unsure {
-            let gone = !self.folder.names(&self.name, &self.file) || !may_live(&self.holder);
-            let over = gone || since.elapsed() > PATIENCE;
+        if let Some((since, patience)) = self.unsure {
+            let gone = !self.folder.names(&self.name, &self.file);
+            let over = gone || since.elapsed() > patience || is_dead(&self.holder);
             if over && !gone {
                 let _ = self.folder.remove(&self.name);
             }
@@ -176,8 +178,11 @@ pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, Store
     }
 }
 
+/// A lock that may be held: its file, since when and for how long that is not sure, who holds it.
+type Found = (File, Option<(Instant, Duration)>, Holder);
+
 /// Who holds an existing lock; nobody when it was left behind, and it is removed.
-fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<(File, Option<Instant>, Holder)>> {
+fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<Found>> {
     let mut file = match folder.open(name, true).or_else(|_| folder.open(name, false)) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         other => other?,
@@ -195,9 +200,13 @@ fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<(F
     if !free {
         return Ok(Some((file, None, holder)));
     }
-    if may_live(&holder) && folder.names(name, &file) {
+    let patience = match holder.process {
+        0 if memo::begins_with(folder, name, object::HEAD) => Some(WRITING),
+        _ => may_live(&holder).then_some(PATIENCE),
+    };
+    if let Some(patience) = patience.filter(|_| folder.names(name, &file)) {
         file.unlock()?;
-        return Ok(Some((file, Some(Instant::now()), holder)));
+        return Ok(Some((file, Some((Instant::now(), patience)), holder)));
     }
     let left_behind = Held(file);
     if folder.names(name, &left_behind.0) {
@@ -214,6 +223,11 @@ fn may_live(holder: &Holder) -> bool {
         process if holder.here => is_alive(process),
         _ => true,
     }
+}
+
+/// Whether the holder is known to have ended.
+fn is_dead(holder: &Holder) -> bool {
+    holder.process != 0 && !may_live(holder)
 }
 
 /// Whether another process of this machine with this number is there.

@@ -242,12 +242,7 @@ fn flips_of_any_byte_of_a_store_end_in_the_right_results() {
         }
         assert!(output.status.success(), "{}, byte {place}: {}", path.display(), told(&output));
         assert_eq!(crate::space::Ran::read(&output).objects, wanted, "{}, byte {place}", path.display());
-        let again = space.flow(&["show", "w.toml", "sim", "--table", "runs", "--csv", "--quiet"]);
-        if !again.status.success() {
-            // A result that no stage had to read was hit: it is found when it is read, and the next run computes it.
-            space.run(&[]);
-        }
-        all_agree(&space, &shown);
+        // A result that no stage had to read is found when it is read, and the next run computes it.
         space.flow(&["store", "verify"]);
         space.run(&[]);
         assert!(!space.stdout(&["store", "verify"]).contains("damaged"), "{}, byte {place}", path.display());

@@ -166,6 +166,7 @@ impl Index {
     /// Reads a segment from where it was left.
     fn read_on(&mut self, folder: &Folder, name: &str, own: bool) -> io::Result<()> {
         let mut file = folder.open(name, false)?;
+        folder::ask_anew(&file);
         folder::bounded(&file, MOST)?;
         let known = self.segments.get(name).copied();
         let mut seen = match known {
