@@ -1,7 +1,7 @@
 //! What a reader must not miss at the end of a run: notes of the statistics, and runs that gave no result.
 
 use super::common::Campaign;
-use crate::artifact::{Artifact, Table, Values};
+use crate::artifact::{Artifact, Node, Table, Values};
 use crate::run::{Report, StageStatus};
 use crate::store::Store;
 
@@ -12,6 +12,9 @@ pub(super) fn remarks(campaign: &Campaign, report: &Report, store: &Store) -> Ve
         let StageStatus::Done(content) = &stage.status else { continue };
         // A result that cannot be read is told by whoever needs it.
         let Ok(artifact) = store.get(content) else { continue };
+        if let Some(why) = failure(&artifact) {
+            lines.push(format!("note: {}: the run gave no result: {why}", stage.name));
+        }
         for (table, count) in [("notes", notes(&artifact)), ("runs", failures(&artifact))] {
             if let Some(told) = count {
                 let show = campaign.command("show", &[&stage.name, "--table", table]);
@@ -20,6 +23,14 @@ pub(super) fn remarks(campaign: &Campaign, report: &Report, store: &Store) -> Ve
         }
     }
     lines
+}
+
+/// Why a single run gave no result.
+pub(super) fn failure(artifact: &Artifact) -> Option<&str> {
+    match artifact.root.get("failure") {
+        Some(Node::Text(why)) if !why.is_empty() => Some(why),
+        Some(_) | None => None,
+    }
 }
 
 fn notes(artifact: &Artifact) -> Option<String> {

@@ -104,6 +104,10 @@ solution = "calibrate"
 simulator = "formula"
 replicates = 2
 
+[stage.effort]
+kind = "effort"
+of = "calibrate"
+
 [stage.agreement]
 kind = "agreement"
 of = "formula"
@@ -136,6 +140,7 @@ regression 5bbcfc4bea7d
 rsm 592833ad92f1
 calibrate e38b40d330ef
 verify 38b0cc910644
+effort cf49a99b0418
 agreement bd06fe72410e
 table 464517716712
 figure e5375085b080
@@ -145,15 +150,16 @@ calibrate 3
 command 1
 data 1
 design 2
+effort 1
 figure 8
 fit 2
-formula 1
+formula 2
 gather 1
 range 2
 screening 2
 simulate 2
 specimen 1
-table 3
+table 4
 verify 1
 ";
 
@@ -169,7 +175,8 @@ fn found() -> String {
     });
     let kinds: BTreeSet<&str> = workflow.stages.iter().map(|stage| stage.kind).collect();
     let store = Store::open(&folder.path().join("store")).unwrap();
-    let settings = Settings { jobs: 2, keep_going: true, dry: false, targets: Vec::new(), memos: false };
+    let settings =
+        Settings { jobs: 2, keep_going: true, dry: false, targets: Vec::new(), again: Vec::new(), memos: false };
     let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
     let mut text = String::new();
     for stage in &report.stages {

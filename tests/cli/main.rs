@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibrate;
+mod cases;
 mod command;
 mod export;
 mod faults;
