@@ -148,7 +148,9 @@ pub(super) fn provenance(started: i64, seconds: f64, origin: &Origin) -> String 
 
 /// The number of `--jobs`.
 pub(super) fn workers(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|&jobs| jobs > 0).ok_or_else(|| "wanted a whole number of 1 or more".to_owned())
+    const MOST: usize = 1024;
+    let wanted = || format!("wanted a whole number of 1 or more, at most {MOST}");
+    text.parse().ok().filter(|jobs| (1..=MOST).contains(jobs)).ok_or_else(wanted)
 }
 
 /// Prints what is wrong with the store or the system.

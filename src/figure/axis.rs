@@ -98,7 +98,10 @@ impl Axis {
         for tick in &mut self.ticks {
             tick.label = fixed((tick.at - base) / unit, places);
         }
-        let above = match (base == 0.0, base > 0.0, fixed(base.abs(), decimals(place))) {
+        let number = fixed(base.abs(), decimals(place));
+        let short = number.trim_end_matches('0').trim_end_matches('.');
+        let number = if number.contains('.') { short.to_owned() } else { number };
+        let above = match (base == 0.0, base > 0.0, number) {
             (true, ..) => String::new(),
             (_, true, number) => format!("+{number}"),
             (_, false, number) => format!("−{number}"),
@@ -378,7 +381,7 @@ mod tests {
         assert!(labels(&axis).contains(&"−2.0") || labels(&axis).contains(&"−2"), "{:?}", labels(&axis));
         let axis = Axis::between("y", Scale::Linear, 5.000_000_01, 5.000_000_03, 4);
         assert!(labels(&axis).iter().all(|label| signs(label) <= LONGEST), "{:?}", labels(&axis));
-        assert_eq!(axis.title(), "y (×$10^{-8}$, +5.0000000)");
+        assert_eq!(axis.title(), "y (×$10^{-8}$, +5)");
         // Without a title there is nowhere to say it.
         assert_eq!(Axis::between("", Scale::Linear, 100_000.1, 100_000.3, 4).common, "");
     }

@@ -4,6 +4,7 @@
 use super::columns::{Columns, Rows, refused, runs};
 use super::notes::Notes;
 use super::published::{Computed, beside, prints};
+use super::regression::origin::Beside;
 use super::{Failure, Job, StageError};
 use crate::artifact::{Array, Artifact, ArtifactKind, Group, Node, Table, Values};
 use serde::{Deserialize, Serialize};
@@ -34,6 +35,9 @@ pub(super) struct Fitting {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Params {
     pub fittings: Vec<Fitting>,
+    /// Every model is through the origin, and stands beside the same terms with a constant.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub through_origin: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub select: Option<Direction>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -59,11 +63,17 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         selection: params.select.map(|direction| Selection { direction, alpha }),
     };
     let mut found: Vec<(&Fitting, Regression)> = Vec::new();
+    let mut with_constant: Vec<(&str, Beside)> = Vec::new();
     let mut faults: Vec<StageError> = Vec::new();
     for fitting in &params.fittings {
         let sample = fitting.columns.sample(runs(job.input(&fitting.input)?)?)?;
         match regress(&sample, &fitting.response, &fitting.terms, &settings) {
-            Ok(regression) => found.push((fitting, regression)),
+            Ok(regression) => {
+                let beside =
+                    params.through_origin.then(|| Beside::of(&sample, &fitting.response, &fitting.terms, &settings));
+                with_constant.extend(beside.flatten().map(|beside| (fitting.response.as_str(), beside)));
+                found.push((fitting, regression));
+            }
             Err(error) => faults.push(refused(error)),
         }
     }
@@ -98,6 +108,9 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         .with("selection", Node::Table(selection_table(&found)))
         .with("notes", Node::Table(notes(&found, params.predict.as_ref()).table()))
         .with("models", Node::Group(keep::kept(found.iter().map(|(f, r)| (f.response.as_str(), &r.model)))));
+    if params.through_origin {
+        root.put("with_constant", Node::Table(constant_table(&with_constant)));
+    }
     if let Some(points) = &params.predict {
         root.put("predictions", Node::Table(predict::prediction_table(&found, points)));
     }
@@ -110,6 +123,12 @@ fn notes(found: &[(&Fitting, Regression)], points: Option<&Predict>) -> Notes {
     for (fitting, regression) in found {
         let response = fitting.response.as_str();
         notes.fit(&regression.fit);
+        for (factor, reference) in fitting.columns.categories() {
+            let text = format!(
+                "`{factor}` has names for levels and enters by dummy coding: `{factor}[…]` is the difference from `{reference}`"
+            );
+            notes.add(response, text);
+        }
         notes.residuals(response, &regression.residuals);
         notes.inflation(response, if regression.coded.is_empty() { &regression.natural } else { &regression.coded });
         if let Some(place) = canonical(&regression.model).filter(|place| !place.inside) {
@@ -149,10 +168,32 @@ fn coefficient_table(found: &[(&Fitting, Regression)], list: impl Fn(&Regression
         .reals_column("vif", "", "variance inflation factor", rows.reals(|(_, c)| c.vif))
 }
 
+/// The same terms with a constant, for fits through the origin.
+fn constant_table(found: &[(&str, Beside)]) -> Table {
+    let all: Vec<(&str, f64, &Coefficient)> = found
+        .iter()
+        .flat_map(|(response, b)| std::iter::once(&b.constant).chain(&b.rest).map(|c| (*response, b.r2, c)))
+        .collect();
+    let rows = Rows(&all);
+    named("the same terms with a constant: whether the data point to the origin")
+        .texts_column("response", "", rows.texts(|(response, ..)| *response))
+        .texts_column("term", "", rows.texts(|(.., c)| c.term.as_str()))
+        .reals_column(
+            "estimate",
+            "",
+            "unit of the response per unit of the term",
+            rows.reals(|(.., c)| Some(c.estimate)),
+        )
+        .reals_column("std_error", "", "standard error", rows.reals(|(.., c)| c.std_error))
+        .reals_column("t", "", "estimate over standard error", rows.reals(|(.., c)| c.t))
+        .reals_column("p", "", "probability of such a t by chance", rows.reals(|(.., c)| c.p))
+        .reals_column("r2", "", "about the mean", rows.reals(|(_, r2, _)| Some(*r2)))
+}
+
 /// Quality of fits, one row each.
 pub(super) fn fit_table(fits: &[&Fit]) -> Table {
     let rows = Rows(fits);
-    named("quality of the fits")
+    let table = named("quality of the fits")
         .texts_column("response", "", rows.texts(|f| f.response.as_str()))
         .ints_column("n", "runs used", rows.ints(|f| f.n))
         .ints_column("missing", "runs without a value", rows.ints(|f| f.missing))
@@ -166,7 +207,17 @@ pub(super) fn fit_table(fits: &[&Fit]) -> Table {
         .reals_column("p", "", "probability of such an F by chance", rows.reals(|f| f.p))
         .ints_column("df_pure_error", "degrees of freedom of replicates", rows.ints(|f| f.df_pure_error))
         .reals_column("lack_of_fit_f", "", "lack of fit against pure error", rows.reals(|f| f.lack_of_fit_f))
-        .reals_column("lack_of_fit_p", "", "probability of such an F by chance", rows.reals(|f| f.lack_of_fit_p))
+        .reals_column("lack_of_fit_p", "", "probability of such an F by chance", rows.reals(|f| f.lack_of_fit_p));
+    if fits.iter().all(|f| f.constant) {
+        return table;
+    }
+    let about = |f: &&Fit| if f.constant { "with a constant" } else { "through the origin: r2 about zero" };
+    table.texts_column("model", "what r2 is a share of", rows.texts(about)).reals_column(
+        "r2_about_mean",
+        "",
+        "1 - SSE over squares about the mean",
+        rows.reals(|f| f.r2_about_mean),
+    )
 }
 
 /// Every row seen by every model.

@@ -43,6 +43,7 @@ mod columns;
 pub mod command;
 mod context;
 pub mod data;
+mod derived;
 pub mod design;
 pub mod effort;
 pub mod figure;
@@ -64,6 +65,7 @@ pub mod simulate;
 pub mod specimen;
 pub mod table;
 mod task;
+pub mod units;
 pub mod vary;
 pub mod verify;
 

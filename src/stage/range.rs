@@ -115,8 +115,13 @@ fn levels(columns: &Columns, lines: &[Line], most: usize) -> Table {
         .texts_column("factor", "", rows.texts(|l| l.factor.as_str()))
         .texts_column("unit", "", rows.texts(|l| columns.unit_of(&l.factor)));
     for level in 0..most {
-        let values = rows.reals(|l| l.levels.get(level).copied());
-        table = table.reals_column(&format!("level_{}", level + 1), "", "in the factor's unit", values);
+        let head = format!("level_{}", level + 1);
+        table = if columns.categories().next().is_some() {
+            let names = rows.texts(|l| l.names.get(level).cloned().unwrap_or_default());
+            table.texts_column(&head, "in the factor's unit, or its name", names)
+        } else {
+            table.reals_column(&head, "", "in the factor's unit", rows.reals(|l| l.levels.get(level).copied()))
+        };
     }
     table
 }

@@ -23,7 +23,8 @@ use std::sync::Arc;
 
 /// The columns of a design that are factors, by name.
 fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a Column>, StageError> {
-    let table = design.table("design").ok_or_else(|| StageError::new("the design holds no table `design`"))?;
+    let table = design.table("design").or_else(|| design.table("runs"));
+    let table = table.ok_or_else(|| StageError::new("the design holds no table `design`"))?;
     Ok(table.columns.iter().filter(|column| context.factors.contains_key(&column.name)).collect())
 }
 

@@ -101,6 +101,7 @@ impl Stage for Rsm {
             task = task.input(response.clone(), input.content);
         }
         let params = Params {
+            through_origin: false,
             fittings,
             select: self.select,
             select_alpha: self.select.map(|_| self.select_alpha.unwrap_or(fitted::SELECT_ALPHA)),

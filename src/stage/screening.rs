@@ -1,7 +1,7 @@
 //! `kind = "screening"`: effects of a two-level design, judged by Lenth's limits where nothing else estimates the noise.
 //!
 //! The result has the tables `effects` (one row per response and term, with the coordinates of normal, half-normal and
-//! Pareto plots), `limits` (pseudo standard error and margins), `fit`, `residuals` and `notes` (what stands out, and
+//! Pareto plots), `limits` (pseudo standard error and margins, critical value of the standardised effects), `fit`, `residuals` and `notes` (what stands out, and
 //! what to look at).
 
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
@@ -83,8 +83,8 @@ impl Kind for Screening {
     const ABOUT: &'static str = "effects of a two-level design with Lenth's limits";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SCREENING];
     const CLASS: Class = Class::Statistics;
-    // 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "screening", version: 2, run: analyse }];
+    // 3: standardised effects with their critical value. 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "screening", version: 3, run: analyse }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
@@ -126,6 +126,10 @@ fn notes(found: &[Found]) -> Notes {
             }
             Some(_) => {}
         }
+        let active = named(&|e| e.significant == Some(true));
+        if !active.is_empty() {
+            notes.add(response, format!("{active}: standardised effect beyond the critical value"));
+        }
         let fit = &screened.regression.fit;
         if fit.df_residual > 0 {
             notes.fit(fit);
@@ -146,11 +150,17 @@ fn effect_table(found: &[Found]) -> Table {
         (true, false) => "beyond the margin of error",
         (false, _) => "",
     };
+    let significance = |(_, e): &(&str, &Effect)| match e.significant {
+        Some(true) => "significant",
+        Some(false) => "-",
+        None => "",
+    };
     Table { about: "effects: mean at the high level minus mean at the low one".to_owned(), columns: Vec::new() }
         .texts_column("response", "", rows.texts(|(response, _)| *response))
         .texts_column("term", "", rows.texts(|(_, e)| e.term.as_str()))
         .reals_column("effect", "", "in the unit of the response", rows.reals(|(_, e)| Some(e.effect)))
         .reals_column("std_error", "", "where the design leaves degrees of freedom", rows.reals(|(_, e)| e.std_error))
+        .reals_column("standardized", "", "effect over its standard error", rows.reals(|(_, e)| e.standardized))
         .reals_column("p", "", "with that standard error", rows.reals(|(_, e)| e.p))
         .reals_column("lenth_t", "", "effect over the pseudo standard error", rows.reals(|(_, e)| e.lenth_t))
         .ints_column("rank", "1 is the largest in size", rows.ints(|(_, e)| e.rank))
@@ -159,13 +169,18 @@ fn effect_table(found: &[Found]) -> Table {
         .reals_column("normal", "", "abscissa of the normal plot", rows.reals(|(_, e)| Some(e.normal)))
         .reals_column("half_normal", "", "abscissa of the half-normal plot", rows.reals(|(_, e)| Some(e.half_normal)))
         .texts_column("verdict", "against Lenth's margins", rows.texts(verdict))
+        .texts_column("significance", "against the critical value of the standardised effect", rows.texts(significance))
 }
 
 fn limit_table(found: &[Found]) -> Table {
     let rows = Rows(found);
-    Table { about: "Lenth's limits".to_owned(), columns: Vec::new() }
-        .texts_column("response", "", rows.texts(|s| s.response.as_str()))
-        .reals_column("pse", "", "pseudo standard error", rows.reals(|s| s.pse))
-        .reals_column("margin", "", "margin of error", rows.reals(|s| s.margin))
-        .reals_column("simultaneous", "", "simultaneous margin of error", rows.reals(|s| s.simultaneous))
+    Table {
+        about: "Lenth's limits, and the critical value of t where there is an error to test against".to_owned(),
+        columns: Vec::new(),
+    }
+    .texts_column("response", "", rows.texts(|s| s.response.as_str()))
+    .reals_column("pse", "", "pseudo standard error", rows.reals(|s| s.pse))
+    .reals_column("margin", "", "margin of error", rows.reals(|s| s.margin))
+    .reals_column("simultaneous", "", "simultaneous margin of error", rows.reals(|s| s.simultaneous))
+    .reals_column("critical", "", "critical value of the standardised effects", rows.reals(|s| s.critical))
 }

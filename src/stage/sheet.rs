@@ -25,11 +25,30 @@ impl Sheet {
     pub(super) fn read(bytes: &[u8]) -> Result<Self, StageError> {
         let text = std::str::from_utf8(bytes).map_err(|e| not_text(bytes, e.valid_up_to()))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        Self::of(text, b',', separated_by_commas)
+    }
+
+    /// The cells of a text with this separator; `check` may refuse the names of its columns.
+    ///
+    /// # Errors
+    /// The names are refused, or a line has more or fewer cells than the first.
+    pub(super) fn of(
+        text: &str,
+        separator: u8,
+        check: impl Fn(&[String]) -> Result<(), StageError>,
+    ) -> Result<Self, StageError> {
         let (body, skipped) = below_comments(text);
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(body.as_bytes());
+        if let Some(line) = open_quote(body) {
+            let message = format!("line {}: a double quote has no partner", skipped + line);
+            return Err(
+                StageError::new(message).hint("all below it would be one cell; write a quote within quotes twice")
+            );
+        }
+        let mut reader =
+            csv::ReaderBuilder::new().delimiter(separator).trim(csv::Trim::All).from_reader(body.as_bytes());
         let fail = |e: &csv::Error| unequal(e, skipped);
         let heads: Vec<String> = reader.headers().map_err(|e| fail(&e))?.iter().map(str::to_owned).collect();
-        separated_by_commas(&heads)?;
+        check(&heads)?;
         let mut columns = vec![Vec::new(); heads.len()];
         for (row, record) in reader.records().enumerate() {
             if row == MOST_RUNS {
@@ -59,7 +78,7 @@ impl Sheet {
 }
 
 /// The text from the line of names on, and how many lines of comment stand above it.
-fn below_comments(text: &str) -> (&str, usize) {
+pub(super) fn below_comments(text: &str) -> (&str, usize) {
     let mut rest = text;
     let mut skipped = 0;
     while rest.trim_start_matches([' ', '\t', '\r']).starts_with(['#', '\n']) {
@@ -79,6 +98,12 @@ fn empty_line(text: &str) -> Option<usize> {
         quoted ^= line.matches('"').count() % 2 == 1;
         empty.then_some(at + 1)
     })
+}
+
+/// The first line, from 1, with an odd number of quotes, when the whole text has one.
+fn open_quote(text: &str) -> Option<usize> {
+    let odd = |text: &str| text.matches('"').count() % 2 == 1;
+    if odd(text) { text.lines().position(odd).map(|at| at + 1) } else { None }
 }
 
 fn not_text(bytes: &[u8], valid: usize) -> StageError {
@@ -133,6 +158,7 @@ mod tests {
         assert_eq!(message(b"# c\na,b\n1\n"), "line 3 has 1 cells where the first line has 2");
         assert_eq!(message(b"a,b\n1,2,3\n"), "line 2 has 3 cells where the first line has 2");
         assert_eq!(message(b"a,b\n1,2\n\xf6,3\n"), "line 3 holds a byte that is not UTF-8 text");
+        assert_eq!(message(b"# c\na,b\n1,\"2\n3,4\n"), "line 3: a double quote has no partner");
         assert_eq!(message(b"a;b\n1,5;2\n"), "the cells of the first line are separated by `;`");
         assert_eq!(message(b"a\tb\n1\t2\n"), "the cells of the first line are separated by tabs");
     }

@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod cases;
+mod columns;
 mod command;
 mod export;
 mod faults;
@@ -15,3 +16,4 @@ mod reruns;
 mod space;
 mod stop;
 mod trust;
+mod vocabulary;

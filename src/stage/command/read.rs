@@ -95,8 +95,10 @@ fn from_json(text: &str, pointer: &str) -> Result<String, String> {
 
 fn from_text(text: &str, pattern: &str) -> Result<String, String> {
     let regex = Regex::new(pattern).map_err(|e| e.to_string())?;
-    let last = regex.captures_iter(text).last().ok_or_else(|| format!("nothing matches `{pattern}`"))?;
-    Ok(last.get(1).map_or("", |group| group.as_str()).to_owned())
+    // A pattern such as `(.*)` matches the empty end of the text too.
+    let found =
+        regex.captures_iter(text).filter_map(|all| Some(all.get(1)?.as_str())).filter(|group| !group.is_empty());
+    found.last().map(str::to_owned).ok_or_else(|| format!("nothing matches `{pattern}`"))
 }
 
 #[cfg(test)]
@@ -108,6 +110,7 @@ mod tests {
         assert_eq!(from_csv("a, UCS\n1, 2\n3, 4.5\n", "UCS"), Ok("4.5".to_owned()));
         assert_eq!(from_json(r#"{"r": [1, {"UCS": 3e7}]}"#, "/r/1/UCS"), Ok("30000000.0".to_owned()));
         assert_eq!(from_text("UCS = 1\nUCS = 2\n", r"UCS = (\S+)"), Ok("2".to_owned()));
+        assert_eq!(from_text("35.5\n", "(.*)"), Ok("35.5".to_owned()));
     }
 
     #[test]

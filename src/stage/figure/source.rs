@@ -75,6 +75,14 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// A text.
+    pub(super) fn text(self, name: &str) -> Option<&'a str> {
+        match self.0.root.get(name) {
+            Some(Node::Text(text)) => Some(text),
+            _ => None,
+        }
+    }
+
     /// What is missing, in words.
     pub(super) fn lacks(self, name: &str) -> StageError {
         let there: Vec<&str> = self.0.root.iter().map(|(name, _)| name).collect();
