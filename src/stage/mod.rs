@@ -53,6 +53,7 @@ pub mod ledger;
 pub mod material;
 mod memory;
 mod notes;
+mod packed;
 mod published;
 pub mod range;
 pub mod regression;
@@ -73,6 +74,7 @@ pub use context::{
     Varier,
 };
 pub use memory::Memory;
+pub use packed::Packed;
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};

@@ -108,7 +108,7 @@ impl Stage for Rsm {
             outlier_alpha: self.outlier_alpha,
             predict: self.predict.clone(),
         };
-        task.params = json!(params);
+        task.params = json!(params).into();
         if let Some(path) = &self.published {
             task.files.push(known.library.file("published", path)?);
         }

@@ -9,6 +9,7 @@ mod command;
 mod export;
 mod faults;
 mod kill;
+mod nodes;
 mod readme;
 mod report;
 mod reruns;

@@ -260,7 +260,7 @@ fn made(text: &str, from: &[Artifact], compare: &[Artifact]) -> Result<Artifact,
         .collect();
     let (stop, say) = (AtomicBool::new(false), |_: crate::stage::Progress| ());
     draw(&Job {
-        params: &task.params,
+        params: &task.params.value(),
         seed: None,
         inputs: &inputs,
         files: &[],
