@@ -98,7 +98,7 @@ mod tests {
 6 | fil = \"a.csv\"
   | ^^^ did you mean `file`?
   |
-  = help: known keys: `file`
+  = help: known keys: `file`, `delimiter`, `decimal`, `encoding`, `missing`, `sheet`
 
 error: 1 fault; nothing was run
 ";

@@ -241,7 +241,7 @@ mod tests {
             "input `run`: 1 changed of 3",
         ];
         assert_eq!(told(&old, &new), expected);
-        assert_eq!(told(&new, &new.replace("data 1", "data 2")), ["data: version 1 → 2"]);
+        assert_eq!(told(&new, &new.replace("data 2", "data 3")), ["data: version 2 → 3"]);
         assert_eq!(told(&text(json!({}), 1, &[1, 2]), &text(json!({}), 1, &[2, 1, 5])), ["input `run`: 1 new of 3"]);
         assert_eq!(told(&text(json!({}), 1, &[1]), &text(json!({}), 1, &[2])), ["input `run` changed"]);
     }
