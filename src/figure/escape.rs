@@ -112,7 +112,7 @@ pub fn csv(cell: &str) -> String {
 pub fn is_mathematics(inner: &str) -> bool {
     let mut escaped = false;
     let harmful = inner.chars().any(|c| {
-        let found = !escaped && "$%&#~\"`'".contains(c) || c.is_control();
+        let found = !escaped && "$%&#~\"`".contains(c) || c.is_control();
         escaped = c == '\\' && !escaped;
         found
     });

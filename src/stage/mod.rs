@@ -114,7 +114,7 @@ pub fn symbol_fault(symbol: &str) -> Option<String> {
     }
     let known = ::figure::text::check(&format!("${symbol}$")).err().map(|fault| fault.to_string());
     Some(known.unwrap_or_else(|| {
-        format!("symbol `{symbol}`: `$ % & # ~ \" ' are no mathematics; write `\\%` for a per cent sign")
+        format!("symbol `{symbol}`: $ % & # ~ \" are no mathematics; write `\\%` for a per cent sign")
     }))
 }
 

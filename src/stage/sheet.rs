@@ -24,8 +24,6 @@ impl Sheet {
     /// It is no text, has other separators, or a line has more or fewer cells than the first.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, StageError> {
         let text = std::str::from_utf8(bytes).map_err(|e| not_text(bytes, e.valid_up_to()))?;
-        // Programs that add a mark to a file may find one there.
-        let text = text.trim_start_matches('\u{feff}');
         Self::of(text, b',', separated_by_commas)
     }
 
@@ -38,7 +36,8 @@ impl Sheet {
         separator: u8,
         check: impl Fn(&[String]) -> Result<(), StageError>,
     ) -> Result<Self, StageError> {
-        let (body, skipped) = below_comments(text);
+        // Programs that add a mark to a file may find one there.
+        let (body, skipped) = below_comments(text.trim_start_matches('\u{feff}'));
         if let Some(line) = open_quote(body) {
             let message = format!("line {}: a double quote has no partner", skipped + line);
             return Err(

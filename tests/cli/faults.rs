@@ -159,7 +159,7 @@ fn hostile_files_are_refused_with_place_and_remedy() {
         (
             "parameter",
             &design("GPa", "[1, 2]", "method = \"full-factorial\"").replace("m.E", "m.F"),
-            &["no material has `m.F`, which factor `a` sets", "w.toml:4:", "`m.E`"],
+            &["no material and no stage has `m.F`, which factor `a` sets", "w.toml:4:", "`m.E`"],
         ),
         (
             "NaN",

@@ -37,5 +37,6 @@ with h5py.File(sys.argv[1], "r") as file:
     strain = file["curve/strain"]
     assert strain.compression == "gzip" and strain.shuffle and text(strain.attrs["unit"]) == "Pa"
     np.testing.assert_array_equal(strain[:], np.arange(3000) * 1e-6)
+    np.testing.assert_array_equal(file["curve/long"][:], np.arange(200_000))
     np.testing.assert_array_equal(file["curve/cracks"][:], [[1, 2, 3], [4, 5, 6]])
 print("all values as written")

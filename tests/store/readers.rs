@@ -16,6 +16,7 @@ fn everything() -> Artifact {
         .texts_column("mode", "how it failed", vec!["shear".to_owned(), String::new(), "déchirure".to_owned()]);
     let curve = Group::new()
         .with("strain", array(&[3000], Values::Reals((0..3000).map(|i| f64::from(i) * 1e-6).collect())))
+        .with("long", array(&[200_000], Values::Ints((0..200_000).collect())))
         .with("cracks", array(&[2, 3], Values::Ints(vec![1, 2, 3, 4, 5, 6])));
     let root = Group::new()
         .with("levels", Node::Table(table))

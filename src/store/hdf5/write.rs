@@ -14,6 +14,9 @@ const MOST_INLINE: usize = 8192;
 const MOST_PADDED: usize = 1 << 20;
 /// Aim for the bytes of one chunk: readers of a part of a large array need not unpack all of it.
 const CHUNK: usize = 1 << 20;
+/// Most rows of one chunk. The HDF5 library 2.0 refuses to open a dataset whose chunk has a longer edge: it wants the edge in
+/// three bytes where the file has four.
+const ROWS: usize = 0xFFFF;
 
 /// The HDF5 image of an artifact; the same artifact and text give the same bytes.
 ///
@@ -175,7 +178,7 @@ fn compress(dataset: &mut DatasetBuilder, shape: &[usize], size: usize) {
     }
     let row = bytes / shape[0];
     let mut chunk: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
-    chunk[0] = (CHUNK / row).clamp(1, shape[0]) as u64;
+    chunk[0] = (CHUNK / row).clamp(1, shape[0].min(ROWS)) as u64;
     dataset.with_chunks(&chunk).with_deflate(LEVEL);
     if size == 8 {
         dataset.with_shuffle();
