@@ -1,6 +1,7 @@
 //! From a table of runs to the statistician's sample and back: shared by every stage that analyses.
 
 use super::{Complaint, Context, StageError};
+use crate::artifact::results::Results;
 use crate::artifact::{Artifact, Table};
 use serde::{Deserialize, Serialize};
 use stats::error::Faults;
@@ -49,7 +50,7 @@ pub(super) struct Wanted<'a> {
 
 /// The table `runs` of an artifact.
 pub(super) fn runs(artifact: &Artifact) -> Result<&Table, StageError> {
-    artifact.table("runs").ok_or_else(|| StageError::new("the input holds no table `runs`"))
+    Ok(Results::table(artifact)?)
 }
 
 impl Columns {

@@ -5,7 +5,8 @@
 //! `simulate` gives it.
 
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::results::Results;
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::unit::Unit;
 use design::table::MOST_RUNS;
 use schemars::JsonSchema;
@@ -51,7 +52,7 @@ impl Kind for Data {
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
     let table = parse(&job.file("table")?)?;
-    Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
+    Ok(Results { runs: table }.to_artifact())
 }
 
 /// Reads the whole table, or says what is wrong with it.

@@ -9,7 +9,8 @@
 
 use super::calibrate::read_response;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::calibration::{Prediction, Solution, Summary, Verification, VerifiedRuns};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
 use math::distribution::t_for_coverage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -71,7 +72,7 @@ impl Stage for Verify {
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let input = known.one("solution")?;
         let artifact = known.load(input)?;
-        let table = artifact.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
+        let table = Solution::from_artifact(&artifact)?.solution;
         let factors: Vec<String> =
             table.columns.iter().map(|c| c.name.clone()).filter(|n| known.context.factors.contains_key(n)).collect();
         let simulator = known.one("simulator")?;
@@ -115,9 +116,9 @@ struct Verified {
 
 fn verify(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let solution = job.input("solution")?;
+    let solution = Solution::from_artifact(job.input("solution")?).map_err(StageError::from)?;
     let runs: Vec<&Artifact> = job.inputs.iter().filter(|(name, _)| name == "run").map(|(_, run)| &**run).collect();
-    let mut verified = targets(solution)?;
+    let mut verified = targets(&solution.prediction);
     let mut failures = Vec::new();
     for (i, run) in runs.iter().enumerate() {
         let set = (i / params.replicates) as i64 + 1;
@@ -133,26 +134,20 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
         }
         failures.push(failure);
     }
-    let root = Group::new()
-        .with("summary", Node::Table(summary(&verified)))
-        .with("runs", Node::Table(run_table(&params, solution, &verified, failures)?));
-    Ok(Artifact::of(ArtifactKind::VERIFICATION, root))
+    let runs = run_table(&params, &solution.solution, &verified, failures)?;
+    Ok(Verification { summary: summary(&verified), runs }.to_artifact())
 }
 
-/// The targets of all sets, from the solution's table `prediction`.
-fn targets(solution: &Artifact) -> Result<Vec<Verified>, StageError> {
-    let wrong = || StageError::new("the solution holds no table `prediction` with the targets");
-    let table = solution.table("prediction").ok_or_else(wrong)?;
-    let (sets, targets) = (table.ints("set")?, table.numbers("target", "")?);
-    let names = table.texts("response")?.iter().zip(table.texts("unit")?);
-    let one = |((&set, &target), (response, unit)): ((&i64, &f64), (&String, &String))| Verified {
-        set,
-        response: response.clone(),
-        unit: unit.clone(),
-        target,
+/// The targets of all sets.
+fn targets(prediction: &Prediction) -> Vec<Verified> {
+    let one = |i: usize| Verified {
+        set: prediction.set[i],
+        response: prediction.response[i].clone(),
+        unit: prediction.unit[i].clone(),
+        target: prediction.target[i],
         values: Vec::new(),
     };
-    Ok(sets.iter().zip(&targets).zip(names).map(one).collect())
+    (0..prediction.set.len()).map(one).collect()
 }
 
 /// Mean, standard deviation and half the 95 % interval of the mean of the values there are, and their number.
@@ -165,7 +160,7 @@ fn moments(values: &[f64]) -> (f64, f64, f64, usize) {
     (mean, deviation, half, there.len())
 }
 
-fn summary(verified: &[Verified]) -> Table {
+fn summary(verified: &[Verified]) -> Summary {
     let moments: Vec<_> = verified.iter().map(|one| moments(&one.values)).collect();
     let all: Vec<_> = verified.iter().zip(&moments).collect();
     type Row<'a> = (&'a Verified, &'a (f64, f64, f64, usize));
@@ -175,46 +170,34 @@ fn summary(verified: &[Verified]) -> Table {
         let known = if inside { "yes" } else { "no" };
         if half.is_nan() { "unknown".to_owned() } else { known.to_owned() }
     };
-    Table { about: "calibrated sets on fresh specimens".to_owned(), columns: Vec::new() }
-        .ints_column("set", "target set, from 1", verified.iter().map(|one| one.set).collect())
-        .texts_column("response", "", verified.iter().map(|one| one.response.clone()).collect())
-        .texts_column("unit", "of the numbers beside it", verified.iter().map(|one| one.unit.clone()).collect())
-        .reals_column("target", "", "wanted", reals(|(one, _)| one.target))
-        .reals_column("mean", "", "of the runs", reals(|(_, m)| m.0))
-        .reals_column("std", "", "standard deviation of a run", reals(|(_, m)| m.1))
-        .reals_column("cv_percent", "", "standard deviation over mean", reals(|(_, m)| 100.0 * m.1 / m.0.abs()))
-        .reals_column(
-            "relative_error_percent",
-            "",
-            "of the mean against the target",
-            reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / one.target.abs()),
-        )
-        .reals_column(
-            "error_of_mean_percent",
-            "",
-            "the same difference against the mean",
-            reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / m.0.abs()),
-        )
-        .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|(_, m)| m.0 - m.2))
-        .reals_column("high", "", "upper end", reals(|(_, m)| m.0 + m.2))
-        .texts_column("target_inside", "whether the interval holds the target", all.iter().map(inside).collect())
-        .ints_column("n", "runs with a value", moments.iter().map(|m| m.3 as i64).collect())
+    Summary {
+        set: verified.iter().map(|one| one.set).collect(),
+        response: verified.iter().map(|one| one.response.clone()).collect(),
+        unit: verified.iter().map(|one| one.unit.clone()).collect(),
+        target: reals(|(one, _)| one.target),
+        mean: reals(|(_, m)| m.0),
+        std: reals(|(_, m)| m.1),
+        cv_percent: reals(|(_, m)| 100.0 * m.1 / m.0.abs()),
+        relative_error_percent: reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / one.target.abs()),
+        error_of_mean_percent: reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / m.0.abs()),
+        low: reals(|(_, m)| m.0 - m.2),
+        high: reals(|(_, m)| m.0 + m.2),
+        target_inside: all.iter().map(inside).collect(),
+        n: moments.iter().map(|m| m.3 as i64).collect(),
+    }
 }
 
 fn run_table(
     params: &Params,
-    solution: &Artifact,
+    source: &Table,
     verified: &[Verified],
     failures: Vec<String>,
 ) -> Result<Table, StageError> {
-    let source = solution.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
-    let n = params.replicates;
-    let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() }
-        .ints_column("set", "target set, from 1", (0..failures.len()).map(|i| (i / n) as i64 + 1).collect())
-        .ints_column("specimen", "counted from 1", (0..failures.len()).map(|i| (i % n) as i64 + 1).collect());
+    let (n, count) = (params.replicates, failures.len());
+    let mut table = Table::default();
     for name in &params.factors {
         let (values, unit) = source.shown(name)?;
-        table = table.reals_column(name, unit, "", (0..failures.len()).map(|i| values[i / n]).collect());
+        table = table.reals_column(name, unit, "", (0..count).map(|i| values[i / n]).collect());
     }
     let mut seen: Vec<&str> = Vec::new();
     for Verified { response, unit, .. } in verified {
@@ -226,9 +209,14 @@ fn run_table(
             let own = verified.iter().find(|one| one.response == *response && one.set == (i / n) as i64 + 1);
             own.and_then(|one| one.values.get(i % n).copied()).unwrap_or(f64::NAN)
         };
-        table = table.reals_column(response, unit, "", (0..failures.len()).map(value).collect());
+        table = table.reals_column(response, unit, "", (0..count).map(value).collect());
     }
-    Ok(table.texts_column("failure", "why the run gave no result; empty when it did", failures))
+    let runs = VerifiedRuns {
+        set: (0..count).map(|i| (i / n) as i64 + 1).collect(),
+        specimen: (0..count).map(|i| (i % n) as i64 + 1).collect(),
+        failure: failures,
+    };
+    Ok(runs.to_table().with_after("specimen", table))
 }
 
 #[cfg(test)]

@@ -2,21 +2,19 @@
 
 use super::params::{FactorParam, Params, TargetParam};
 use super::solve::{Line, Solved};
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::calibration::{Alternatives, Evaluations, Prediction, Solution, Solved as Stored};
+use crate::artifact::{Artifact, Table};
 use optim::Interval;
 
 /// The tables of a calibration.
 pub(super) fn artifact(params: &Params, solved: &[Solved]) -> Artifact {
-    let root = Group::new()
-        .with("solution", Node::Table(solution(params, solved)))
-        .with("prediction", Node::Table(prediction(params, solved)))
-        .with("history", Node::Table(history(params, solved)))
-        .with("solution_set", Node::Table(solution_set(params, solved)));
-    Artifact::of(ArtifactKind::SOLUTION, root)
-}
-
-fn named(about: &str) -> Table {
-    Table { about: about.to_owned(), columns: Vec::new() }
+    let artifact = Solution {
+        solution: solution(params, solved),
+        prediction: prediction(params, solved),
+        history: history(params, solved),
+        solution_set: solution_set(params, solved),
+    };
+    artifact.to_artifact()
 }
 
 /// Every response that some set has a target for, in the order of first mention.
@@ -31,7 +29,8 @@ fn responses(params: &Params) -> Vec<&TargetParam> {
 }
 
 /// Columns of the factors and of the responses; `rows` gives set, point and the responses of that set's targets.
-fn columns(mut table: Table, params: &Params, rows: &[(usize, &[f64], &[f64])]) -> Table {
+fn columns(params: &Params, rows: &[(usize, &[f64], &[f64])]) -> Table {
+    let mut table = Table::default();
     for (i, FactorParam { name, unit, .. }) in params.factors.iter().enumerate() {
         table = table.reals_column(name, unit, "", rows.iter().map(|(_, point, _)| point[i]).collect());
     }
@@ -53,17 +52,15 @@ fn solution(params: &Params, solved: &[Solved]) -> Table {
     let means: Vec<Vec<f64>> = solved.iter().map(|s| s.expected.iter().map(|y| y.mean).collect()).collect();
     let rows: Vec<_> = solved.iter().zip(&means).enumerate().map(|(i, (s, y))| (i, &s.point[..], &y[..])).collect();
     let free = |s: &Solved| s.set.as_ref().map_or(f64::NAN, |set| set.free as f64);
-    let table = named("calibrated parameters and the responses they are predicted to give").ints_column(
-        "set",
-        "target set, from 1",
-        numbered(0..solved.len()),
-    );
-    columns(table, params, &rows)
-        .reals_column("misfit", "", "of the predicted responses", solved.iter().map(|s| s.misfit).collect())
-        .ints_column("evaluations", "of the model", solved.iter().map(|s| s.evaluations as i64).collect())
-        .ints_column("failed", "evaluations without responses", solved.iter().map(|s| s.failed as i64).collect())
-        .texts_column("stop", "why the search ended", solved.iter().map(|s| s.stop.to_string()).collect())
-        .reals_column("free", "", "directions that change no response", solved.iter().map(free).collect())
+    let stored = Stored {
+        set: numbered(0..solved.len()),
+        misfit: solved.iter().map(|s| s.misfit).collect(),
+        evaluations: solved.iter().map(|s| s.evaluations as i64).collect(),
+        failed: solved.iter().map(|s| s.failed as i64).collect(),
+        stop: solved.iter().map(|s| s.stop.to_string()).collect(),
+        free: solved.iter().map(free).collect(),
+    };
+    stored.to_table().with_after("set", columns(params, &rows))
 }
 
 /// One row per set and target.
@@ -94,7 +91,7 @@ fn predicted<'a>(params: &'a Params, solved: &[Solved]) -> Vec<Predicted<'a>> {
     rows
 }
 
-fn prediction(params: &Params, solved: &[Solved]) -> Table {
+fn prediction(params: &Params, solved: &[Solved]) -> Prediction {
     let rows = predicted(params, solved);
     let reals = |pick: fn(&Predicted) -> f64| rows.iter().map(pick).collect::<Vec<_>>();
     let verdict = |row: &Predicted| {
@@ -106,38 +103,34 @@ fn prediction(params: &Params, solved: &[Solved]) -> Table {
             _ => "within reach".to_owned(),
         }
     };
-    named("targets, what is expected, and what can be had over the ranges")
-        .ints_column("set", "target set, from 1", numbered(rows.iter().map(|row| row.set)))
-        .texts_column("response", "", rows.iter().map(|row| row.target.response.clone()).collect())
-        .texts_column("unit", "of the numbers beside it", rows.iter().map(|row| row.target.unit.clone()).collect())
-        .reals_column("target", "", "wanted", reals(|row| row.target.value))
-        .reals_column("expected", "", "at the solution", reals(|row| row.expected.mean))
-        .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|row| row.expected.low))
-        .reals_column("high", "", "upper end", reals(|row| row.expected.high))
-        .reals_column("deviation_percent", "", "as in the misfit", reals(|row| row.deviation))
-        .reals_column("reach_low", "", "least over the ranges", reals(|row| row.reach[0]))
-        .reals_column("reach_high", "", "greatest over the ranges", reals(|row| row.reach[1]))
-        .texts_column("reach", "whether the target can be had by itself", rows.iter().map(verdict).collect())
+    Prediction {
+        set: numbered(rows.iter().map(|row| row.set)),
+        response: rows.iter().map(|row| row.target.response.clone()).collect(),
+        unit: rows.iter().map(|row| row.target.unit.clone()).collect(),
+        target: reals(|row| row.target.value),
+        expected: reals(|row| row.expected.mean),
+        low: reals(|row| row.expected.low),
+        high: reals(|row| row.expected.high),
+        deviation_percent: reals(|row| row.deviation),
+        reach_low: reals(|row| row.reach[0]),
+        reach_high: reals(|row| row.reach[1]),
+        reach: rows.iter().map(verdict).collect(),
+    }
 }
 
 fn history(params: &Params, solved: &[Solved]) -> Table {
     let all: Vec<(usize, &Line)> =
         solved.iter().enumerate().flat_map(|(set, s)| s.history.iter().map(move |line| (set, line))).collect();
     let rows: Vec<_> = all.iter().map(|(set, line)| (*set, &line.point[..], &line.responses[..])).collect();
-    let count = all.iter().map(|(_, line)| line.evaluation as i64).collect();
-    let table = named("evaluations: all simulations, or those that improved on a surface")
-        .ints_column("set", "target set, from 1", numbered(all.iter().map(|(set, _)| *set)))
-        .ints_column("evaluation", "counted from 1", count);
-    columns(table, params, &rows)
-        .reals_column("misfit", "", "of this evaluation", all.iter().map(|(_, line)| line.misfit).collect())
-        .reals_column("best", "", "best misfit so far", all.iter().map(|(_, line)| line.best).collect())
-        .reals_column(
-            "recommended",
-            "",
-            "misfit expected at the point that was recommended then",
-            all.iter().map(|(_, line)| line.recommended).collect(),
-        )
-        .texts_column("failure", "empty when it went well", all.iter().map(|(_, line)| line.failure.clone()).collect())
+    let stored = Evaluations {
+        set: numbered(all.iter().map(|(set, _)| *set)),
+        evaluation: all.iter().map(|(_, line)| line.evaluation as i64).collect(),
+        misfit: all.iter().map(|(_, line)| line.misfit).collect(),
+        best: all.iter().map(|(_, line)| line.best).collect(),
+        recommended: all.iter().map(|(_, line)| line.recommended).collect(),
+        failure: all.iter().map(|(_, line)| line.failure.clone()).collect(),
+    };
+    stored.to_table().with_after("evaluation", columns(params, &rows))
 }
 
 fn solution_set(params: &Params, solved: &[Solved]) -> Table {
@@ -146,11 +139,7 @@ fn solution_set(params: &Params, solved: &[Solved]) -> Table {
         let sample = s.set.iter().flat_map(|set| &set.sample);
         points.extend(sample.map(|unit| (i, s.problem.domain.natural(unit))));
     }
-    let mut table = named("further parameters that give the responses of the solution").ints_column(
-        "set",
-        "target set, from 1",
-        numbered(points.iter().map(|(set, _)| *set)),
-    );
+    let mut table = Alternatives { set: numbered(points.iter().map(|(set, _)| *set)) }.to_table();
     for (i, FactorParam { name, unit, .. }) in params.factors.iter().enumerate() {
         table = table.reals_column(name, unit, "", points.iter().map(|(_, point)| point[i]).collect());
     }

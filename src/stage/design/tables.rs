@@ -1,15 +1,12 @@
 //! The artifact of a design.
 
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::design::{Design, DesignReport, DesignRows};
+use crate::artifact::{Artifact, Table};
 use design::{DesignTable, Report};
 
-/// The tables `design`, `coded` and `report`.
+/// The storable form.
 pub(super) fn artifact(table: &DesignTable, report: &Report) -> Artifact {
-    let root = Group::new()
-        .with("design", Node::Table(design(table)))
-        .with("coded", Node::Table(coded(table)))
-        .with("report", Node::Table(lines(table, report)));
-    Artifact::of(ArtifactKind::DESIGN, root)
+    Design { design: design(table), coded: coded(table), report: lines(table, report) }.to_artifact()
 }
 
 fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
@@ -17,13 +14,13 @@ fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
 }
 
 fn design(table: &DesignTable) -> Table {
-    let replicate = table.replicate().into_iter().map(|n| n as i64).collect();
-    let types = table.point_type.iter().map(|p| p.word().to_owned()).collect();
-    let mut found = Table { about: table.construction.clone(), columns: Vec::new() }
-        .ints_column("run", "order of the runs", counted(1..=table.runs()))
-        .ints_column("standard_order", "place in the order of the construction", counted(table.standard_order.clone()))
-        .ints_column("replicate", "which of the equal rows it is", replicate)
-        .texts_column("point_type", "centre, cube, axial, edge, grid, sample or given", types);
+    let rows = DesignRows {
+        run: counted(1..=table.runs()),
+        standard_order: counted(table.standard_order.clone()),
+        replicate: table.replicate().into_iter().map(|n| n as i64).collect(),
+        point_type: table.point_type.iter().map(|p| p.word().to_owned()).collect(),
+    };
+    let mut found = Table { about: table.construction.clone(), ..rows.to_table() };
     for (j, factor) in table.factors.iter().enumerate() {
         let values = table.natural.iter().map(|row| row[j]).collect();
         found = found.reals_column(&factor.name, &factor.unit, "", values);
@@ -40,13 +37,14 @@ fn coded(table: &DesignTable) -> Table {
     found
 }
 
-fn lines(table: &DesignTable, report: &Report) -> Table {
+fn lines(table: &DesignTable, report: &Report) -> DesignReport {
     let lines = report.lines(table);
     let texts = |pick: &dyn Fn(&design::report::Line) -> String| lines.iter().map(pick).collect();
-    Table { about: "what the design can tell, judged by its rows".to_owned(), columns: Vec::new() }
-        .texts_column("section", "", texts(&|l| l.section.to_owned()))
-        .texts_column("subject", "factor, term or model", texts(&|l| l.subject.clone()))
-        .texts_column("quantity", "", texts(&|l| l.quantity.clone()))
-        .reals_column("value", "", "missing where words say it", lines.iter().map(|l| l.value).collect())
-        .texts_column("text", "", texts(&|l| l.text.clone()))
+    DesignReport {
+        section: texts(&|l| l.section.to_owned()),
+        subject: texts(&|l| l.subject.clone()),
+        quantity: texts(&|l| l.quantity.clone()),
+        value: lines.iter().map(|l| l.value).collect(),
+        text: texts(&|l| l.text.clone()),
+    }
 }
