@@ -9,6 +9,7 @@
 //! export → stage
 //! { run, plan } → stage → { dem, design, stats, optim, figure } → math
 //! { run, plan, stage, store } → artifact
+//! { plan, stage } → expression → unit
 //! { plan, stage, artifact } → unit
 //! ```
 //!
@@ -25,7 +26,7 @@
 //! | [`artifact`] | what can be stored, as plain data with a content hash |
 //! | [`dem`] | the discrete-element engine, specimens and tests |
 //! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
-//! | [`math`], [`unit`] | random streams, elementary functions, distributions; quantities with units |
+//! | [`math`], [`unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
 //!
 //! The domains (`dem`, `design`, `stats`, `optim`, `figure`) are pure and know nothing of one another, of files or of TOML.
 //!
@@ -54,6 +55,7 @@ pub mod artifact;
 pub mod cli;
 pub mod exec;
 pub mod export;
+pub mod expression;
 pub mod plan;
 pub mod report;
 pub mod run;

@@ -35,6 +35,22 @@ impl Dimension {
         Self { length: Power::whole(length), mass: Power::whole(mass), time: Power::whole(time) }
     }
 
+    /// The dimension of a product; `None` when an exponent has no small fraction.
+    pub fn product(self, other: Self) -> Option<Self> {
+        self.times(other, Power::whole(1))
+    }
+
+    /// The dimension of a power; `None` when an exponent has no small fraction.
+    pub fn power(self, exponent: f64) -> Option<Self> {
+        if self == Self::NONE {
+            return Some(self);
+        }
+        let whole = |d: &f64| (exponent * d - (exponent * d).round()).abs() < 1e-9;
+        let denominator = (1..=12).map(f64::from).find(whole)?;
+        let power = Power::read(&format!("{}/{denominator}", (exponent * denominator).round()))?;
+        Self::NONE.times(self, power)
+    }
+
     /// `self · other^power`; `None` when an exponent has no small fraction.
     fn times(self, other: Self, power: Power) -> Option<Self> {
         let one = |a: Power, b: Power| a.plus(b.times(power)?);
@@ -43,6 +59,26 @@ impl Dimension {
             mass: one(self.mass, other.mass)?,
             time: one(self.time, other.time)?,
         })
+    }
+}
+
+/// As its SI unit: that of the list of symbols, else a product of powers of metre, kilogram and second.
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self == Self::NONE {
+            return f.write_str("a pure number");
+        }
+        let coherent = SYMBOLS.iter().find(|(_, factor, dimension, _)| *factor == 1.0 && dimension == self);
+        if let Some((symbol, ..)) = coherent {
+            return f.write_str(symbol);
+        }
+        let powers = [("kg", self.mass), ("m", self.length), ("s", self.time)];
+        let parts = powers.into_iter().filter(|(_, power)| *power != Power::whole(0));
+        let part = |(symbol, power): (&str, Power)| match power == Power::whole(1) {
+            true => symbol.to_owned(),
+            false => format!("{symbol}^{power}"),
+        };
+        f.write_str(&parts.map(part).collect::<Vec<_>>().join(" "))
     }
 }
 

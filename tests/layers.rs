@@ -9,17 +9,18 @@ use std::path::{Path, PathBuf};
 /// What each module of `flow` may import directly or further along. `exec` starts what it is given and imports nothing of
 /// ours. The domains are crates of their own: Cargo holds them to their manifests.
 const ORDER: &[(&str, &[&str])] = &[
-    ("cli", &["report", "export", "run", "exec", "plan", "store", "stage", "artifact", "unit"]),
+    ("cli", &["report", "export", "run", "exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
     // Files of results; told what to write, it knows neither workflow nor store.
-    ("export", &["stage", "artifact", "unit"]),
+    ("export", &["stage", "artifact", "expression", "unit"]),
     // A page is made of what a dry run finds and the store holds; it prints nothing, so the command line calls it.
-    ("report", &["run", "exec", "plan", "store", "stage", "artifact", "unit"]),
-    ("run", &["exec", "plan", "store", "stage", "artifact", "unit"]),
+    ("report", &["run", "exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
+    ("run", &["exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
     ("exec", &[]),
-    ("plan", &["stage", "artifact", "unit"]),
+    ("plan", &["stage", "artifact", "expression", "unit"]),
     ("store", &["artifact", "unit"]),
-    ("stage", &["artifact", "unit"]),
+    ("stage", &["artifact", "expression", "unit"]),
     ("artifact", &["unit"]),
+    ("expression", &["unit"]),
     ("unit", &[]),
 ];
 

@@ -112,6 +112,14 @@ impl Diff {
             eprintln!("error: there is no recorded run #{number}; the store has {}", known.join(", "));
             return Err(Exit::BadInput);
         };
+        if !campaign.own {
+            let file = quoted(&campaign.workflow);
+            eprintln!(
+                "error: run #{number} was not recorded by you, or its record was changed since, so what it says of results \
+                 cannot be believed; compare the workflow itself: `flow diff {file} …`"
+            );
+            return Err(Exit::System);
+        }
         let store::Campaign { workflow, profile, set, started, seconds, origin, .. } = &campaign;
         let profile = if profile.is_empty() { String::new() } else { format!("@{profile}") };
         let sets: String = set.iter().map(|set| format!(" --set {}", quoted(set))).collect();

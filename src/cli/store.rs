@@ -23,6 +23,8 @@ pub(super) struct StoreCommand {
 enum What {
     /// List the results: task, size, duration.
     Ls,
+    /// Make the folder of an earlier flow, which has no file `flow.store`, a store.
+    Adopt,
     /// Read every result and compare it with its record; set aside what is damaged.
     Verify,
     /// Sizes.
@@ -45,6 +47,7 @@ impl StoreCommand {
     pub(super) fn go(self) -> Exit {
         let done = match &self.command {
             What::Ls => self.list(),
+            What::Adopt => self.adopt(),
             What::Verify => self.verify(),
             What::Du => self.usage(),
             What::Gc(gc) => self.collect(gc),
@@ -73,6 +76,12 @@ impl StoreCommand {
         Ok(Exit::Done)
     }
 
+    fn adopt(&self) -> Result<Exit, Exit> {
+        Store::adopt(&self.common.store).map_err(|e| system(&e))?;
+        out!("{} is a store now; its results are proven when they are first used", self.common.store.display());
+        Ok(Exit::Done)
+    }
+
     fn verify(&self) -> Result<Exit, Exit> {
         let verdict = self.open()?.verify().map_err(|e| system(&e))?;
         out!("{} results are sound ({})", verdict.sound.files, bytes(verdict.sound.bytes));
@@ -83,16 +92,34 @@ impl StoreCommand {
             out!("missing: the result of task {key}; the next run computes it again");
         }
         for key in &verdict.adopted {
-            out!("adopted: the result of task {key} had lost its record");
+            out!("adopted: the result of task {key} had no record");
         }
         for (key, first, second) in &verdict.contradictions {
-            out!("contradiction: task {key} gave {first} and {second}; it depends on something outside its key");
+            out!(
+                "contradiction: task {key} gave {first} and {second}; it depends on something outside its key, or one is \
+                 forged: neither is believed, and the next run computes it again"
+            );
         }
         if verdict.lost_records > 0 {
             out!("{} records of the journal cannot be read; their results were adopted again", verdict.lost_records);
         }
-        let sound = verdict.damages.is_empty() && verdict.contradictions.is_empty();
-        Ok(if sound { Exit::Done } else { Exit::System })
+        if !verdict.proven.is_empty() {
+            out!(
+                "{} results were recorded by others; their task texts and values prove them to be what their names say, \
+                 not that the values are right",
+                verdict.proven.len()
+            );
+        }
+        if verdict.not_own > 0 {
+            out!(
+                "{} memos and records of runs were not written by you, or changed since; they are not used",
+                verdict.not_own
+            );
+        }
+        for path in &verdict.strangers {
+            out!("not by flow, and not touched: {}", path.display());
+        }
+        Ok(if verdict.is_sound() { Exit::Done } else { Exit::System })
     }
 
     fn usage(&self) -> Result<Exit, Exit> {

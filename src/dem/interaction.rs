@@ -12,6 +12,7 @@
 
 use super::particle::Group;
 use super::space::Space;
+use super::strength::Scatter;
 
 /// How a modulus becomes the stiffness of a linear contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
@@ -112,8 +113,8 @@ pub struct ContactBond {
     pub tensile_strength: f64,
     /// τ_s, Pa.
     pub shear_strength: f64,
-    /// Standard deviation of both strengths over their mean.
-    pub deviation: f64,
+    /// Scatter of both strengths.
+    pub scatter: Scatter,
     /// What happens to the shear force at a shear break.
     pub shear_break: ShearBreak,
 }
@@ -121,7 +122,7 @@ pub struct ContactBond {
 impl ContactBond {
     /// A bond with its strengths (Pa), without scatter.
     pub fn new(tensile_strength: f64, shear_strength: f64) -> Self {
-        Self { tensile_strength, shear_strength, deviation: 0.0, shear_break: ShearBreak::default() }
+        Self { tensile_strength, shear_strength, scatter: Scatter::default(), shear_break: ShearBreak::default() }
     }
 }
 
@@ -159,8 +160,8 @@ pub struct ParallelBond {
     pub friction_angle: f64,
     /// β: share of the moments in the stresses, 0 … 1.
     pub moment_factor: f64,
-    /// Standard deviation of both strengths over their mean.
-    pub deviation: f64,
+    /// Scatter of both strengths.
+    pub scatter: Scatter,
 }
 
 /// The bond that [`install_bonds`](super::Engine::install_bonds) puts into a contact.
@@ -275,7 +276,7 @@ impl ParallelBond {
             cohesion,
             friction_angle: 0.0,
             moment_factor: 1.0,
-            deviation: 0.0,
+            scatter: Scatter::default(),
         }
     }
 

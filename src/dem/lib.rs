@@ -92,9 +92,11 @@ mod law;
 pub mod loading;
 pub mod measure;
 mod neighbour;
+pub mod parameter;
 mod particle;
 pub mod simd;
 pub mod space;
+pub mod strength;
 
 mod union;
 
@@ -108,3 +110,4 @@ pub use interaction::{
 };
 pub use particle::{Clump, Group, Particle};
 pub use space::{D2, D3, Space, Spin, Vector};
+pub use strength::{Distribution, Scatter};

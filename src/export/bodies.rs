@@ -3,15 +3,12 @@
 use dem::genesis::relax::Heap;
 use dem::genesis::specimen::Specimen;
 
-/// Words of the groups of contacts, by number.
-pub(super) const GROUPS: [&str; 3] = ["mortar", "interface", "aggregate"];
-
 /// A contact of the packing as it stands, free of force.
 pub(super) struct Contact {
     /// The two discs, from 0.
     pub(super) ends: [usize; 2],
-    /// Place in [`GROUPS`].
-    pub(super) group: usize,
+    /// Numbers of the two discs' groups, the smaller first.
+    pub(super) groups: [usize; 2],
     /// Distance of the surfaces, m; negative where they overlap.
     pub(super) gap: f64,
 }
@@ -24,9 +21,9 @@ pub(super) fn contacts(specimen: &Specimen, margin: f64) -> Vec<Contact> {
     let contact = |(i, j): (usize, usize)| {
         let [dx, dy] = [0, 1].map(|k| centres[j][k] - centres[i][k]);
         let gap = (dx * dx + dy * dy).sqrt() - radii[i] - radii[j];
-        let group = usize::from(clump[i].is_some()) + usize::from(clump[j].is_some());
+        let [a, b] = [i, j].map(|disc| usize::from(clump[disc].is_some()));
         let apart = clump[i].is_none() || clump[i] != clump[j];
-        apart.then_some(Contact { ends: [i, j], group, gap })
+        apart.then_some(Contact { ends: [i, j], groups: [a.min(b), a.max(b)], gap })
     };
     heap.pairs(margin).into_iter().filter_map(contact).collect()
 }

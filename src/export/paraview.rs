@@ -3,10 +3,10 @@
 //! | file | cells | fields |
 //! |---|---|---|
 //! | `NAME.particles.vtu` | discs as points | `radius`, `group` (0 mortar, 1 aggregate), `clump` (-1 none); of a run `displacement` |
-//! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 mortar, 1 interface, 2 aggregate), `gap` |
+//! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 between discs, 1 of a disc and aggregate, 2 within aggregate), `gap` |
 //! | `NAME.clumps.vtu` | polygons of aggregate | `polygon`, `clump` (-1 when no disc lies in it), `mass` |
 //! | `NAME.forces.vtu` | contacts of a run as lines, where it kept forces | `normal_force` (compression positive), `shear_force`, `bonded`, `chain` (1 from the mean force on) |
-//! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact | `mode` (0 tension, 1 shear), `group` (0 mortar, 1 interface), `axial_strain` |
+//! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact | `mode` (0 tension, 1 shear), `group` (number of the contact among those of all cracks by name), `axial_strain` |
 //! | `NAME.pvd` | all states of a run over the axial strain | |
 //!
 //! In ParaView: *Glyph* with `radius` as scale shows the discs, *Tube* the forces.
@@ -17,6 +17,7 @@ use super::vtu::{Cells, Field, Grid, pvd};
 use crate::artifact::Artifact;
 use crate::artifact::run::{CrackMode, Run};
 use dem::genesis::specimen::Specimen;
+use std::collections::BTreeSet;
 
 /// The files of a specimen.
 pub fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
@@ -80,7 +81,7 @@ fn links(specimen: &Specimen) -> Grid {
         cells: Cells::Lines(contacts.iter().map(|c| c.ends).collect()),
         on_points: Vec::new(),
         on_cells: vec![
-            Field::Ints("group", contacts.iter().map(|c| c.group as i64).collect()),
+            Field::Ints("group", contacts.iter().map(|c| (c.groups[0] + c.groups[1]) as i64).collect()),
             Field::Reals("gap", contacts.iter().map(|c| c.gap).collect()),
         ],
     }
@@ -155,6 +156,8 @@ fn cracks(run: &Run, until: f64) -> Result<Option<Grid>, String> {
             ([0, 1].map(|axis| cracks.position[[c, axis]]), [0, 1].map(|axis| cracks.normal[[c, axis]]));
         [-0.5, 0.5].map(|half| [x - half * cracks.size[c] * ny, y + half * cracks.size[c] * nx])
     };
+    let names: BTreeSet<&String> = cracks.group.iter().collect();
+    let number = |name: &String| names.iter().position(|known| *known == name).map_or(-1, |place| place as i64);
     let marked = |is: &dyn Fn(usize) -> bool| open.iter().map(|&crack| i64::from(is(crack))).collect();
     Ok(Some(Grid {
         points: open.iter().flat_map(ends).collect(),
@@ -162,7 +165,7 @@ fn cracks(run: &Run, until: f64) -> Result<Option<Grid>, String> {
         on_points: Vec::new(),
         on_cells: vec![
             Field::Ints("mode", marked(&|crack| cracks.mode[crack] == CrackMode::Shear)),
-            Field::Ints("group", marked(&|crack| cracks.group[crack] == "interface")),
+            Field::Ints("group", open.iter().map(|&crack| number(&cracks.group[crack])).collect()),
             Field::Reals("axial_strain", open.iter().map(|&crack| cracks.axial_strain[crack]).collect()),
         ],
     }))

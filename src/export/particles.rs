@@ -3,49 +3,84 @@
 //!
 //! | file | a row for each |
 //! |---|---|
-//! | `NAME.particles.csv` | disc: place, radius, group, clump, and the density of mortar; the mass of pebbles is that of their clump |
+//! | `NAME.particles.csv` | disc: place, radius, group, clump, and the density of single discs; the mass of pebbles is that of their clump |
 //! | `NAME.clumps.csv` | rigid clump: mass and moment of inertia per metre of thickness, centre of mass |
 //! | `NAME.groups.csv` | contact group: microparameters of its spring and bond (of a run) |
 //! | `NAME.contacts.csv` | contact: its discs, group, gap, and whether it is bonded (of a run) |
 //! | `NAME.columns.csv` | column of these files: unit and meaning |
 
-use super::bodies::{Contact, GROUPS, contacts};
+use super::bodies::{Contact, contacts};
 use super::{File, csv_text};
 use crate::artifact::Table;
 use dem::genesis::specimen::Specimen;
+use dem::loading::material::{BondKind, Contact as Values, Material};
+use dem::parameter::{Parameter, Quantity};
+use serde::Serialize;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// Parameters of a run by their paths in its task, as they stand there.
 pub type Parameters = BTreeMap<String, String>;
 
-/// Columns of the groups: name, unit, meaning, the parameter's name in a task.
-const MICRO: [(&str, &str, &str, &str); 5] = [
-    ("Ec", "Pa", "modulus of spring and bond", "modulus"),
-    ("kn_ks", "", "normal over shear stiffness of spring and bond", "stiffness_ratio"),
-    ("sigma_c", "Pa", "tensile strength of the bond", "tensile_strength"),
-    ("tau_c", "Pa", "shear strength of the bond", "shear_strength"),
-    ("mu", "", "friction", "friction"),
-];
+/// Groups of a specimen that no run names.
+const GROUPS: [&str; 2] = ["discs", "aggregate"];
 
-/// The same for what all bonds have in common.
-const BONDING: [(&str, &str, &str, &str); 5] = [
-    ("bond_gap", "", "bonds form at gaps up to this share of the mean radius", "gap"),
-    ("bond_radius", "", "radius of the bond over the smaller radius", "radius_multiplier"),
-    ("moment_factor", "", "share of the moment in the bond's stresses", "moment_factor"),
-    ("friction_angle", "rad", "of the bond", "friction_angle"),
-    ("deviation", "", "standard deviation of the strengths over their mean", "deviation"),
-];
+/// What the files say of groups: their names, and for a run the values of their contacts.
+struct Named {
+    groups: Vec<String>,
+    material: Option<Material>,
+}
+
+impl Named {
+    fn of(parameters: Option<&Parameters>) -> Result<Self, String> {
+        let material = parameters.map(material).transpose()?;
+        let own = material.as_ref().map(|material| material.groups.clone());
+        Ok(Self { groups: own.unwrap_or_else(|| GROUPS.map(str::to_owned).to_vec()), material })
+    }
+
+    fn group(&self, number: usize) -> String {
+        self.groups.get(number).cloned().unwrap_or_default()
+    }
+
+    /// The name of the contacts of two groups, and whether they are bonded.
+    fn contact(&self, [a, b]: [usize; 2]) -> (String, bool) {
+        let found = self.material.as_ref().and_then(|material| material.contact(a, b));
+        match found {
+            Some((name, contact)) => (name.to_owned(), contact.bond != BondKind::None),
+            None if a == b => (self.group(a), false),
+            None => (format!("{}-{}", self.group(a), self.group(b)), false),
+        }
+    }
+}
+
+/// The microparameters of a run from the parameters of its task.
+fn material(parameters: &Parameters) -> Result<Material, String> {
+    let mut root = Map::new();
+    for (path, text) in parameters {
+        let Some(path) = path.strip_prefix("material.") else { continue };
+        let value: Value =
+            serde_json::from_str(text).map_err(|e| format!("the parameter `{path}` cannot be read: {e}"))?;
+        let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
+        let mut table = &mut root;
+        for name in tables.split('.').filter(|name| !name.is_empty()) {
+            let below = table.entry(name).or_insert_with(|| Value::Object(Map::new()));
+            table = below.as_object_mut().ok_or_else(|| format!("the parameter `{path}` lies below a value"))?;
+        }
+        table.insert(key.to_owned(), value);
+    }
+    serde_json::from_value(Value::Object(root)).map_err(|e| format!("the run's material cannot be read: {e}"))
+}
 
 /// The files; without parameters, those of the specimen alone.
 pub fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
-    let gap = parameters.map(|p| number(p, "bonding", "gap")).transpose()?;
-    let margin = gap.unwrap_or(0.0) * specimen.mean_radius();
+    let named = Named::of(parameters)?;
+    let margin = named.material.as_ref().map_or(0.0, |material| material.gap) * specimen.mean_radius();
     let contacts = contacts(specimen, margin);
-    let mut tables = vec![("particles", particles(specimen)), ("clumps", clumps(specimen))];
-    if let Some(parameters) = parameters {
-        tables.push(("groups", groups(parameters)?));
+    let mut tables = vec![("particles", particles(specimen, &named)), ("clumps", clumps(specimen))];
+    if let Some(material) = &named.material {
+        tables.push(("groups", groups(material)));
     }
-    tables.push(("contacts", contact_table(&contacts, parameters.is_some())));
+    tables.push(("contacts", contact_table(&contacts, &named)));
     tables.push(("columns", columns(&tables)));
     Ok(tables.iter().map(|(what, table)| (format!("{name}.{what}.csv"), csv_text(table).into_bytes())).collect())
 }
@@ -55,17 +90,22 @@ fn numbered(about: &str, count: usize) -> Table {
     Table::default().ints_column("id", about, numbers)
 }
 
-fn particles(specimen: &Specimen) -> Table {
+fn particles(specimen: &Specimen, named: &Named) -> Table {
     let clump = specimen.clump_of_balls();
-    let group = |clump: &Option<usize>| if clump.is_some() { "aggregate" } else { "mortar" }.to_owned();
+    let group = |clump: &Option<usize>| named.group(usize::from(clump.is_some()));
     let density = |clump: &Option<usize>| if clump.is_some() { f64::NAN } else { specimen.density };
     numbered("number of the disc", clump.len())
         .reals_column("x", "m", "centre, across the load, from the middle of the specimen", axis(&specimen.centres, 0))
         .reals_column("y", "m", "centre, along the load, from the middle of the specimen", axis(&specimen.centres, 1))
         .reals_column("radius", "m", "radius", specimen.radii.clone())
-        .texts_column("group", "mortar, or aggregate for pebbles of a clump", clump.iter().map(group).collect())
+        .texts_column("group", "group of the disc", clump.iter().map(group).collect())
         .ints_column("clump", "its clump, -1 for none", clump.iter().map(|c| c.map_or(-1, |c| c as i64)).collect())
-        .reals_column("density", "kg/m^3", "of mortar; empty for pebbles", clump.iter().map(density).collect())
+        .reals_column(
+            "density",
+            "kg/m^3",
+            "of discs that are no pebbles; empty for pebbles",
+            clump.iter().map(density).collect(),
+        )
 }
 
 fn axis(points: &[[f64; 2]], axis: usize) -> Vec<f64> {
@@ -88,56 +128,64 @@ fn clumps(specimen: &Specimen) -> Table {
         )
 }
 
-fn contact_table(contacts: &[Contact], of_run: bool) -> Table {
+fn contact_table(contacts: &[Contact], named: &Named) -> Table {
     let whole = |pick: fn(&Contact) -> usize| contacts.iter().map(|c| pick(c) as i64).collect::<Vec<i64>>();
     let table = Table::default()
         .ints_column("first", "disc", whole(|c| c.ends[0]))
         .ints_column("second", "disc", whole(|c| c.ends[1]))
-        .texts_column("group", "contact group", contacts.iter().map(|c| GROUPS[c.group].to_owned()).collect())
+        .texts_column("group", "contact group", contacts.iter().map(|c| named.contact(c.groups).0).collect())
         .reals_column(
             "gap",
             "m",
             "distance of the surfaces, negative where they overlap",
             contacts.iter().map(|c| c.gap).collect(),
         );
-    if !of_run {
+    if named.material.is_none() {
         return table;
     }
-    table.ints_column("bonded", "1 where a bond is put at the start", whole(|c| usize::from(c.group < 2)))
+    let bonded = contacts.iter().map(|c| i64::from(named.contact(c.groups).1)).collect();
+    table.ints_column("bonded", "1 where a bond is put at the start", bonded)
 }
 
-/// A number of the run's parameters.
-fn number(parameters: &Parameters, group: &str, name: &str) -> Result<f64, String> {
-    let path = format!("material.{group}.{name}");
-    let text = parameters.get(&path).ok_or_else(|| format!("the run has no parameter `{path}`"))?;
-    text.parse().map_err(|_| format!("the parameter `{path}` is no number: {text}"))
-}
-
-fn groups(parameters: &Parameters) -> Result<Table, String> {
-    let word = |name: &str| {
-        let text = parameters.get(&format!("material.bonding.{name}"));
-        text.map(|text| text.trim_matches('"').to_owned()).ok_or_else(|| format!("the run has no `bonding.{name}`"))
-    };
-    let (kind, convention) = (word("kind")?, word("convention")?);
-    let bonds = GROUPS.map(|group| if group == "aggregate" { "none".to_owned() } else { kind.clone() });
+/// A row for each contact of the material, a column for each microparameter that one of them has.
+fn groups(material: &Material) -> Table {
+    let all: Vec<(&String, &Values)> = material.contacts.iter().collect();
+    let texts =
+        |pick: &dyn Fn(&Values) -> String| all.iter().map(|(_, contact)| pick(contact)).collect::<Vec<String>>();
     let mut table = Table::default()
-        .texts_column("group", "contact group", GROUPS.map(str::to_owned).to_vec())
-        .texts_column("first", "group of one disc", ["mortar", "mortar", "aggregate"].map(str::to_owned).to_vec())
-        .texts_column("second", "group of the other", ["mortar", "aggregate", "aggregate"].map(str::to_owned).to_vec())
-        .texts_column("bond", "parallel, contact or none", bonds.to_vec());
-    for (name, unit, about, path) in MICRO {
-        let value = |group: &str| {
-            let lacks = group == "aggregate" && path.ends_with("strength");
-            if lacks { Ok(f64::NAN) } else { number(parameters, group, path) }
+        .texts_column("group", "contact", all.iter().map(|(name, _)| (*name).clone()).collect())
+        .texts_column("first", "group of one disc", texts(&|contact| contact.between[0].clone()))
+        .texts_column("second", "group of the other", texts(&|contact| contact.between[1].clone()))
+        .texts_column("bond", "parallel, contact or none", texts(&|contact| word(contact.bond)));
+    for parameter in Parameter::ALL {
+        let one = parameter.declaration();
+        let value = |contact: &Values| {
+            let acts = one.laws.iter().any(|law| contact.bond.laws().contains(law));
+            contact.values.get(parameter).copied().unwrap_or(if acts { one.default } else { f64::NAN })
         };
-        let values = GROUPS.iter().map(|group| value(group)).collect::<Result<Vec<f64>, String>>()?;
-        table = table.reals_column(name, unit, about, values);
+        let values: Vec<f64> = all.iter().map(|(_, contact)| value(contact)).collect();
+        if values.iter().any(|value| !value.is_nan()) {
+            let (unit, about) = match one.quantity {
+                Quantity::Deviation => ("", format!("{}, over its mean", one.meaning)),
+                quantity => (quantity.unit(), one.meaning.to_owned()),
+            };
+            table = table.reals_column(one.key, unit, &about, values);
+        }
     }
-    for (name, unit, about, path) in BONDING {
-        let value = number(parameters, "bonding", path)?;
-        table = table.reals_column(name, unit, about, vec![value, value, f64::NAN]);
-    }
-    Ok(table.texts_column("convention", "how a modulus becomes a stiffness", vec![convention; GROUPS.len()]))
+    table
+        .texts_column("distribution", "of the strengths", texts(&|contact| word(contact.distribution)))
+        .reals_column(
+            "gap",
+            "",
+            "bonds form at gaps up to this share of the mean radius",
+            vec![material.gap; all.len()],
+        )
+        .texts_column("convention", "how a modulus becomes a stiffness", vec![word(material.convention); all.len()])
+}
+
+/// The word for an alternative in the workflow.
+fn word(value: impl Serialize) -> String {
+    serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 /// What the columns of the files mean.

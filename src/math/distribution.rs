@@ -96,6 +96,26 @@ pub fn normal_quantile(p: f64) -> f64 {
     z
 }
 
+/// Scale λ and shape k of the Weibull distribution F(x) = 1 − exp(−(x/λ)^k) of mean 1 and standard deviation `deviation`:
+/// λ Γ(1 + 1/k) = 1 and Γ(1 + 2/k)/Γ(1 + 1/k)² = 1 + deviation². `deviation` must be positive; below 10⁻⁵ and above 10⁵
+/// the shape is that of these bounds.
+pub fn weibull_of_deviation(deviation: f64) -> (f64, f64) {
+    let wanted = ln_1p(deviation * deviation);
+    let excess = |inverse: f64| lgamma(1.0 + 2.0 * inverse) - 2.0 * lgamma(1.0 + inverse) - wanted;
+    // 1/k rises with the deviation: 0.78 of it where it is small, and Γ(41)/Γ(21)² is 10¹¹ at 1/k = 20.
+    let (mut low, mut high) = (1e-6, 20.0_f64);
+    for _ in 0..100 {
+        let middle = (low * high).sqrt();
+        if excess(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let inverse = (low * high).sqrt();
+    (exp(-lgamma(1.0 + inverse)), 1.0 / inverse)
+}
+
 /// Regularised incomplete beta function `I_x(a, b)`; `y` is `1 − x`, given apart because a small one loses digits.
 fn incomplete_beta(a: f64, b: f64, x: f64, y: f64) -> f64 {
     if x <= 0.0 || y <= 0.0 {

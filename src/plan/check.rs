@@ -2,10 +2,11 @@
 
 use super::collect::{Check, MOST_FAULTS, steps};
 use super::fault::{Fault, Source};
-use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
+use super::file::{FactorTable, Head, ResponseTable};
 use super::node::{Node, Sources, Step, Table, Value};
 use super::read::read;
 use super::{Overrides, StageNode, Workflow, overlay, stages, syntax};
+use crate::stage::material::{Material, MaterialTable};
 use crate::stage::{Context, Outline};
 use crate::unit::Unit;
 use serde::Deserialize;
@@ -32,10 +33,10 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         factors: check.named(&mut root, "factor", Check::factor),
         responses: check.named(&mut root, "response", Check::response),
         materials: check.named(&mut root, "material", Check::material),
-        outline: Vec::new(),
+        ..Context::default()
     };
+    let stages = stages::read_all(&mut check, &mut root, &mut context);
     check.settings(&root, &context);
-    let stages = stages::read_all(&mut check, &mut root, &context);
     let mut faults = check.faults;
     let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
         faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.source.name != name, place.span.start)));
@@ -135,7 +136,9 @@ impl Check<'_> {
             let path = [Step::Key("levels".to_owned()), Step::Index(pair[1].1)];
             self.complain(node, &path, Fault::new(format!("level {} stands here twice", pair[1].0)));
         }
-        (self.faults.len() == before).then(|| table.factor(name))
+        let factor = table.factor(name);
+        self.scale(name, &factor, node);
+        (self.faults.len() == before).then_some(factor)
     }
 
     fn response(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Response> {
@@ -144,37 +147,9 @@ impl Check<'_> {
         Some(table.response(name))
     }
 
-    fn material(&mut self, _: &str, node: &mut Node) -> Option<BTreeMap<String, crate::stage::Parameter>> {
+    fn material(&mut self, _: &str, node: &mut Node) -> Option<Material> {
         let read_table = |reader: super::reader::Reader<'_>| MaterialTable::deserialize(reader);
-        read(node, self.sources, &mut self.faults, Vec::new, read_table).map(MaterialTable::material)
-    }
-
-    /// What factors set must be there, and of the kind that their units say.
-    fn settings(&mut self, root: &Table, context: &Context) {
-        let Some(factors) = root.0.get("factor").map(|entry| &entry.node) else { return };
-        if context.materials.is_empty() || !self.lost.is_empty() {
-            return;
-        }
-        for (name, factor) in context.factors.iter().filter(|(_, factor)| !factor.sets.is_empty()) {
-            let all = context.materials.iter();
-            let mut set = all.filter_map(|(material, values)| Some((material, values.get(&factor.sets)?))).peekable();
-            if set.peek().is_none() {
-                let paths: BTreeSet<&str> =
-                    context.materials.values().flat_map(|m| m.keys().map(String::as_str)).collect();
-                let fault = Fault::new(format!("no material has `{}`, which factor `{name}` sets", factor.sets));
-                let fault = fault.known(&factor.sets, "parameters", paths);
-                self.complain(factors, &steps([name.as_str(), "sets"]), fault);
-            }
-            let Ok(unit) = Unit::parse(&factor.unit) else { continue };
-            if let Some((material, _)) = set.find(|(_, parameter)| parameter.dimension != unit.dimension) {
-                let unit =
-                    if factor.unit.is_empty() { "a pure number".to_owned() } else { format!("in {}", factor.unit) };
-                let fault =
-                    Fault::new(format!("factor `{name}` is {unit}, and `{}`, which it sets, is not", factor.sets));
-                let hint = format!("give it the unit that `{}` has in [material.{material}]", factor.sets);
-                self.complain(factors, &steps([name.as_str(), "unit"]), fault.hint(hint));
-            }
-        }
+        read(node, self.sources, &mut self.faults, Vec::new, read_table).map(|table| table.0)
     }
 
     fn unit(&mut self, unit: &str, node: &Node) {

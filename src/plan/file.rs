@@ -1,11 +1,9 @@
 //! The tables of a workflow file that are not stages.
 
-use crate::stage::{Factor, Parameter, Response};
-use crate::unit::{Dimension, parse_any};
+use crate::stage::{Factor, Response, Scale};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, de};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::fmt;
 
 /// `[workflow]`: what the whole campaign shares.
@@ -28,12 +26,16 @@ pub(super) struct Head {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("anyOf" = [{ "required": ["levels"] }, { "required": ["range"] }]))]
 pub(super) struct FactorTable {
-    /// Path of the parameter that it sets, such as "mortar.Ec"; a factor without one is a dummy column.
+    /// What it sets: a microparameter ("rock.sigma_c": group and key of the material), or a number of a stage ("disc.radius_ratio":
+    /// stage and key), or a list of such paths. A factor without one sets nothing by itself: formulas may name it.
     #[serde(default)]
-    pub(super) sets: String,
+    pub(super) sets: Paths,
     /// Unit of levels and range, such as "GPa"; none for a pure number.
     #[serde(default)]
     pub(super) unit: String,
+    /// How the range is divided: `log` by equal ratios, for ranges over decades; designs, surfaces and searches honour it.
+    #[serde(default)]
+    pub(super) scale: Scale,
     /// Symbol for tables and figures, such as "\\bar\\sigma_c"; the factor's name when not given.
     pub(super) symbol: Option<String>,
     /// Levels in the unit, such as [10, 20, 30].
@@ -55,59 +57,45 @@ pub(super) struct ResponseTable {
     pub(super) symbol: Option<String>,
 }
 
-/// `[material.NAME]`: microparameters by contact group, such as `mortar = { Ec = "20 GPa", mu = 0.5 }`.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub(super) struct MaterialTable(BTreeMap<String, BTreeMap<String, ParameterValue>>);
+/// One path or several.
+#[derive(Debug, Default)]
+pub(super) struct Paths(Vec<String>);
 
-impl MaterialTable {
-    /// Values by path, such as `mortar.Ec`.
-    pub(super) fn material(self) -> BTreeMap<String, Parameter> {
-        let path = |group: &str, name: String| format!("{group}.{name}");
-        let groups = self.0.into_iter();
-        groups.flat_map(|(g, all)| all.into_iter().map(move |(name, value)| (path(&g, name), value.0))).collect()
-    }
-}
-
-/// A quantity of any kind; what it stands for decides later which kind is right.
-#[derive(Debug)]
-struct ParameterValue(Parameter);
-
-impl<'de> Deserialize<'de> for ParameterValue {
+impl<'de> Deserialize<'de> for Paths {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Visitor;
-        impl de::Visitor<'_> for Visitor {
-            type Value = Parameter;
+        impl<'de> de::Visitor<'de> for Visitor {
+            type Value = Vec<String>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number, or a quantity with its unit such as \"16 GPa\"")
+                f.write_str("a path such as \"rock.sigma_c\", or a list of paths")
             }
-            fn visit_str<E: de::Error>(self, text: &str) -> Result<Parameter, E> {
-                let (value, dimension) = parse_any(text).map_err(E::custom)?;
-                Ok(Parameter { value, dimension })
+            fn visit_str<E: de::Error>(self, text: &str) -> Result<Vec<String>, E> {
+                Ok(if text.is_empty() { Vec::new() } else { vec![text.to_owned()] })
             }
-            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Parameter, E> {
-                Ok(Parameter { value, dimension: Dimension::NONE })
+            fn visit_seq<A: de::SeqAccess<'de>>(self, mut list: A) -> Result<Vec<String>, A::Error> {
+                let mut paths = Vec::new();
+                while let Some(path) = list.next_element()? {
+                    paths.push(path);
+                }
+                Ok(paths)
             }
-            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Parameter, E> {
-                self.visit_f64(value as f64)
-            }
-            /// The place of a value whose fault was told already.
-            fn visit_unit<E: de::Error>(self) -> Result<Parameter, E> {
-                self.visit_f64(1.0)
+            /// A hole: its fault was told already.
+            fn visit_unit<E: de::Error>(self) -> Result<Vec<String>, E> {
+                Ok(Vec::new())
             }
         }
         deserializer.deserialize_any(Visitor).map(Self)
     }
 }
 
-impl JsonSchema for ParameterValue {
+impl JsonSchema for Paths {
     fn schema_name() -> Cow<'static, str> {
-        "parameter".into()
+        "paths".into()
     }
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "type": ["string", "number"],
-            "description": "A number, or a quantity with its unit such as \"16 GPa\".",
+            "description": "A path such as \"rock.sigma_c\" or \"disc.radius_ratio\", or a list of paths.",
+            "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" } }],
         })
     }
 }
@@ -115,13 +103,14 @@ impl JsonSchema for ParameterValue {
 impl FactorTable {
     /// The factor as stages see it.
     pub(super) fn factor(self, name: &str) -> Factor {
-        let Self { sets, unit, symbol, levels, range } = self;
+        let Self { sets, unit, scale, symbol, levels, range } = self;
         let ends = |levels: &[f64]| {
             let low = levels.iter().copied().reduce(f64::min)?;
             Some([low, levels.iter().copied().reduce(f64::max)?])
         };
         let range = range.or_else(|| ends(&levels));
-        Factor { sets, unit, symbol: symbol.unwrap_or_else(|| name.to_owned()), levels, range }
+        let sets = sets.0;
+        Factor { sets, unit, scale, symbol: symbol.unwrap_or_else(|| name.to_owned()), levels, range }
     }
 }
 

@@ -16,6 +16,7 @@ mod overlay;
 mod read;
 mod reader;
 pub mod schema;
+mod sets;
 mod stages;
 mod syntax;
 pub mod why;

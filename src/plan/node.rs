@@ -108,6 +108,22 @@ impl Node {
         }
     }
 
+    /// As JSON: what a table says, without its places.
+    pub(super) fn json(&self) -> serde_json::Value {
+        use serde_json::Value as Json;
+        match &self.value {
+            Value::Text(text) | Value::Date(text) => Json::String(text.clone()),
+            Value::Int(number) => Json::from(*number),
+            Value::Real(number) => Json::from(*number),
+            Value::Flag(flag) => Json::Bool(*flag),
+            Value::List(list) => Json::Array(list.iter().map(Self::json).collect()),
+            Value::Table(table) => {
+                Json::Object(table.0.iter().map(|(name, entry)| (name.clone(), entry.node.json())).collect())
+            }
+            Value::Hole | Value::Probe => Json::Null,
+        }
+    }
+
     /// The value at the end of `path`.
     pub(super) fn find_mut(&mut self, path: &[Step]) -> Option<&mut Self> {
         path.iter().try_fold(self, |node, step| match (&mut node.value, step) {

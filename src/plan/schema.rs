@@ -2,8 +2,9 @@
 //! check the file. What only the whole file shows (names of stages, kinds of artifacts, cycles) is beyond a schema.
 
 use super::collect::NAME_PATTERN;
-use super::file::{FactorTable, Head, MaterialTable, ResponseTable};
+use super::file::{FactorTable, Head, ResponseTable};
 use crate::stage::KINDS;
+use crate::stage::material::MaterialTable;
 use schemars::{Schema, SchemaGenerator, generate::SchemaSettings};
 use serde_json::{Map, Value, json};
 
@@ -24,7 +25,7 @@ pub fn schema() -> Value {
     };
     let factor = named("What designs vary, by name.", generator.subschema_for::<FactorTable>());
     let response = named("What runs are measured by, by name.", generator.subschema_for::<ResponseTable>());
-    let material = named("Microparameters by contact group, by name.", generator.subschema_for::<MaterialTable>());
+    let material = named("Microparameters by contact, by name.", generator.subschema_for::<MaterialTable>());
     let kinds: Vec<Value> = KINDS.iter().map(|kind| stage(kind, &mut generator)).collect();
     let overrides =
         |what: &str| json!({ "type": "object", "additionalProperties": { "type": "object" }, "description": what });

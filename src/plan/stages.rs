@@ -6,6 +6,7 @@ use super::node::{Entry, Node, Step, Table, Value};
 use super::read::read;
 use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
+use crate::stage::vary::Template;
 use crate::stage::{Context, KINDS, Port, Stage};
 use std::collections::BTreeMap;
 
@@ -18,7 +19,7 @@ struct Configured {
 }
 
 /// The stages in order; all faults go to `check`, and then stages may be missing.
-pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Context) -> Option<Vec<StageNode>> {
+pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &mut Context) -> Option<Vec<StageNode>> {
     if !root.0.contains_key("stage") {
         let hint = "add a table such as [stage.runs] with its `kind`";
         let file = &check.sources.0[0].name;
@@ -27,7 +28,9 @@ pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Contex
     }
     let materials = root.get("material").cloned();
     let table = check.tables(root, "stage")?;
-    let stages = configure(check, table, materials.as_ref(), context);
+    let stages = configure(check, table, context);
+    context.sketches = stages.iter().map(|stage| (stage.name.clone(), stage.stage.sketch())).collect();
+    examine(check, table, &stages, materials.as_ref(), context);
     same_but_for_case(check, table);
     let inputs = connect(check, table, &stages);
     let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| inputs.iter().map(|(_, i)| *i).collect()).collect();
@@ -38,7 +41,11 @@ pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &Contex
 }
 
 /// Reads every stage by its kind, in the order of the file.
-fn configure(check: &mut Check<'_>, table: &mut Table, materials: Option<&Node>, context: &Context) -> Vec<Configured> {
+fn configure(check: &mut Check<'_>, table: &mut Table, context: &mut Context) -> Vec<Configured> {
+    let set = |name: &str, context: &Context| {
+        let paths = context.factors.values().flat_map(|factor| &factor.sets);
+        paths.filter_map(|path| path.split_once('.')).any(|(stage, _)| stage == name)
+    };
     let mut entries: Vec<(&String, &mut Entry)> = table.0.iter_mut().collect();
     entries.sort_by_key(|(_, entry)| entry.key);
     let mut stages = Vec::new();
@@ -51,6 +58,19 @@ fn configure(check: &mut Check<'_>, table: &mut Table, materials: Option<&Node>,
         let keys = || super::schema::keys(kind);
         let by_kind = |reader: Reader<'_>| stage_of(kind, reader);
         let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, keys, by_kind) else { continue };
+        if set(name, context) {
+            let template = Template { kind, table: entry.node.json() };
+            context.templates.insert(name.clone(), template);
+        }
+        stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
+    }
+    stages
+}
+
+/// Lets every stage look at its settings, now that it can see what the others say of themselves.
+fn examine(check: &mut Check<'_>, table: &Table, stages: &[Configured], materials: Option<&Node>, context: &Context) {
+    for Configured { name, stage, .. } in stages {
+        let Some(own) = table.get(name) else { continue };
         for complaint in stage.check(context) {
             // It only follows from a fault that was told already.
             let names = |(section, lost): &(&str, String)| {
@@ -61,12 +81,10 @@ fn configure(check: &mut Check<'_>, table: &mut Table, materials: Option<&Node>,
             }
             let fault = Fault { hint: complaint.hint, ..Fault::new(complaint.message) };
             let path = complaint.material.iter().chain(&complaint.path).map(String::as_str);
-            let node = materials.filter(|_| complaint.material.is_some()).unwrap_or(&entry.node);
+            let node = materials.filter(|_| complaint.material.is_some()).unwrap_or(own);
             check.complain(node, &steps(path), fault);
         }
-        stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
     }
-    stages
 }
 
 fn stage_of(kind: &str, reader: Reader<'_>) -> Result<Box<dyn Stage>, Unread> {

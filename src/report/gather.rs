@@ -86,13 +86,13 @@ fn costs(workflow: &Workflow, report: &Report, store: &Store) -> Result<Vec<Cost
     Ok(costs)
 }
 
-/// Recorded runs of this workflow with these overrides.
+/// This user's recorded runs of this workflow with these overrides.
 fn runs(workflow: &Workflow, sets: &[String], store: &Store) -> Result<Vec<Campaign>, StoreError> {
     let path = workflow.path.display().to_string();
     let profile = workflow.profile.clone().unwrap_or_default();
     let mut runs = Vec::new();
     for number in store.campaigns()? {
-        let same = |run: &Campaign| run.workflow == path && run.profile == profile && run.set == sets;
+        let same = |run: &Campaign| run.own && run.workflow == path && run.profile == profile && run.set == sets;
         runs.extend(store.campaign(number)?.filter(same));
     }
     Ok(runs)

@@ -53,8 +53,9 @@ pub(super) fn base(workflow: &Workflow) -> Base {
         let changed = meta.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
         (meta.len(), changed.map(|since| since.as_nanos()))
     });
-    let Context { seed, factors, responses, materials, outline } = &workflow.context;
-    let shared = format!("flow stages 2\nprogram {program:?}\nseed {seed}\n{responses:?}\n{materials:?}\n");
+    let Context { seed, factors, responses, materials, sketches, templates, outline } = &workflow.context;
+    let all = format!("{responses:?}\n{materials:?}\n{sketches:?}\n{templates:?}");
+    let shared = format!("flow stages 3\nprogram {program:?}\nseed {seed}\n{all}\n");
     let bare = factors.iter().map(|(name, f)| (name, &f.sets, &f.unit, &f.symbol));
     let run = Key::of(&format!("run\n{shared}{:?}\n", bare.collect::<Vec<_>>()));
     let mut whole = format!("{shared}{outline:?}\n{run}").into_bytes();
@@ -62,7 +63,11 @@ pub(super) fn base(workflow: &Workflow) -> Base {
         // Numbers as they are: their texts take long to find for ten thousand levels.
         let numbers = factor.levels.iter().chain(factor.range.iter().flatten());
         whole.extend(numbers.flat_map(|number| number.to_bits().to_le_bytes()));
-        whole.extend([factor.levels.len() as u64, factor.range.is_some().into()].map(u64::to_le_bytes).as_flattened());
+        whole.extend(
+            [factor.levels.len() as u64, factor.range.is_some().into(), factor.scale as u64]
+                .map(u64::to_le_bytes)
+                .as_flattened(),
+        );
     }
     Base { whole: Key(*blake3::hash(&whole).as_bytes()), run }
 }

@@ -12,6 +12,7 @@
 
 mod board;
 mod commit;
+mod elsewhere;
 mod files;
 mod ledger;
 mod library;
@@ -34,12 +35,13 @@ use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
 use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
+use elsewhere::Elsewhere;
 use stages::Stages;
 use std::any::Any;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 
 /// How a campaign is run.
 #[derive(Clone, Debug)]
@@ -175,6 +177,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             stages: Stages::new(workflow, &settings.targets, settings.memos),
             ready: BTreeSet::new(),
             running: 0,
+            elsewhere: Elsewhere::default(),
             failed: false,
             untold: Vec::new(),
             fatal: None,
@@ -210,7 +213,7 @@ pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: boo
 /// What a worker sends back.
 struct Answer {
     node: NodeId,
-    result: Result<task::Finished, Failure>,
+    result: Result<task::Outcome, Failure>,
 }
 
 struct Loop<'pool, 'env> {
@@ -226,6 +229,8 @@ struct Loop<'pool, 'env> {
     /// Nodes to start, in the order they were put on the board.
     ready: BTreeSet<NodeId>,
     running: usize,
+    /// Tasks that other processes compute.
+    elsewhere: Elsewhere,
     failed: bool,
     /// Stages that have failed while other tasks of theirs may still end, and those left out because of them.
     untold: Vec<usize>,
@@ -244,23 +249,46 @@ impl Loop<'_, '_> {
         loop {
             while !self.again && self.advance() {}
             self.start();
-            if self.running == 0 {
+            if self.running == 0 && (self.again || self.ends() || self.elsewhere.is_empty()) {
                 if !self.again {
                     break;
                 }
                 self.decide_anew();
                 continue;
             }
-            match inbox.recv() {
-                Ok(answer) => self.take(answer),
-                Err(_) => panic!("BUG: the run loop lost its own inbox"),
-            }
+            self.wait(inbox);
         }
         self.tell_without_result(true);
         let interrupted = self.stop.load(Ordering::Relaxed);
         let broken = self.fatal.map(|error| error.to_string());
         let stages = self.stages.reports(self.workflow, &self.board);
         Report { stages, interrupted, broken, board: self.board, places: self.stages }
+    }
+
+    /// Waits for an answer, or for another process to let go of a task.
+    fn wait(&mut self, inbox: &Receiver<Answer>) {
+        let answer = match self.elsewhere.is_empty() {
+            true => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            false => inbox.recv_timeout(self.elsewhere.pause()),
+        };
+        match answer {
+            Ok(answer) => self.take(answer),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => panic!("BUG: the run loop lost its own inbox"),
+        }
+        // What they have finished is found when it is started.
+        self.ready.extend(self.elsewhere.over());
+        if let Some((node, holder)) = self.elsewhere.first().filter(|_| self.running == 0) {
+            let (stage, row) = (&self.workflow.stages[self.board.stage(node)].name, self.board.row(node));
+            let progress = Progress::note(format!("waits for {holder}"));
+            self.watch.event(Event::Said { stage, row, progress: &progress });
+        }
+    }
+
+    /// Whether nothing more is started.
+    fn ends(&self) -> bool {
+        let ended = self.stop.load(Ordering::Relaxed) || self.fatal.is_some();
+        self.settings.dry || ended || (self.failed && !self.settings.keep_going)
     }
 
     /// Asks each stage that can say more; whether any did.
@@ -343,12 +371,11 @@ impl Loop<'_, '_> {
     }
 
     fn start(&mut self) {
-        let ended = self.stop.load(Ordering::Relaxed) || self.fatal.is_some();
-        if self.settings.dry || ended || self.again || (self.failed && !self.settings.keep_going) {
+        if self.again || self.ends() {
             return;
         }
         while self.running < self.pool.count() {
-            let Some(node) = self.ready.pop_first() else { return };
+            let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
             match task::Order::new(&mut self.board, node, self.store) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
@@ -375,6 +402,7 @@ impl Loop<'_, '_> {
         self.again = false;
         self.untold.clear();
         self.ready.clear();
+        self.elsewhere.clear();
         self.board = Board::default();
         self.stages = Stages::new(self.workflow, &self.settings.targets, false);
     }
@@ -387,10 +415,10 @@ impl Loop<'_, '_> {
         self.board.started(node);
         self.running += 1;
         self.pool.give(move |share| {
-            watch.event(Event::Started { stage, row });
+            let begins = || watch.event(Event::Started { stage, row });
             let say = |progress: Progress| watch.event(Event::Said { stage, row, progress: &progress });
             // What panics is our own fault, but no reason to leave the loop waiting or to end the other tasks.
-            let result = catch_unwind(AssertUnwindSafe(|| order.execute(store, share, &say, stop)));
+            let result = catch_unwind(AssertUnwindSafe(|| order.execute(store, share, &say, stop, &begins)));
             let result = result.unwrap_or_else(|panic| Err(panicked(&*panic)));
             // The loop may be gone only when it panicked; then nobody waits for this answer.
             let _ = answers.send(Answer { node, result });
@@ -403,7 +431,12 @@ impl Loop<'_, '_> {
             self.running -= 1;
         }
         let failure = match answer.result {
-            Ok(finished) => {
+            Ok(task::Outcome::Elsewhere(waiting)) => {
+                self.board.stopped(node);
+                self.elsewhere.put(node, waiting);
+                return;
+            }
+            Ok(task::Outcome::Finished(finished)) => {
                 self.board.took(node, finished.seconds);
                 if let Some(key) = self.board.key_of(node).filter(|_| !finished.shared) {
                     self.ended.insert(key, None);

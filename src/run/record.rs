@@ -71,7 +71,10 @@ impl<'a> Past<'a> {
         let path = workflow.path.display().to_string();
         let mut memos = HashMap::new();
         for number in store.campaigns()?.into_iter().rev().take(LOOK_BACK) {
-            let Some(campaign) = store.campaign(number)?.filter(|campaign| campaign.workflow == path) else { continue };
+            let Some(campaign) = store.campaign(number)?.filter(|campaign| campaign.own && campaign.workflow == path)
+            else {
+                continue;
+            };
             for stage in campaign.stages.iter().filter(|stage| stage.object.is_some()) {
                 let key = stage.memo.as_deref().and_then(crate::artifact::Key::from_hex);
                 if let Some(key) = key {
@@ -109,8 +112,8 @@ impl<'a> Past<'a> {
     /// Mean duration of a task of a stage, seconds, from what was recorded.
     pub fn seconds(&self, stage: &str) -> Option<f64> {
         let old = remembered(self.store, self.memos.get(stage)?)?;
-        let records = old.iter().filter_map(|(_, key)| self.store.find(key).ok()?);
-        let (sum, count) = records.fold((0.0, 0_u32), |(sum, count), record| (sum + record.seconds, count + 1));
+        let seconds = old.iter().filter_map(|(_, key)| self.store.seconds(key).ok()?);
+        let (sum, count) = seconds.fold((0.0, 0_u32), |(sum, count), seconds| (sum + seconds, count + 1));
         (count > 0).then(|| sum / f64::from(count))
     }
 }

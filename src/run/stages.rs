@@ -9,7 +9,7 @@ use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
 use crate::stage::rows::Rows;
-use crate::stage::{Input, Known, Library, StageError, Step};
+use crate::stage::{Input, Known, Library, StageError, Step, vary};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
 use std::collections::HashSet;
@@ -216,14 +216,15 @@ impl Stages {
                 key,
                 stage: &maker.name,
                 content,
+                vary: Box::new(|point, number| vary::replicate(&workflow.context, &maker.name, point, number)),
                 replicate: Box::new(|number| maker.stage.replicate(&workflow.context, number)),
                 sample: Box::new(move |point, number| {
-                    maker.stage.sample(&self.known(workflow, input, library), point, number)
+                    vary::sample(&*maker.stage, &self.known(workflow, input, library), point, number)
                 }),
             }
         };
         let inputs = workflow.stages[index].inputs.iter().map(input).collect();
-        Known { context: &workflow.context, inputs, library }
+        Known { name: &workflow.stages[index].name, context: &workflow.context, inputs, library }
     }
 
     /// Ends the stages that can end now, and keeps their memos when something was or may be run.

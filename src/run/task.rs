@@ -1,12 +1,14 @@
 //! One task, from its text to its stored result: the same for every way of starting it.
+//!
+//! A task that another process computes is handed back, so that this one takes another meanwhile.
 
 use super::board::{Board, NodeId};
 use crate::artifact::{Artifact, ContentHash, Key};
 use crate::exec::Share;
 use crate::stage::{Failure, Job, Progress, StageError, Task, work};
-use crate::store::{Claim, Guard, Store, StoreError, Timing};
+use crate::store::{Claim, Guard, Store, StoreError, Timing, Waiting};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Instant, SystemTime};
 
 /// A task whose inputs are loaded.
@@ -33,6 +35,14 @@ pub(super) struct Finished {
     pub(super) seconds: f64,
 }
 
+/// What became of a task that was started.
+pub(super) enum Outcome {
+    /// Its result is stored.
+    Finished(Finished),
+    /// Another process computes it.
+    Elsewhere(Waiting),
+}
+
 impl Order {
     /// Loads the inputs of an open node, or says which of them is lost.
     pub(super) fn new(board: &mut Board, node: NodeId, store: &Store) -> Result<Self, Box<Lost>> {
@@ -53,24 +63,23 @@ impl Order {
         Ok(Self { node, task, key, text, inputs })
     }
 
-    /// Computes and stores the result, unless another process does: then waits for its result.
+    /// Computes and stores the result, unless another process does; `begins` is called before the work.
     pub(super) fn execute(
         self,
         store: &Store,
         share: &Share,
         say: &(dyn Fn(Progress) + Sync),
         stop: &AtomicBool,
-    ) -> Result<Finished, Failure> {
-        loop {
-            match store.claim(&self.key).map_err(failure)? {
-                Claim::Done(record) => return Ok(Finished { content: record.content, shared: true, seconds: 0.0 }),
-                Claim::Mine(claim) => return self.compute(claim, store, share, say, stop),
-                Claim::Theirs(waiting) => {
-                    say(Progress::note(format!("waits for {}", waiting.holder_now())));
-                    if !waiting.wait(|| stop.load(Ordering::Relaxed)) {
-                        return Err(Failure::Stopped);
-                    }
-                }
+        begins: &dyn Fn(),
+    ) -> Result<Outcome, Failure> {
+        match store.claim(&self.key).map_err(failure)? {
+            Claim::Done(record) => {
+                Ok(Outcome::Finished(Finished { content: record.content, shared: true, seconds: 0.0 }))
+            }
+            Claim::Theirs(waiting) => Ok(Outcome::Elsewhere(waiting)),
+            Claim::Mine(claim) => {
+                begins();
+                self.compute(claim, store, share, say, stop).map(Outcome::Finished)
             }
         }
     }

@@ -1,10 +1,13 @@
 //! What a stage can see when it decides what to do next.
 
 use super::ledger::Kept;
+use super::material::Material;
 use super::rows::Rows;
+use super::vary::Template;
 use super::{StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
-use crate::unit::Dimension;
+use crate::expression::Measure;
+use crate::unit::{Dimension, Unit};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -17,10 +20,32 @@ pub struct Context {
     pub factors: BTreeMap<String, Factor>,
     /// `[response.NAME]` tables.
     pub responses: BTreeMap<String, Response>,
-    /// `[material.NAME]` tables: values by path (`mortar.Ec`).
-    pub materials: BTreeMap<String, BTreeMap<String, Parameter>>,
+    /// `[material.NAME]` tables.
+    pub materials: BTreeMap<String, Material>,
+    /// What the stages say of themselves before anything runs, by name; empty until all are read.
+    pub sketches: BTreeMap<String, Sketch>,
+    /// The tables of stages that factors may set numbers of, by name.
+    pub templates: BTreeMap<String, Template>,
     /// The stages in order, for pictures of the workflow itself; empty until all are read.
     pub outline: Vec<Outline>,
+}
+
+impl Context {
+    /// Whether a path that a factor sets is one of a stage and not of a material.
+    pub fn sets_stage(&self, path: &str) -> bool {
+        path.split_once('.').is_some_and(|(stage, _)| self.sketches.contains_key(stage))
+    }
+}
+
+/// What a stage says of itself before anything runs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sketch {
+    /// Names of the groups of particles in the specimen that it makes, by their number; empty for other kinds.
+    pub groups: Vec<String>,
+    /// The factors that its rows vary; none for a kind that is no design.
+    pub factors: Option<Vec<String>>,
+    /// Whether factors may set its numbers: it makes specimens, or runs tests.
+    pub varies: bool,
 }
 
 /// A stage as the workflow's graph shows it.
@@ -46,16 +71,43 @@ pub struct Parameter {
 /// An experimental factor: the parameter it sets, its unit and symbol, and its levels or range in that unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Factor {
-    /// Path of the parameter that it sets, such as `mortar.Ec`; empty for a column that sets nothing.
-    pub sets: String,
+    /// Paths of what it sets, such as `mortar.Ec`; empty for a column that sets nothing by itself.
+    pub sets: Vec<String>,
     /// Unit of levels and range, `""` for a pure number.
     pub unit: String,
     /// Symbol for tables and figures, such as `\bar\sigma_c`.
     pub symbol: String,
+    /// How its range is divided.
+    pub scale: Scale,
     /// Levels, in `unit`; empty when only a range is given.
     pub levels: Vec<f64>,
     /// Low and high end, in `unit`; from the levels when not given.
     pub range: Option<[f64; 2]>,
+}
+
+/// How a range is divided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scale {
+    /// By equal differences.
+    #[default]
+    Linear,
+    /// By equal ratios.
+    Log,
+}
+
+impl Factor {
+    /// A number in the factor's unit as a quantity; none when the unit cannot be read.
+    pub fn measure(&self, value: f64) -> Option<Measure> {
+        let unit = Unit::parse(&self.unit).ok()?;
+        Some(Measure::of(value * unit.factor, unit.dimension))
+    }
+
+    /// One of its values, as good as any other for what does not depend on it.
+    pub fn sample(&self) -> Option<Measure> {
+        let value = self.levels.first().copied().or(self.range.map(|[low, _]| low))?;
+        self.measure(value)
+    }
 }
 
 /// A response: the unit and symbol it is shown with.
@@ -75,6 +127,8 @@ pub struct Input<'a> {
     pub stage: &'a str,
     /// Hash of its result.
     pub content: ContentHash,
+    /// [`super::vary::replicate`] of that stage: its replicate with the settings of a point, where the point has any.
+    pub vary: Varier<'a>,
     /// [`super::Stage::replicate`] of that stage.
     pub replicate: Box<dyn Fn(u64) -> Option<Task> + 'a>,
     /// [`super::Stage::sample`] of that stage.
@@ -83,6 +137,9 @@ pub struct Input<'a> {
 
 /// Makes the task that tries a point on a replicate.
 pub type Sampler<'a> = Box<dyn Fn(&Point, u64) -> Result<Task, StageError> + 'a>;
+
+/// Makes a replicate with the settings of a point, if it has any.
+pub type Varier<'a> = Box<dyn Fn(&Point, u64) -> Result<Option<Task>, StageError> + 'a>;
 
 /// Values of factors by name, in the factors' units.
 pub type Point = BTreeMap<String, f64>;
@@ -122,6 +179,8 @@ pub trait Library {
 
 /// All that a stage knows when it decides.
 pub struct Known<'a> {
+    /// Name of the stage.
+    pub name: &'a str,
     /// What the workflow shares.
     pub context: &'a Context,
     /// Finished inputs, port by port in the order of [`super::Stage::inputs`].

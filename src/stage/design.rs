@@ -15,7 +15,9 @@ mod tests;
 
 pub use config::Design;
 
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work, data};
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work, data,
+};
 use crate::artifact::{Artifact, ArtifactKind, Table};
 use design::report::power::Question;
 use design::{Factor, Fault, Layout, Method, Order, build, check, report};
@@ -61,6 +63,10 @@ impl Stage for Design {
             }
             Err(complaint) => vec![complaint],
         }
+    }
+
+    fn sketch(&self) -> Sketch {
+        Sketch { factors: Some(self.factors.clone()), ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -47,6 +47,7 @@ pub mod figure;
 pub mod fitted;
 pub mod formula;
 pub mod ledger;
+pub mod material;
 mod notes;
 mod published;
 pub mod range;
@@ -58,9 +59,13 @@ pub mod simulate;
 pub mod specimen;
 pub mod table;
 mod task;
+pub mod vary;
 pub mod verify;
 
-pub use context::{Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler};
+pub use context::{
+    Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Scale, Sketch,
+    Varier,
+};
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};
@@ -92,6 +97,11 @@ pub trait Stage: Settings + Send + Sync {
 
     /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
     fn check(&self, context: &Context) -> Vec<Complaint>;
+
+    /// What other stages know of it before anything runs.
+    fn sketch(&self) -> Sketch {
+        Sketch::default()
+    }
 
     /// What to do next, given all that is known; a pure function.
     ///

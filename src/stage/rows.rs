@@ -8,12 +8,16 @@ mod points;
 pub use points::Rows;
 
 use super::ledger::{Briefs, KeptRuns};
-use super::{Complaint, Context, Failure, Input, Job, Known, Point, Source, Stage, StageError, Step, Task, Work};
+use super::material::{self, Material};
+use super::{
+    Complaint, Context, Failure, Input, Job, Known, Parameter, Point, Source, Stage, StageError, Step, Task, Work, vary,
+};
 use crate::artifact::design::Design;
 use crate::artifact::results::Results;
 use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, Column, Node, Table, Values};
-use crate::unit::{Conversion, Unit};
+use crate::expression::Measure;
+use crate::unit::{Conversion, Dimension, Unit};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -25,33 +29,36 @@ fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a
     Ok(table.columns.iter().filter(|column| context.factors.contains_key(&column.name)).collect())
 }
 
-/// Parameters by path in SI units after a point of the factor space was applied to them.
+/// Values of a material by path after a point of the factor space was applied to it, and its formulas evaluated.
 ///
 /// # Errors
-/// A factor of the point is not known, or sets a parameter that is not there.
-pub fn apply(
-    base: &BTreeMap<String, f64>,
-    point: &Point,
-    context: &Context,
-) -> Result<BTreeMap<String, f64>, StageError> {
-    let mut set = base.clone();
+/// A factor of the point is not known or sets a value that is not there, or a formula needs what is not set.
+pub fn apply(material: &Material, point: &Point, context: &Context) -> Result<material::Values, StageError> {
+    let mut set = material::Values::new();
+    let mut measures: BTreeMap<&str, Measure> = BTreeMap::new();
     for (name, value) in point {
         let factor = context.factors.get(name).ok_or_else(|| StageError::new(format!("`{name}` is not a factor")))?;
-        if factor.sets.is_empty() {
-            continue;
+        let measure = factor.measure(*value);
+        let measure = measure.ok_or_else(|| StageError::new(format!("factor `{name}`: unit `{}`", factor.unit)))?;
+        measures.insert(name, measure);
+        for path in factor.sets.iter().filter(|path| !context.sets_stage(path)) {
+            if !material.takes(path) {
+                let known: Vec<String> = material.paths().collect();
+                let message = format!("factor `{name}` sets `{path}`, which the material does not have");
+                return Err(StageError::new(message).hint(format!("the material has {}", known.join(", "))));
+            }
+            let dimension = measure.dimension.unwrap_or(Dimension::NONE);
+            set.insert(path.clone(), Parameter { value: measure.value, dimension });
         }
-        let unit = Unit::parse(&factor.unit).map_err(|e| StageError::new(format!("factor `{name}`: {e}")))?;
-        let place = set.get_mut(&factor.sets).ok_or_else(|| {
-            let known: Vec<&str> = base.keys().map(String::as_str).collect();
-            StageError::new(format!("factor `{name}` sets `{}`, which the material does not have", factor.sets))
-                .hint(format!("the material has {}", known.join(", ")))
-        })?;
-        *place = value * unit.factor;
     }
-    Ok(set)
+    let (values, faults) = material.resolve(&set, &|name| measures.get(name).copied());
+    match faults.first() {
+        Some(fault) => Err(StageError::new(&fault.why).hint("let the design vary it, or give the value itself")),
+        None => Ok(values),
+    }
 }
 
-/// Everything a run may name at a point: the material's parameters by path (SI) after the point was applied, and the
+/// Everything a run may name at a point: the material's values by path (SI) after the point was applied, and the
 /// factors by name (in their units) that set something.
 ///
 /// # Errors
@@ -63,8 +70,7 @@ pub fn values(
 ) -> Result<BTreeMap<String, f64>, StageError> {
     let mut values = BTreeMap::new();
     if let Some(material) = material.and_then(|name| context.materials.get(name)) {
-        let base = material.iter().map(|(path, parameter)| (path.clone(), parameter.value)).collect();
-        values = apply(&base, point, context)?;
+        values = apply(material, point, context)?.into_iter().map(|(path, found)| (path, found.value)).collect();
     }
     let sets = |name: &str| context.factors.get(name).is_none_or(|factor| !factor.sets.is_empty());
     values.extend(point.iter().filter(|(name, _)| sets(name)).map(|(name, value)| (name.clone(), *value)));
@@ -93,7 +99,7 @@ struct GatherParams {
 /// The design cannot be read, or a row cannot be tried.
 pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError> {
     let Some(design) = known.port("design").next() else {
-        return Ok(Step::Finish(simulator.sample(known, &Point::new(), 1)?));
+        return Ok(Step::Finish(vary::sample(simulator, known, &Point::new(), 1)?));
     };
     let artifact = known.load(design)?;
     let mut task = gather(known, design, &artifact)?;
@@ -107,7 +113,7 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
                 Source::Content(kept.content)
             }
             None => {
-                let run = simulator.sample(known, &rows.point(index), rows.replicate(index))?;
+                let run = vary::sample(simulator, known, &rows.point(index), rows.replicate(index))?;
                 Source::Task(Arc::new(run.row(index)))
             }
         };

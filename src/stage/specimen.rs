@@ -4,7 +4,7 @@
 //! k. What is computed and why: [`dem::genesis`].
 
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
 };
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Artifact, ArtifactKind, Table};
@@ -39,6 +39,9 @@ pub struct Specimen {
     pub radius_ratio: f64,
     /// Density of the discs.
     pub density: Density,
+    /// Group of the discs, as the material names it; a material of one group fits whatever its name.
+    #[serde(default = "discs")]
+    pub group: String,
     /// Largest share of discs with fewer than three contacts.
     #[serde(default)]
     pub floaters: f64,
@@ -50,6 +53,9 @@ pub struct Specimen {
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AggregateConfig {
+    /// Group of the aggregate, as the material names it.
+    #[serde(default = "stones")]
+    pub group: String,
     /// Law of the gradation.
     pub gradation: GradationName,
     /// Share of aggregate; not for `table`.
@@ -101,6 +107,14 @@ pub enum GradationName {
     Fuller,
     /// Sieve curve.
     Table,
+}
+
+fn discs() -> String {
+    "mortar".to_owned()
+}
+
+fn stones() -> String {
+    "aggregate".to_owned()
 }
 
 fn random_angles() -> AngleLaw {
@@ -260,6 +274,15 @@ impl Stage for Specimen {
 
     fn check(&self, _context: &Context) -> Vec<Complaint> {
         self.recipe().err().unwrap_or_default()
+    }
+
+    fn sketch(&self) -> Sketch {
+        let aggregate = self.aggregate.iter().map(|aggregate| aggregate.group.clone());
+        Sketch {
+            groups: std::iter::once(self.group.clone()).chain(aggregate).collect(),
+            varies: true,
+            ..Sketch::default()
+        }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

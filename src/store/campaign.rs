@@ -1,11 +1,19 @@
 //! Records of campaigns: what ran, when, where and by what, for `flow diff` and for a person who reads the file.
 //!
-//! Each campaign leaves one JSON file `runs/N.json`, numbered in the order in which they ended.
+//! Each campaign leaves one JSON file `runs/N.json`, numbered in the order in which they ended, with the user's mark in it.
 
 use super::disk::Disk;
+use super::folder::{Folder, Strange};
+use super::mark::Mark;
+use super::object::is_hex;
 use super::{Origin, StoreError};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::io::ErrorKind;
+
+/// Folder of the records.
+pub(super) const FOLDER: &str = "runs";
+/// The largest record of a run.
+const MOST: u64 = 1 << 28;
 
 /// One run of a workflow.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,6 +35,12 @@ pub struct Campaign {
     pub origin: Origin,
     /// Its stages in the order of the workflow.
     pub stages: Vec<StageRun>,
+    /// The mark of who recorded it, over all else.
+    #[serde(default)]
+    pub mark: String,
+    /// Whether that is this user, and nothing was changed since.
+    #[serde(skip)]
+    pub own: bool,
 }
 
 /// What became of a stage in one run.
@@ -59,39 +73,57 @@ pub struct StageRun {
     pub memo: Option<String>,
 }
 
-fn folder(disk: &Disk) -> PathBuf {
-    disk.root.join("runs")
-}
-
 /// Numbers of the recorded campaigns, in order.
 pub(super) fn numbers(disk: &Disk) -> Result<Vec<u64>, StoreError> {
-    let folder = folder(disk);
-    let entries = match std::fs::read_dir(&folder) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound && disk.root.is_dir() => return Ok(Vec::new()),
-        Err(error) => return Err(disk.fail("list", &folder, error)),
-    };
-    let number = |name: &str| name.strip_suffix(".json")?.parse().ok();
-    let mut numbers: Vec<u64> = entries.flatten().filter_map(|entry| number(entry.file_name().to_str()?)).collect();
+    let Some(folder) = disk.find_folder(FOLDER)? else { return Ok(Vec::new()) };
+    let mut numbers: Vec<u64> = Vec::new();
+    let listed = folder.list(|name, _| numbers.extend(number(name)));
+    listed.map_err(|error| disk.fail("list", &disk.root.join(FOLDER), error))?;
     numbers.sort_unstable();
     Ok(numbers)
 }
 
+fn number(name: &str) -> Option<u64> {
+    name.strip_suffix(".json")?.parse().ok()
+}
+
+/// Whether a file among the records is one that flow wrote.
+pub(super) fn is_ours(folder: &Folder, name: &str) -> bool {
+    number(name).is_some() && super::memo::begins_with(folder, name, b"{\n  \"workflow\": ")
+}
+
 /// Records a campaign under the next free number, which is returned.
-pub(super) fn record(disk: &Disk, campaign: &Campaign) -> Result<u64, StoreError> {
-    let folder = folder(disk);
-    disk.make_dir(&folder)?;
-    let text = serde_json::to_string_pretty(campaign).unwrap_or_else(|error| panic!("BUG: a run record: {error}"));
-    let mut number = numbers(disk)?.last().map_or(1, |last| last + 1);
-    while !disk.write_new(&folder.join(format!("{number}.json")), text.as_bytes(), false)? {
+pub(super) fn record(disk: &Disk, mark: &Mark, campaign: &Campaign) -> Result<u64, StoreError> {
+    let mut number = numbers(disk)?.last().map_or(1, |last| last.saturating_add(1));
+    loop {
+        let campaign = Campaign { mark: marked(mark, number, campaign), ..campaign.clone() };
+        if disk.write_new(FOLDER, &format!("{number}.json"), text(&campaign).as_bytes(), false)? {
+            return Ok(number);
+        }
         number += 1;
     }
-    Ok(number)
+}
+
+fn text(campaign: &Campaign) -> String {
+    serde_json::to_string_pretty(campaign).unwrap_or_else(|error| panic!("BUG: a run record: {error}"))
+}
+
+/// The mark over a campaign with its number.
+fn marked(mark: &Mark, number: u64, campaign: &Campaign) -> String {
+    let bare = Campaign { mark: String::new(), ..campaign.clone() };
+    mark.note(&number.to_le_bytes(), text(&bare).as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The campaign with this number; nothing when there is none or its file is not readable.
-pub(super) fn read(disk: &Disk, number: u64) -> Result<Option<Campaign>, StoreError> {
-    let bytes = disk.read(&folder(disk).join(format!("{number}.json")))?;
-    let campaign = bytes.and_then(|bytes| serde_json::from_slice::<Campaign>(&bytes).ok());
-    Ok(campaign.map(|campaign| Campaign { number, ..campaign }))
+pub(super) fn read(disk: &Disk, mark: &Mark, number: u64) -> Result<Option<Campaign>, StoreError> {
+    let name = format!("{number}.json");
+    let bytes = match disk.folder(FOLDER).and_then(|folder| folder.read(&name, MOST)) {
+        Ok(bytes) => bytes,
+        Err(error) if Strange::is(&error) => return Ok(None),
+        Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => return Ok(None),
+        Err(error) => return Err(disk.fail("read", &disk.path(FOLDER, &name), error)),
+    };
+    let Ok(campaign) = serde_json::from_slice::<Campaign>(&bytes) else { return Ok(None) };
+    let own = is_hex(&campaign.mark) && campaign.mark == marked(mark, number, &campaign);
+    Ok(Some(Campaign { number, own, ..campaign }))
 }

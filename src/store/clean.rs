@@ -1,18 +1,17 @@
-//! Keeping the store in order: what may go, what is damaged, what it takes.
+//! Keeping the store in order: what may go, what it takes.
+//!
+//! Only what flow has written is touched: a plain file of a name that flow gives, in a folder that flow makes, that begins
+//! as flow's files do. Folders are reached without links, so nothing outside of the store is reached at all.
 //!
 //! Nothing is removed from a store that another process uses: every process shares a lock while it has the store open,
 //! and gc wants it alone. Where the file system has no locks, objects younger than a day are kept.
 
-use super::disk::{Disk, TEMPORARY};
-use super::object;
+use super::disk::{Disk, is_temporary};
+use super::folder::{Entry, Folder};
 use super::presence::{self, short_of_name};
-use super::{Damage, Index, Record, Store, StoreError, Timing, hdf5, journal, lock, locked, memo};
-use crate::artifact::{Artifact, ContentHash, Key};
-use rayon::prelude::*;
+use super::{Store, StoreError, journal, lock, locked, memo, object, root, verify};
+use crate::artifact::Key;
 use std::collections::HashSet;
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
 
 /// Files of one sort: how many, and their size together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +23,7 @@ pub struct Amount {
 }
 
 impl Amount {
-    fn add(&mut self, bytes: u64) {
+    pub(super) fn add(&mut self, bytes: u64) {
         self.files += 1;
         self.bytes += bytes;
     }
@@ -60,45 +59,55 @@ pub struct Swept {
     pub segments: u64,
 }
 
-/// What verify found.
-#[derive(Clone, Debug, Default)]
-pub struct Verdict {
-    /// Results that are what their records say.
-    pub sound: Amount,
-    /// Objects that were not, and were set aside.
-    pub damages: Vec<Damage>,
-    /// Records whose object is not there.
-    pub missing: Vec<Key>,
-    /// Sound objects without a record, which have been recorded again.
-    pub adopted: Vec<Key>,
-    /// Records of the journal that could not be read.
-    pub lost_records: usize,
-    /// Tasks that gave two different results: they depend on something that is not in their key.
-    pub contradictions: Vec<(Key, ContentHash, ContentHash)>,
+/// Something that lies in the store.
+pub(super) struct Place<'a> {
+    /// Its folder, open.
+    pub(super) at: &'a Folder,
+    /// The folder below the root.
+    pub(super) folder: &'a str,
+    pub(super) name: &'a str,
+    pub(super) entry: Entry,
 }
 
+impl Place<'_> {
+    /// Whether flow has written it.
+    pub(super) fn is_ours(&self) -> bool {
+        verify::is_ours(self)
+    }
+
+    fn bytes(&self) -> u64 {
+        match self.entry {
+            Entry::File(bytes) => bytes,
+            Entry::Folder | Entry::Strange => 0,
+        }
+    }
+}
+
+/// Objects that were written this many seconds ago may belong to a run that goes on, where no lock tells.
+const GRACE: i64 = 86_400;
+
 impl Store {
-    /// What the store takes on the disk.
+    /// What the store takes on the disk, of what flow has written.
     ///
     /// # Errors
     /// The store cannot be listed.
     pub fn usage(&self) -> Result<Usage, StoreError> {
         let mut usage = Usage::default();
-        walk(&self.disk, "objects", &mut |path, bytes| match is_temporary(path) {
-            true => usage.temporary.add(bytes),
-            false => usage.objects.add(bytes),
-        });
-        for (folder, amount) in [
-            ("aside", &mut usage.aside),
-            ("journal", &mut usage.journal),
-            ("memo", &mut usage.memos),
-            ("runs", &mut usage.runs),
-        ] {
-            walk(&self.disk, folder, &mut |path, bytes| match is_temporary(path) {
-                true => usage.temporary.add(bytes),
-                false => amount.add(bytes),
-            });
-        }
+        walk(&self.disk, &mut |place| {
+            if !place.is_ours() {
+                return;
+            }
+            let amount = match place.folder.split('/').next().unwrap_or_default() {
+                _ if is_temporary(place.name) => &mut usage.temporary,
+                "objects" => &mut usage.objects,
+                object::ASIDE => &mut usage.aside,
+                journal::FOLDER => &mut usage.journal,
+                memo::FOLDER => &mut usage.memos,
+                super::campaign::FOLDER => &mut usage.runs,
+                _ => return,
+            };
+            amount.add(place.bytes());
+        })?;
         Ok(usage)
     }
 
@@ -109,54 +118,55 @@ impl Store {
     /// [`StoreError::InUse`] when another process has the store open; the store cannot be read or written.
     pub fn sweep(&self, reachable: &HashSet<Key>, really: bool) -> Result<Swept, StoreError> {
         if !really {
-            return self.sweep_alone(reachable, false, Duration::ZERO);
+            return self.sweep_alone(reachable, false, false);
         }
         let Some(lock::Held(lock)) = &self.in_use else {
-            return self.sweep_alone(reachable, true, Duration::from_secs(86_400));
+            return self.sweep_alone(reachable, true, true);
         };
         if lock.try_lock().is_err() {
             let _ = lock.lock_shared();
             return Err(StoreError::InUse { root: self.disk.root.clone() });
         }
-        let swept = self.sweep_alone(reachable, true, Duration::ZERO);
+        let swept = self.sweep_alone(reachable, true, false);
         let _ = lock.lock_shared();
         swept
     }
 
-    fn sweep_alone(&self, reachable: &HashSet<Key>, really: bool, grace: Duration) -> Result<Swept, StoreError> {
+    fn sweep_alone(&self, reachable: &HashSet<Key>, really: bool, grace: bool) -> Result<Swept, StoreError> {
         let mut swept = Swept::default();
-        let mut doomed = Vec::new();
+        let mut doomed: Vec<(String, String)> = Vec::new();
         // Names hold the first bytes of a key: an object goes only if no reachable key begins like that.
         let starts: HashSet<u64> = reachable.iter().map(|key| presence::first_word(&key.0)).collect();
-        object::list(&self.disk, |folder, name| {
-            let path = folder.join(name);
-            let Ok(metadata) = fs::metadata(&path) else { return };
-            let amount = match short_of_name(name) {
-                Some([_, start]) if starts.contains(&start) || is_young(&metadata, grace) => {
-                    return swept.kept.add(metadata.len());
+        // By the clock of the file system, on which the objects have their times.
+        let now = if grace { self.disk.draft("", 0o444)?.file_time() } else { None };
+        let is_young = |place: &Place<'_>| {
+            let age = now.zip(place.at.modified(place.name)).map(|(now, written)| now.saturating_sub(written));
+            grace && age.is_none_or(|age| age < GRACE)
+        };
+        walk(&self.disk, &mut |place| {
+            if !place.is_ours() {
+                return;
+            }
+            let amount = match place.folder.split('/').next().unwrap_or_default() {
+                _ if is_temporary(place.name) && !is_young(&place) => &mut swept.rubbish,
+                "objects" => match short_of_name(place.name) {
+                    Some([_, start]) if !starts.contains(&start) && !is_young(&place) => &mut swept.removed,
+                    _ => return swept.kept.add(place.bytes()),
+                },
+                object::ASIDE | lock::FOLDER => &mut swept.rubbish,
+                memo::FOLDER if !self.memo_is_reachable(&place, reachable) => &mut swept.removed,
+                journal::FOLDER => {
+                    swept.segments += 1;
+                    return;
                 }
-                Some(_) => &mut swept.removed,
-                None => &mut swept.rubbish,
+                _ => return,
             };
-            amount.add(metadata.len());
-            doomed.push(path);
+            amount.add(place.bytes());
+            doomed.push((place.folder.to_owned(), place.name.to_owned()));
         })?;
-        for folder in ["aside", "memo", "journal", "runs", "locks"] {
-            let all = folder == "aside" || folder == "locks";
-            walk(&self.disk, folder, &mut |path, bytes| {
-                if all || is_temporary(path) {
-                    swept.rubbish.add(bytes);
-                    doomed.push(path.to_owned());
-                } else if folder == "memo" && !memo_is_reachable(path, reachable) {
-                    swept.removed.add(bytes);
-                    doomed.push(path.to_owned());
-                }
-            });
-        }
-        walk(&self.disk, "journal", &mut |path, _| swept.segments += u64::from(!is_temporary(path)));
         if really {
-            for path in doomed {
-                self.disk.remove(&path)?;
+            for (folder, name) in doomed {
+                self.disk.remove(&folder, &name)?;
             }
             self.compact()?;
         }
@@ -166,121 +176,58 @@ impl Store {
     /// Merges all segments into one per origin, without the records whose objects are gone. The new segments are
     /// whole before the old ones go, so a kill in between costs nothing: a record that stands twice counts once.
     fn compact(&self) -> Result<(), StoreError> {
-        let mut segment = locked(&self.segment);
-        let mut index = Index::default();
-        index.refresh(&self.disk, None)?;
+        let mut segments = locked(&self.segments);
+        let mut index = self.new_index();
+        index.refresh(&self.disk, &Default::default())?;
         let old = index.segments();
-        let mut records = index.records();
-        records.retain(|record| object::path(&self.disk, &record.object()).exists());
-        records.sort_by(|a, b| (&a.origin, a.key).cmp(&(&b.origin, b.key)));
+        let mut records = index.marked_records();
+        records.retain(|record| object::is_there(&self.disk, &record.object()));
         for same in records.chunk_by(|a, b| a.origin == b.origin) {
             journal::write_segment(&self.disk, same)?;
         }
-        *segment = Default::default();
+        *segments = Default::default();
         for name in old {
-            self.disk.remove(&journal::folder(&self.disk).join(name))?;
+            self.disk.remove(journal::FOLDER, &name)?;
         }
-        drop(segment);
         *locked(&self.presence) = Default::default();
-        let mut index = Index::default();
-        index.refresh(&self.disk, None)?;
+        let mut index = self.new_index();
+        index.refresh(&self.disk, &segments)?;
+        drop(segments);
         *locked(self.index()?) = index;
         Ok(())
     }
 
-    /// Reads every object and compares it with its record, its name and its task. Damaged ones are set aside; sound
-    /// ones that no record knows (their journal was lost) are recorded again.
-    ///
-    /// # Errors
-    /// The store cannot be read, or a newer version wrote a part of it.
-    pub fn verify(&self) -> Result<Verdict, StoreError> {
-        self.refresh()?;
-        let mut verdict = Verdict::default();
-        let records = self.records()?;
-        {
-            let faults = locked(self.index()?).faults();
-            verdict.lost_records = faults.damaged;
-            verdict.contradictions = faults.contradictions;
+    /// Whether all that a memo rests on stays; another user's memo stays, because only that user can read it.
+    fn memo_is_reachable(&self, place: &Place<'_>, reachable: &HashSet<Key>) -> bool {
+        if !place.name.ends_with(&format!("-{}", self.mark.name())) {
+            return place.name.contains('-');
         }
-        let checked: Vec<_> = records.par_iter().map(|record| (record, self.verify_one(record))).collect();
-        for (record, result) in checked {
-            match result {
-                Ok(()) => verdict.sound.add(record.bytes()),
-                Err(StoreError::Missing { .. }) => verdict.missing.push(record.key),
-                Err(StoreError::Damaged { fault }) => verdict.damages.push(fault),
-                Err(other) => return Err(other),
-            }
-        }
-        self.adopt(&records, &mut verdict)?;
-        Ok(verdict)
-    }
-
-    fn verify_one(&self, record: &Record) -> Result<(), StoreError> {
-        let (artifact, text) = self.read(record)?;
-        let why = match () {
-            () if artifact.content_hash() != record.content => "its values are not those of its name",
-            () if Key::of(&text) != record.key => "it belongs to another task",
-            () => return Ok(()),
-        };
-        Err(self.set_aside(&record.object(), why))
-    }
-
-    /// Records the objects again that no record knows.
-    fn adopt(&self, records: &[Record], verdict: &mut Verdict) -> Result<(), StoreError> {
-        let known: HashSet<PathBuf> = records.iter().map(|record| self.path(&record.object())).collect();
-        let mut orphans = Vec::new();
-        object::list(&self.disk, |folder, name| {
-            let path = folder.join(name);
-            if !name.starts_with(TEMPORARY) && !known.contains(&path) {
-                orphans.push(path);
-            }
-        })?;
-        for path in orphans {
-            let Some(image) = self.disk.read(&path)? else { continue };
-            let started = fs::metadata(&path).and_then(|data| data.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
-            match hdf5::decode(image) {
-                Ok((artifact, text)) if self.path(&id_of(&artifact, &text)) == path => {
-                    // Putting it again finds the file there and records it.
-                    let (record, _) = self.put(&text, artifact, &Timing { started, seconds: 0.0 })?;
-                    verdict.adopted.push(record.key);
-                    verdict.sound.add(record.bytes());
-                }
-                Err(why @ hdf5::Hdf5Error::Newer { .. }) => return Err(StoreError::Newer { path, why }),
-                _ => verdict.damages.push(object::set_aside(&self.disk, &path, "no record knows it, nor is it sound")?),
-            }
-        }
-        Ok(())
+        let memo = memo::key_of(place.name).zip(place.at.read(place.name, memo::MOST).ok());
+        let memo = memo.and_then(|(key, bytes)| memo::unpack(&self.mark, &key, &bytes));
+        memo.is_some_and(|memo| memo.objects.iter().all(|object| reachable.contains(&object.key)))
     }
 }
 
-fn id_of(artifact: &Artifact, text: &str) -> object::ObjectId {
-    object::ObjectId { content: artifact.content_hash(), key: Key::of(text) }
+/// Calls `visit` with all that lies in the folders that flow makes; other folders are not entered.
+pub(super) fn walk(disk: &Disk, visit: &mut impl FnMut(Place<'_>)) -> Result<(), StoreError> {
+    let fail = |error| disk.fail("list", &disk.root, error);
+    enter(&disk.folder("").map_err(fail)?, "", visit).map_err(fail)
 }
 
-fn memo_is_reachable(path: &Path, reachable: &HashSet<Key>) -> bool {
-    let memo = fs::read(path).ok().and_then(|bytes| memo::unpack(&bytes));
-    memo.is_some_and(|memo| memo.objects.iter().all(|object| reachable.contains(&object.key)))
-}
-
-fn is_temporary(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(TEMPORARY))
-}
-
-fn is_young(metadata: &fs::Metadata, grace: Duration) -> bool {
-    let age = metadata.modified().ok().and_then(|time| time.elapsed().ok()).unwrap_or_default();
-    age < grace
-}
-
-/// Calls `visit` with every file below a folder of the store and its size; a folder that is not there has none.
-fn walk(disk: &Disk, folder: &str, visit: &mut impl FnMut(&Path, u64)) {
-    let mut folders = vec![disk.root.join(folder)];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-            match entry.metadata() {
-                Ok(data) if data.is_dir() => folders.push(entry.path()),
-                Ok(data) => visit(&entry.path(), data.len()),
-                Err(_) => {}
+fn enter(at: &Folder, folder: &str, visit: &mut impl FnMut(Place<'_>)) -> std::io::Result<()> {
+    let mut names = Vec::new();
+    at.list(|name, _| names.push(name.to_owned()))?;
+    names.sort_unstable();
+    for name in names {
+        let Ok(entry) = at.entry(&name) else { continue };
+        if entry == Entry::Folder && root::is_folder(folder, &name) {
+            let inside = if folder.is_empty() { name } else { format!("{folder}/{name}") };
+            if let Ok(inner) = at.inner(inside.rsplit('/').next().unwrap_or_default()) {
+                enter(&inner, &inside, visit)?;
             }
+        } else {
+            visit(Place { at, folder, name: &name, entry });
         }
     }
+    Ok(())
 }

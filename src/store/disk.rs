@@ -1,9 +1,12 @@
 //! The few file operations of the store, with its rules: unique temporary name, check, rename; errors with their path.
+//! Folders are named as they stand below the root: `objects/ab`, `""` for the root itself.
 
 use super::StoreError;
-use std::fs::{self, File};
-use std::io::{ErrorKind, Read, Seek, Write};
+use super::folder::{self, Folder};
+use std::fs::File;
+use std::io::{ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Folder of a store on disk.
 #[derive(Clone, Debug)]
@@ -11,128 +14,185 @@ pub(super) struct Disk {
     pub(super) root: PathBuf,
 }
 
+/// A new file that has no name of its own yet; dropped, it goes.
+#[derive(Debug)]
+pub(super) struct Draft {
+    pub(super) folder: Folder,
+    pub(super) name: String,
+    pub(super) file: File,
+    named: bool,
+}
+
+impl Draft {
+    /// Gives it a name in its folder that nothing has; an error of kind `AlreadyExists` when something has.
+    pub(super) fn persist_new(&mut self, name: &str) -> std::io::Result<()> {
+        self.folder.rename_new(&self.name, &self.folder, name)?;
+        self.named = true;
+        Ok(())
+    }
+
+    /// Its file, once it has a name.
+    pub(super) fn into_file(self) -> std::io::Result<File> {
+        self.file.try_clone()
+    }
+
+    /// When it was made, by the clock of the file system, seconds.
+    pub(super) fn file_time(&self) -> Option<i64> {
+        rustix::fs::fstat(&self.file).ok().map(|stat| stat.st_ctime)
+    }
+
+    fn persist(mut self, name: &str) -> std::io::Result<()> {
+        self.folder.rename(&self.name, &self.folder, name)?;
+        self.named = true;
+        Ok(())
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        if !self.named {
+            let _ = self.folder.remove(&self.name);
+        }
+    }
+}
+
 impl Disk {
+    /// The path of what a folder of the store holds under a name.
+    pub(super) fn path(&self, folder: &str, name: &str) -> PathBuf {
+        self.root.join(folder).join(name)
+    }
+
     /// An error of the operating system, sorted by its remedy.
     pub(super) fn fail(&self, doing: &'static str, path: &Path, source: std::io::Error) -> StoreError {
         StoreError::io(doing, path, &self.root, source)
     }
 
-    /// Makes a folder and those above it inside the store; a store that has vanished is not made anew.
-    pub(super) fn make_dir(&self, path: &Path) -> Result<(), StoreError> {
-        match (fs::create_dir(path), path.parent()) {
-            (Ok(()), _) => Ok(()),
-            (Err(error), _) if error.kind() == ErrorKind::AlreadyExists => Ok(()),
-            (Err(error), Some(parent)) if error.kind() == ErrorKind::NotFound && parent != self.root => {
-                self.make_dir(parent)?;
-                fs::create_dir(path).or_else(|error| match error.kind() {
-                    ErrorKind::AlreadyExists => Ok(()),
-                    _ => Err(self.fail("make the folder", path, error)),
-                })
-            }
-            (Err(error), _) => Err(self.fail("make the folder", path, error)),
-        }
+    /// A folder below the root, reached without links.
+    pub(super) fn folder(&self, inside: &str) -> std::io::Result<Folder> {
+        let root = Folder::at(&self.root)?;
+        inside.split('/').filter(|part| !part.is_empty()).try_fold(root, |folder, part| folder.inner(part))
     }
 
-    /// The bytes of a file, or nothing when there is no such file.
-    pub(super) fn read(&self, path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
-        match fs::read(path) {
-            Ok(bytes) => Ok(Some(bytes)),
+    /// The same, or nothing when there is none.
+    pub(super) fn find_folder(&self, inside: &str) -> Result<Option<Folder>, StoreError> {
+        match self.folder(inside) {
+            Ok(folder) => Ok(Some(folder)),
             Err(error) if error.kind() == ErrorKind::NotFound && self.root.is_dir() => Ok(None),
-            Err(error) => Err(self.fail("read", path, error)),
+            Err(error) => Err(self.fail("open the folder", &self.root.join(inside), error)),
         }
     }
 
-    /// Writes a new file under a temporary name beside `path`, reads it back, and renames it. Returns false, and
-    /// leaves everything as it is, when `path` exists already.
-    pub(super) fn write_new(&self, path: &Path, bytes: &[u8], durable: bool) -> Result<bool, StoreError> {
-        let temporary = self.write_temporary(path, bytes, durable)?;
-        match temporary.persist_noclobber(path) {
-            Ok(()) => {}
-            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => return Ok(false),
-            Err(error) => return Err(self.fail("rename to", path, error.error)),
+    /// The same, made when there is none; a store that has vanished is not made anew.
+    pub(super) fn make_folder(&self, inside: &str) -> Result<Folder, StoreError> {
+        match self.folder(inside) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            other => return other.map_err(|error| self.fail("open the folder", &self.root.join(inside), error)),
         }
-        if durable && let Some(parent) = path.parent() {
-            self.sync_dir(parent)?;
+        let root = Folder::at(&self.root).map_err(|error| self.fail("make the folder", &self.root, error))?;
+        let inner = |folder: Folder, part| {
+            folder.make(part)?;
+            folder.inner(part)
+        };
+        let made = inside.split('/').filter(|part| !part.is_empty()).try_fold(root, inner);
+        made.map_err(|error| self.fail("make the folder", &self.root.join(inside), error))
+    }
+
+    /// Writes a new file under a temporary name, reads it back, and renames it. Returns false, and leaves everything as
+    /// it is, when the name is taken already.
+    pub(super) fn write_new(&self, folder: &str, name: &str, bytes: &[u8], durable: bool) -> Result<bool, StoreError> {
+        let path = self.path(folder, name);
+        match self.written(folder, name, bytes, durable)?.persist_new(name) {
+            Ok(()) => {}
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => return Ok(false),
+            Err(error) => return Err(self.fail("rename to", &path, error)),
+        }
+        if durable {
+            self.sync_folder(folder)?;
         }
         Ok(true)
     }
 
-    /// As [`Disk::write_new`], but into a file that is open and has the name `draft`; `path` becomes its second name.
+    /// As [`Disk::write_new`], but into a file that is open and has the name `draft`; the new name becomes its second.
+    /// Nothing when that file has lost its name, or cannot get a second one: then it is to be written anew.
     pub(super) fn link_new(
         &self,
-        draft: &Path,
-        file: &mut File,
-        path: &Path,
+        draft: (&Folder, &str, &mut File),
+        (folder, name): (&str, &str),
         bytes: &[u8],
         durable: bool,
-    ) -> Result<bool, StoreError> {
+    ) -> Result<Option<bool>, StoreError> {
+        let (at, draft, file) = draft;
+        let path = self.path(folder, name);
         // What stands there is shorter than any image as a rule, and cutting a file costs more than asking for its size.
         let size = bytes.len() as u64;
         let longer = file.metadata().is_ok_and(|data| data.len() > size);
         let cut = if longer { file.set_len(0) } else { Ok(()) };
-        let written = cut.and_then(|()| file.rewind()).and_then(|()| file.write_all(bytes));
+        let written = cut.and_then(|()| file.rewind()).and_then(|()| folder::write(file, bytes));
         written
-            .and_then(|()| if durable { file.sync_all() } else { Ok(()) })
-            .map_err(|e| self.fail("write", path, e))?;
-        self.read_back(draft, path, bytes)?;
-        let mut linked = fs::hard_link(draft, path);
-        if linked.as_ref().is_err_and(|error| error.kind() == ErrorKind::NotFound) {
-            self.make_dir(path.parent().unwrap_or(&self.root))?;
-            linked = fs::hard_link(draft, path);
+            .and_then(|()| if durable { folder::sync(file) } else { Ok(()) })
+            .map_err(|e| self.fail("write", &path, e))?;
+        if !at.names(draft, file) {
+            return Ok(None);
         }
-        match linked {
+        self.read_back(at, draft, &path, bytes)?;
+        let to = self.make_folder(folder)?;
+        match at.link(draft, &to, name) {
             Ok(()) => {}
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => return Ok(false),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => return Ok(Some(false)),
             // A file system without links.
-            Err(_) => return self.write_new(path, bytes, durable),
+            Err(_) => return Ok(None),
+        }
+        // Between the look and the link the name may have come to stand for another file.
+        if !to.names(name, file) {
+            to.remove(name).map_err(|error| self.fail("remove", &path, error))?;
+            return Ok(None);
         }
         if let Ok(mut permissions) = file.metadata().map(|data| data.permissions()) {
             permissions.set_readonly(true);
             let _ = file.set_permissions(permissions);
         }
-        if durable && let Some(parent) = path.parent() {
-            self.sync_dir(parent)?;
+        if durable {
+            to.sync().map_err(|error| self.fail("sync", &path, error))?;
         }
-        Ok(true)
+        Ok(Some(true))
     }
 
     /// As [`Disk::write_new`], but puts the file in place of an older one: for notes that can be made anew, not objects.
-    pub(super) fn replace(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
-        let temporary = self.write_temporary(path, bytes, false)?;
-        temporary.persist(path).map_err(|error| self.fail("rename to", path, error.error))
+    pub(super) fn replace(&self, folder: &str, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
+        let written = self.written(folder, name, bytes, false)?.persist(name);
+        written.map_err(|error| self.fail("rename to", &self.path(folder, name), error))
     }
 
     /// A new file under a temporary name; its readers are those whom the user's umask admits.
-    pub(super) fn temporary_in(&self, folder: &Path, mode: u32) -> Result<tempfile::NamedTempFile, StoreError> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(TEMPORARY);
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
-        let file = match builder.tempfile_in(folder) {
-            Err(error) if error.kind() == ErrorKind::NotFound => {
-                self.make_dir(folder)?;
-                builder.tempfile_in(folder)
+    pub(super) fn draft(&self, folder: &str, mode: u32) -> Result<Draft, StoreError> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        let at = self.make_folder(folder)?;
+        for _ in 0..100 {
+            let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+            let name = format!("{TEMPORARY}{:08x}{number:08x}", std::process::id() ^ seed());
+            match at.create(&name, mode) {
+                Ok(file) => return Ok(Draft { folder: at, name, file, named: false }),
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(self.fail("create a file in", &self.root.join(folder), error)),
             }
-            other => other,
-        };
-        file.map_err(|error| self.fail("create a file in", folder, error))
+        }
+        Err(self.fail("create a file in", &self.root.join(folder), ErrorKind::AlreadyExists.into()))
     }
 
-    fn write_temporary(&self, path: &Path, bytes: &[u8], durable: bool) -> Result<tempfile::TempPath, StoreError> {
-        let mut file = self.temporary_in(path.parent().unwrap_or(&self.root), 0o444)?;
-        file.write_all(bytes).map_err(|error| self.fail("write", path, error))?;
-        if durable {
-            file.as_file().sync_all().map_err(|error| self.fail("write", path, error))?;
-        }
-        let temporary = file.into_temp_path();
-        // The file is closed: what a network file system refuses only then is noticed here, before it has a name.
-        self.read_back(&temporary, path, bytes)?;
-        Ok(temporary)
+    fn written(&self, folder: &str, name: &str, bytes: &[u8], durable: bool) -> Result<Draft, StoreError> {
+        let path = self.path(folder, name);
+        let draft = self.draft(folder, 0o444)?;
+        let written = folder::write(&draft.file, bytes);
+        written
+            .and_then(|()| if durable { folder::sync(&draft.file) } else { Ok(()) })
+            .map_err(|error| self.fail("write", &path, error))?;
+        self.read_back(&draft.folder, &draft.name, &path, bytes)?;
+        Ok(draft)
     }
 
     /// Reads a file that was just written, `path` to be, and compares.
-    fn read_back(&self, written: &Path, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
-        let same = File::open(written).and_then(|file| holds(file, bytes));
+    fn read_back(&self, folder: &Folder, written: &str, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+        let same = folder.open(written, false).and_then(|file| holds(file, bytes));
         match same.map_err(|error| self.fail("read back", path, error))? {
             true => Ok(()),
             false => Err(self.fail("write", path, ErrorKind::StorageFull.into())),
@@ -140,17 +200,24 @@ impl Disk {
     }
 
     /// Removes a file, if it is there.
-    pub(super) fn remove(&self, path: &Path) -> Result<(), StoreError> {
-        match fs::remove_file(path) {
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(self.fail("remove", path, error)),
-            _ => Ok(()),
-        }
+    pub(super) fn remove(&self, folder: &str, name: &str) -> Result<(), StoreError> {
+        let Some(found) = self.find_folder(folder)? else { return Ok(()) };
+        found.remove(name).map_err(|error| self.fail("remove", &self.path(folder, name), error))
     }
 
     /// Makes the names in a folder survive a power cut.
-    pub(super) fn sync_dir(&self, path: &Path) -> Result<(), StoreError> {
-        File::open(path).and_then(|dir| dir.sync_all()).map_err(|error| self.fail("sync", path, error))
+    pub(super) fn sync_folder(&self, folder: &str) -> Result<(), StoreError> {
+        let synced = self.folder(folder).and_then(|found| found.sync());
+        synced.map_err(|error| self.fail("sync", &self.root.join(folder), error))
     }
+}
+
+/// Differs between processes with equal numbers on two machines.
+fn seed() -> u32 {
+    use std::hash::{BuildHasher, RandomState};
+    use std::sync::OnceLock;
+    static SEED: OnceLock<u32> = OnceLock::new();
+    *SEED.get_or_init(|| RandomState::new().hash_one(0) as u32)
 }
 
 /// Whether a file holds these bytes and no more.
@@ -170,4 +237,9 @@ fn holds(mut file: File, mut bytes: &[u8]) -> std::io::Result<bool> {
 }
 
 /// How temporary names begin; what a killed process leaves behind is removed by gc.
-pub(super) const TEMPORARY: &str = ".writing-";
+const TEMPORARY: &str = ".flow-writing-";
+
+/// Whether a name is one that [`Disk::draft`] gives.
+pub(super) fn is_temporary(name: &str) -> bool {
+    name.strip_prefix(TEMPORARY).is_some_and(|rest| rest.len() == 16 && rest.bytes().all(|b| b.is_ascii_hexdigit()))
+}

@@ -1,5 +1,6 @@
 //! What can go wrong with a store, each fault with its path and its remedy.
 
+use super::folder::Strange;
 use super::hdf5::Hdf5Error;
 use crate::artifact::ContentHash;
 use std::io::{self, ErrorKind};
@@ -60,6 +61,16 @@ pub enum StoreError {
         /// The store.
         root: PathBuf,
     },
+    /// Something in the store that flow has not made: a link, a pipe, a device, a file larger than any of its own.
+    #[error("could not {doing} {}: {why}; move it out of the store and run again", path.display())]
+    Strange {
+        /// What was being done.
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        why: String,
+    },
     /// Any other fault of the operating system.
     #[error("could not {doing} {}: {source}", path.display())]
     Io {
@@ -114,6 +125,9 @@ impl StoreError {
     /// Sorts an error of the operating system by its remedy; `root` is the store's folder.
     pub(super) fn io(doing: &'static str, path: &Path, root: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
+        if Strange::is(&source) {
+            return Self::Strange { doing, path, why: source.to_string() };
+        }
         match source.kind() {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => Self::Full { doing, path },
             ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { doing, path },

@@ -26,7 +26,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
-pub(super) use read::{decode, task_text};
+pub(super) use read::decode;
 pub(super) use write::encode;
 
 /// Version of the mapping that [`encode`] writes.

@@ -9,15 +9,22 @@
 //! costs one new file and not two. (ext4 does not hand out an inode again that was freed within the last seconds, and
 //! searches past all of these for each new file, so ten thousand lock files that come and go cost seconds.)
 //!
-//! Locks only save work: without them (some network file systems have none) two runs may compute the same task, and
-//! the store keeps one of the two equal results.
+//! Locks only save work. Without them (some network file systems have none, others have them for each node alone) two
+//! runs may compute the same task, and each may find that the other took its file for one left behind and removed it:
+//! it then writes its result anew, and the store holds one of the two equal results.
 
 use super::StoreError;
 use super::disk::Disk;
-use std::fs::{self, File, OpenOptions, TryLockError};
+use super::folder::{Folder, Strange};
+use super::object::is_hex;
+use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
-use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// Folder of the claims.
+pub(super) const FOLDER: &str = "locks";
+/// The file that every process with an open store shares a lock of.
+pub(super) const IN_USE: &str = "in-use.lock";
 
 /// The process that computes a task.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,22 +57,36 @@ impl Drop for Held {
 
 /// The right to compute a task; dropped, it is free again.
 #[derive(Debug)]
-pub struct Guard {
-    pub(super) path: PathBuf,
-    pub(super) held: Held,
+pub struct Guard(Option<Claimed>);
+
+#[derive(Debug)]
+struct Claimed {
+    folder: Folder,
+    name: String,
+    held: Held,
 }
 
-impl Drop for Guard {
+impl Guard {
+    /// The claim's file, to write the result into: its folder, its name, the file. None where there is no such file.
+    pub(super) fn draft(&mut self) -> Option<(&Folder, &str, &mut File)> {
+        let Claimed { folder, name, held } = self.0.as_mut()?;
+        Some((folder, name, &mut held.0))
+    }
+}
+
+impl Drop for Claimed {
     fn drop(&mut self) {
-        // While the lock is still held, so that nobody takes a file that is about to vanish.
-        let _ = fs::remove_file(&self.path);
+        // While the lock is still held, so that nobody takes a file that is about to vanish. Where locks do not reach
+        // all nodes, another one may have taken the name meanwhile, and its file stays.
+        if self.folder.names(&self.name, &self.held.0) {
+            let _ = self.folder.remove(&self.name);
+        }
     }
 }
 
 /// A task that another process computes.
 #[derive(Debug)]
 pub struct Waiting {
-    path: PathBuf,
     file: File,
     /// Who computes it.
     pub holder: Holder,
@@ -95,11 +116,6 @@ impl Waiting {
         }
         true
     }
-
-    /// Who computes it now, read again.
-    pub fn holder_now(&self) -> Holder {
-        File::open(&self.path).map_or(self.holder.clone(), |mut file| read_holder(&mut file))
-    }
 }
 
 pub(super) enum Taken {
@@ -107,78 +123,74 @@ pub(super) enum Taken {
     Theirs(Waiting),
 }
 
-/// Takes the lock called `name`, or says who has it.
-pub(super) fn take(disk: &Disk, name: &str, machine: &str) -> Result<Taken, StoreError> {
-    let folder = disk.root.join("locks");
-    let path = folder.join(format!("{name}.lock"));
+/// Takes the lock of the task `key`, or says who has it.
+pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, StoreError> {
+    let name = format!("{key}.lock");
+    let path = disk.path(FOLDER, &name);
+    let folder = disk.make_folder(FOLDER)?;
     loop {
-        match OpenOptions::new().create_new(true).read(true).write(true).open(&path) {
+        match folder.create(&name, 0o666) {
             Ok(mut file) => {
                 // An error: a file system without locks, see the module's head.
                 let taken = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
-                if taken && is_same_file(&path, &file) {
+                if taken && folder.names(&name, &file) {
                     let written = file.write_all(format!("{} {machine}\n", std::process::id()).as_bytes());
-                    let guard = Guard { path, held: Held(file) };
-                    written.map_err(|error| disk.fail("write the lock", &guard.path, error))?;
-                    return Ok(Taken::Mine(guard));
+                    let claimed = Claimed { folder, name, held: Held(file) };
+                    written.map_err(|error| disk.fail("write the lock", &path, error))?;
+                    return Ok(Taken::Mine(Guard(Some(claimed))));
                 }
             }
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                if let Some(waiting) = held(disk, &path)? {
-                    return Ok(Taken::Theirs(waiting));
-                }
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => disk.make_dir(&folder)?,
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => match held(&folder, &name) {
+                Ok(Some(waiting)) => return Ok(Taken::Theirs(waiting)),
+                Ok(None) => {}
+                // A link or a pipe in its place says nothing about the task, and no lock is better than none of its work.
+                Err(error) if Strange::is(&error) => return Ok(Taken::Mine(Guard(None))),
+                Err(error) => return Err(disk.fail("open the lock", &path, error)),
+            },
             Err(error) => return Err(disk.fail("make the lock", &path, error)),
         }
     }
 }
 
 /// Who holds an existing lock; nobody when it was left behind, and it is removed.
-fn held(disk: &Disk, path: &Path) -> Result<Option<Waiting>, StoreError> {
-    let open = OpenOptions::new().read(true).write(true).open(path).or_else(|_| File::open(path));
-    let mut file = match open {
+fn held(folder: &Folder, name: &str) -> std::io::Result<Option<Waiting>> {
+    let mut file = match folder.open(name, true).or_else(|_| folder.open(name, false)) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        other => other.map_err(|error| disk.fail("open the lock", path, error))?,
+        other => other?,
     };
     if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
         let holder = read_holder(&mut file);
-        return Ok(Some(Waiting { path: path.to_owned(), file, holder }));
+        return Ok(Some(Waiting { file, holder }));
     }
     let left_behind = Held(file);
-    if is_same_file(path, &left_behind.0) {
-        disk.remove(path)?;
+    if folder.names(name, &left_behind.0) {
+        folder.remove(name)?;
     }
     Ok(None)
+}
+
+/// Whether a name in the folder of locks is one of a claim.
+pub(super) fn is_name(name: &str) -> bool {
+    name.strip_suffix(".lock").is_some_and(|key| key.len() == 64 && is_hex(key))
 }
 
 /// Says that this process uses the store, until the lock is dropped; nothing is removed from a store in use. A store
 /// that cannot be written, or a file system without locks, gives none.
 pub(super) fn share(disk: &Disk) -> Option<Held> {
-    let path = disk.root.join("in-use.lock");
-    let file = File::open(&path).or_else(|_| File::create_new(&path)).or_else(|_| File::open(&path)).ok()?;
+    let root = disk.folder("").ok()?;
+    // Open for writing: some file systems give the lock that gc needs for such files only.
+    let open = || root.open(IN_USE, true).or_else(|_| root.create(IN_USE, 0o666)).or_else(|_| root.open(IN_USE, true));
+    let file = open().or_else(|_| root.open(IN_USE, false)).ok()?;
     file.lock_shared().ok()?;
     Some(Held(file))
 }
 
 fn read_holder(file: &mut File) -> Holder {
-    let mut text = String::new();
-    let _ = file.take(256).read_to_string(&mut text);
-    let (process, machine) = text.trim_end().split_once(' ').unwrap_or_default();
-    Holder { process: process.parse().unwrap_or(0), machine: machine.to_owned() }
-}
-
-/// Whether `path` still names the open file.
-#[cfg(unix)]
-fn is_same_file(path: &Path, file: &File) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    match (fs::metadata(path), file.metadata()) {
-        (Ok(named), Ok(open)) => named.ino() == open.ino() && named.dev() == open.dev(),
-        _ => false,
-    }
-}
-
-#[cfg(not(unix))]
-fn is_same_file(path: &Path, _: &File) -> bool {
-    path.exists()
+    let mut text = Vec::new();
+    let _ = file.take(256).read_to_end(&mut text);
+    let text = String::from_utf8_lossy(&text);
+    let (process, machine) = text.lines().next().and_then(|line| line.split_once(' ')).unwrap_or_default();
+    // The file may hold half of a result by now.
+    let machine: String = machine.chars().filter(|c| c.is_ascii_graphic()).take(64).collect();
+    Holder { process: process.parse().unwrap_or(0), machine }
 }

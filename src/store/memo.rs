@@ -1,23 +1,32 @@
 //! Memos: what a stage came to, so that an unchanged campaign is recognised without looking at each of its tasks.
 //!
-//! A memo is a file `memo/ab/<key of the stage>`: a note in the caller's words, and the objects it speaks of. It can
-//! always be made anew from the journal, so a damaged one counts as missing and a later one takes its place.
+//! A memo is a file `memo/ab/<key of the stage>-<user>`: a note in the caller's words, and the objects it speaks of. It can
+//! always be made anew from the objects, so a damaged one counts as missing and a later one takes its place. It carries
+//! the user's mark over its own key and all of its bytes: one that another user made, or that was changed or put under
+//! another key, counts as missing too.
 //!
 //! | bytes | field |
 //! |---|---|
-//! | 0–7 | `flowmem2` |
+//! | 0–7 | `flowmem3` |
 //! | 8–15, 16–23 | length of the note, length of the data, little-endian |
 //! | … | the note, UTF-8; the data |
 //! | … | 64 bytes per object: content hash, key |
-//! | last 32 | blake3 of all before |
+//! | last 32 | the mark |
 
-use super::StoreError;
 use super::disk::Disk;
-use super::object::ObjectId;
+use super::folder::Strange;
+use super::mark::Mark;
+use super::object::{ObjectId, is_hex};
+use super::{StoreError, folder};
 use crate::artifact::{ContentHash, Key};
-use std::path::PathBuf;
 
-const MAGIC: &[u8; 8] = b"flowmem2";
+/// Folder of the memos.
+pub(super) const FOLDER: &str = "memo";
+const MAGIC: &[u8; 8] = b"flowmem3";
+/// How memos of all versions begin.
+const HEAD: &[u8] = b"flowmem";
+/// The largest memo: one of ten million tasks.
+pub(super) const MOST: u64 = 1 << 30;
 
 /// What a stage came to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,24 +39,46 @@ pub struct Memo {
     pub objects: Vec<ObjectId>,
 }
 
-pub(super) fn folder(disk: &Disk) -> PathBuf {
-    disk.root.join("memo")
+fn place(mark: &Mark, key: &Key) -> (String, String) {
+    let name = format!("{key}-{}", mark.name());
+    (format!("{FOLDER}/{}", &name[..2]), name)
 }
 
-fn path(disk: &Disk, key: &Key) -> PathBuf {
-    let name = key.to_string();
-    folder(disk).join(&name[..2]).join(name)
+/// The key in the name of a memo.
+pub(super) fn key_of(name: &str) -> Option<Key> {
+    Key::from_hex(name.get(..64)?)
 }
 
-pub(super) fn read(disk: &Disk, key: &Key) -> Result<Option<Memo>, StoreError> {
-    Ok(disk.read(&path(disk, key))?.and_then(|bytes| unpack(&bytes)))
+pub(super) fn read(disk: &Disk, mark: &Mark, key: &Key) -> Result<Option<Memo>, StoreError> {
+    let (folder, name) = place(mark, key);
+    match disk.folder(&folder).and_then(|folder| folder.read(&name, MOST)) {
+        Ok(bytes) => Ok(unpack(mark, key, &bytes)),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound && disk.root.is_dir() => Ok(None),
+        Err(error) if Strange::is(&error) => Ok(None),
+        Err(error) => Err(disk.fail("read", &disk.path(&folder, &name), error)),
+    }
 }
 
-pub(super) fn write(disk: &Disk, key: &Key, memo: &Memo) -> Result<(), StoreError> {
-    disk.replace(&path(disk, key), &pack(memo))
+pub(super) fn write(disk: &Disk, mark: &Mark, key: &Key, memo: &Memo) -> Result<(), StoreError> {
+    let (folder, name) = place(mark, key);
+    disk.replace(&folder, &name, &pack(mark, key, memo))
 }
 
-pub(super) fn pack(memo: &Memo) -> Vec<u8> {
+/// Whether a file below the folder of memos is one that flow wrote: by its place, its name and how it begins.
+pub(super) fn is_ours(at: &folder::Folder, shard: &str, name: &str) -> bool {
+    // Earlier versions had no user in the name.
+    let (key, user) = name.split_once('-').unwrap_or((name, "00000000"));
+    let named = key.len() == 64 && is_hex(key) && user.len() == 8 && is_hex(user) && key.starts_with(shard);
+    named && begins_with(at, name, HEAD)
+}
+
+/// Whether a plain file begins with these bytes.
+pub(super) fn begins_with(at: &folder::Folder, name: &str, head: &[u8]) -> bool {
+    let mut found = vec![0; head.len()];
+    at.open(name, false).is_ok_and(|mut file| std::io::Read::read_exact(&mut file, &mut found).is_ok() && found == head)
+}
+
+pub(super) fn pack(mark: &Mark, key: &Key, memo: &Memo) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(56 + memo.note.len() + memo.data.len() + 64 * memo.objects.len());
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&(memo.note.len() as u64).to_le_bytes());
@@ -58,13 +89,14 @@ pub(super) fn pack(memo: &Memo) -> Vec<u8> {
         bytes.extend_from_slice(&object.content.0);
         bytes.extend_from_slice(&object.key.0);
     }
-    bytes.extend_from_slice(blake3::hash(&bytes).as_bytes());
+    let check = mark.note(&key.0, &bytes);
+    bytes.extend_from_slice(&check);
     bytes
 }
 
-pub(super) fn unpack(bytes: &[u8]) -> Option<Memo> {
+pub(super) fn unpack(mark: &Mark, key: &Key, bytes: &[u8]) -> Option<Memo> {
     let (body, check) = bytes.split_last_chunk::<32>()?;
-    if blake3::hash(body).as_bytes() != check {
+    if mark.note(&key.0, body) != *check {
         return None;
     }
     let rest = body.strip_prefix(MAGIC)?;

@@ -2,49 +2,64 @@
 //!
 //! ```text
 //! store/
-//!   objects/ab/abcd…-0123….h5   one immutable file per task, named by content       object.rs, hdf5.rs
-//!   journal/*.journal           task → object, digest, size, provenance             journal.rs
-//!   memo/ab/abcd…               what a stage came to                                memo.rs
-//!   runs/N.json                 what a campaign did                                 campaign.rs
-//!   locks/*.lock                tasks being computed now                            lock.rs
+//!   flow.store                  says that flow made this folder                         root.rs
+//!   objects/ab/abcd…-0123….h5   one immutable file per task, named by content           object.rs, hdf5.rs
+//!   journal/*.journal           task → object, digest, size, provenance                 journal.rs
+//!   memo/ab/abcd…               what a stage came to                                    memo.rs
+//!   runs/N.json                 what a campaign did                                     campaign.rs
+//!   locks/*.lock                tasks being computed now                                lock.rs
 //!   aside/                      damaged files that were found and replaced
-//!   listing                     names of the objects, so that the folders need not be listed    presence.rs
+//!   listing-…                   names of the objects, so that the folders need not be listed    presence.rs
 //! ```
 //!
 //! **What holds at any moment**, also after a process was killed: an object has its name only when it is complete; a
-//! record is in the journal only when its object has its name; what a record says is checked against the object before
-//! it is believed. So whatever is lost or damaged is computed again, and nothing wrong is ever handed out. Nothing is
-//! overwritten, and nothing is deleted but by gc.
+//! record is in the journal only when its object has its name. Nothing is overwritten, and nothing is deleted but by gc.
+//!
+//! **A store is somebody else's until proven** (the README says what is left to an attacker). Files are reached by
+//! `folder.rs` alone: plain ones, no links, bounded sizes. Records and notes that this user's own flow wrote carry a mark
+//! (`mark.rs`) and are believed; what does not is proven from the object (`prove.rs`), whose task text must give the key
+//! and whose values the content hash. A lost record is found again by the names of the objects. Of two different results
+//! of one task none is believed: it is computed again, and the other goes aside. So whatever is lost, damaged or forged is
+//! found, computed again or refused, and no clock decides anything.
 
 mod cache;
 mod campaign;
 mod clean;
 mod disk;
 mod error;
+mod fault;
+mod folder;
 mod hdf5;
 mod journal;
 mod lock;
+mod mark;
 mod memo;
 mod object;
 mod origin;
 mod presence;
+mod prove;
+mod root;
+mod verify;
 
 pub use campaign::{Campaign, StageRun};
-pub use clean::{Amount, Swept, Usage, Verdict};
+pub use clean::{Amount, Swept, Usage};
 pub use error::{Damage, StoreError};
 pub use hdf5::Hdf5Error;
 pub use lock::{Guard, Holder, Waiting};
+pub use mark::Mark;
 pub use memo::Memo;
 pub use object::ObjectId;
 pub use origin::Origin;
+pub use verify::Verdict;
 
 use crate::artifact::{Artifact, ContentHash, Key};
 use cache::Cache;
 use disk::Disk;
-use journal::{Index, Segment};
+use journal::{Index, Segments};
 use object::Seal;
 use presence::Presence;
-use std::ffi::OsStr;
+use prove::Proven;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -63,6 +78,10 @@ pub struct Record {
     /// Where and by what it was computed.
     pub origin: Arc<Origin>,
     seal: Seal,
+    /// The mark of the user who wrote it.
+    mark: [u8; mark::SHORT],
+    /// Whether that is this user.
+    own: bool,
 }
 
 impl Record {
@@ -100,12 +119,16 @@ pub enum Claim {
 /// An open store. All methods take `&self` and may be called from many threads.
 pub struct Store {
     disk: Disk,
+    mark: Mark,
+    machine: String,
     origin: LazyLock<Arc<Origin>, Box<dyn FnOnce() -> Arc<Origin> + Send>>,
     index: OnceLock<Mutex<Index>>,
-    segment: Mutex<Segment>,
+    segments: Mutex<Segments>,
     cache: Mutex<Cache>,
     presence: Mutex<Presence>,
     damages: Mutex<Vec<Damage>>,
+    /// Tasks with two different results, each said once.
+    contradictions: Mutex<HashSet<Key>>,
     in_use: Option<lock::Held>,
 }
 
@@ -113,23 +136,40 @@ impl Store {
     /// Opens the store in the folder `root`, which is made if there is none.
     ///
     /// # Errors
-    /// The path is not a folder, or cannot be made or read.
+    /// The path is no folder, or one that flow has not made; it cannot be made or read.
     pub fn open(root: &Path) -> Result<Self, StoreError> {
+        Self::open_as(root, Mark::of_user())
+    }
+
+    /// As [`Store::open`], for the user with this mark.
+    ///
+    /// # Errors
+    /// As [`Store::open`].
+    pub fn open_as(root: &Path, mark: Mark) -> Result<Self, StoreError> {
         let disk = Disk { root: root.to_owned() };
-        if !root.is_dir() {
-            create(&disk)?;
-        }
+        root::open(&disk)?;
         let in_use = lock::share(&disk);
         Ok(Self {
             disk,
+            mark,
+            machine: Origin::here().shortened().machine,
             origin: LazyLock::new(Box::new(|| Arc::new(Origin::here()))),
             index: OnceLock::new(),
-            segment: Mutex::default(),
+            segments: Mutex::default(),
             cache: Mutex::default(),
             presence: Mutex::default(),
             damages: Mutex::default(),
+            contradictions: Mutex::default(),
             in_use,
         })
+    }
+
+    /// Makes the folder of an earlier flow, which has no marker yet, a store.
+    ///
+    /// # Errors
+    /// It holds what flow does not make, or nothing that flow made; it cannot be written.
+    pub fn adopt(root: &Path) -> Result<(), StoreError> {
+        root::adopt(&Disk { root: root.to_owned() })
     }
 
     /// Says where and by what results are computed, asked when the first is; without it [`Origin::here`] is taken.
@@ -149,13 +189,49 @@ impl Store {
         &self.disk.root
     }
 
-    /// The record of a finished task whose object is in the store.
+    /// The record of a finished task whose object is in the store: one that this user's own flow wrote, or one that the
+    /// object proves. None of a task with two different results, which is to be computed again.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub fn find(&self, key: &Key) -> Result<Option<Record>, StoreError> {
+        let records = locked(self.index()?).of_task(key);
+        let (own, others): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|record| record.own);
+        let mut sound = Vec::new();
+        for record in own {
+            sound.extend(self.has(&record.object())?.then_some(record));
+        }
+        if sound.is_empty() {
+            for record in others {
+                if self.has(&record.object())? {
+                    sound.extend(self.proven(&record)?);
+                }
+            }
+        }
+        if sound.is_empty() {
+            // Its record may be lost.
+            let names = locked(&self.presence).names_of_task(&self.disk, &self.mark, key)?;
+            for name in names {
+                let proven = self.if_sound(prove::named(&self.disk, &name))?.filter(|proven| proven.id.key == *key);
+                sound.extend(proven.map(|proven| self.record_again(&proven)));
+            }
+        }
+        match sound.len() {
+            0 | 1 => Ok(sound.pop()),
+            _ => {
+                locked(&self.contradictions).insert(*key);
+                Ok(None)
+            }
+        }
+    }
+
+    /// How long a task took, as its record says: for estimates, so nothing is proven.
     ///
     /// # Errors
     /// The journals cannot be read.
-    pub fn find(&self, key: &Key) -> Result<Option<Record>, StoreError> {
-        let Some(record) = locked(self.index()?).find(key) else { return Ok(None) };
-        Ok(self.has_all(&[record.object()])?.then_some(record))
+    pub fn seconds(&self, key: &Key) -> Result<Option<f64>, StoreError> {
+        let records = locked(self.index()?).of_task(key);
+        Ok(records.iter().max_by_key(|record| record.own).map(|record| record.seconds))
     }
 
     /// Whether all these objects are in the store; that they are sound is seen when they are read.
@@ -164,8 +240,12 @@ impl Store {
     /// The folders cannot be listed.
     pub fn has_all(&self, objects: &[ObjectId]) -> Result<bool, StoreError> {
         let mut presence = locked(&self.presence);
-        presence.expect(&self.disk, objects.len())?;
+        presence.expect(&self.disk, &self.mark, objects.len())?;
         Ok(objects.iter().all(|object| presence.contains(&self.disk, object)))
+    }
+
+    fn has(&self, object: &ObjectId) -> Result<bool, StoreError> {
+        self.has_all(&[*object])
     }
 
     /// The artifact with this content.
@@ -178,23 +258,26 @@ impl Store {
             return Ok(artifact);
         }
         let mut failure = StoreError::Missing { content: *content };
-        let mut records = locked(self.index()?).with_content(content);
-        if records.is_empty() {
-            // Another process may have recorded it since the journals were read.
-            self.refresh()?;
-            records = locked(self.index()?).with_content(content);
-        }
-        for record in records {
+        for record in locked(self.index()?).with_content(content) {
             match self.read(&record) {
-                Ok((artifact, _)) => {
-                    let artifact = Arc::new(artifact);
-                    locked(&self.cache).put(*content, artifact.clone());
-                    return Ok(artifact);
-                }
+                Ok(proven) => return Ok(self.cached(*content, proven.artifact)),
                 Err(error) => failure = error,
             }
         }
+        // Its record may be lost, or not be read yet: its name says what it is.
+        for name in object::with_content(&self.disk, content) {
+            if let Some(proven) = self.if_sound(prove::named(&self.disk, &name))? {
+                self.record_again(&proven);
+                return Ok(self.cached(*content, proven.artifact));
+            }
+        }
         Err(failure)
+    }
+
+    fn cached(&self, content: ContentHash, artifact: Artifact) -> Arc<Artifact> {
+        let artifact = Arc::new(artifact);
+        locked(&self.cache).put(content, artifact.clone());
+        artifact
     }
 
     /// The text of a finished task, from its object.
@@ -202,8 +285,7 @@ impl Store {
     /// # Errors
     /// As [`Store::get`].
     pub fn task_text(&self, record: &Record) -> Result<String, StoreError> {
-        let image = self.image(record)?;
-        hdf5::task_text(image).map_err(|why| self.unreadable(record, why))
+        Ok(self.read(record)?.text)
     }
 
     /// Stores the result of a claimed task and releases it. When the function returns, the result can be found.
@@ -245,21 +327,43 @@ impl Store {
         let image = hdf5::encode(&artifact, task_text).map_err(StoreError::Unstorable)?;
         let durable = timing.seconds >= object::SYNC_FROM;
         let seal = object::write(&self.disk, &id, &image, durable, claim)?;
-        let record = Record {
-            key: id.key,
-            content: id.content,
-            seal,
-            started: milliseconds(timing.started),
-            seconds: timing.seconds,
-            origin: Arc::clone(&self.origin),
-        };
-        locked(&self.segment).append(&self.disk, &record, durable)?;
+        let record = self.marked(&id, seal, timing, Arc::clone(&self.origin));
+        locked(&self.segments).append(&self.disk, &record, durable)?;
         if let Some(index) = self.index.get() {
             locked(index).add(&record);
+            self.settle(&record)?;
         }
         locked(&self.presence).add(&id);
         locked(&self.cache).put(id.content, artifact.clone());
         Ok((record, artifact))
+    }
+
+    /// Moves other results of a task that was computed again out of the way: that they differ is why it was.
+    fn settle(&self, record: &Record) -> Result<(), StoreError> {
+        let others = self.index.get().map(|index| locked(index).of_task(&record.key)).unwrap_or_default();
+        for other in others.iter().filter(|other| other.content != record.content) {
+            let id = other.object();
+            if object::is_there(&self.disk, &id) {
+                self.set_aside(&id, "its task was computed again and gave another result")?;
+            }
+        }
+        locked(&self.contradictions).remove(&record.key);
+        Ok(())
+    }
+
+    fn set_aside(&self, id: &ObjectId, why: &str) -> Result<(), StoreError> {
+        locked(&self.presence).remove(id);
+        let fault = object::set_aside(&self.disk, &id.folder(), &id.file_name(), why)?;
+        locked(&self.damages).push(fault);
+        Ok(())
+    }
+
+    /// A record of this user's own.
+    fn marked(&self, id: &ObjectId, seal: Seal, timing: &Timing, origin: Arc<Origin>) -> Record {
+        let ObjectId { key, content } = *id;
+        let (started, seconds) = (milliseconds(timing.started), timing.seconds);
+        let record = Record { key, content, started, seconds, origin, seal, mark: Default::default(), own: true };
+        journal::seal(&self.mark, record)
     }
 
     /// Claims a task: the caller's to compute, somebody else's, or finished by somebody else in the meantime.
@@ -267,7 +371,7 @@ impl Store {
     /// # Errors
     /// The lock cannot be made or the journals cannot be read.
     pub fn claim(&self, key: &Key) -> Result<Claim, StoreError> {
-        match lock::take(&self.disk, &key.to_string(), &self.origin.machine)? {
+        match lock::take(&self.disk, &key.to_string(), &self.machine)? {
             lock::Taken::Theirs(waiting) => Ok(Claim::Theirs(waiting)),
             lock::Taken::Mine(guard) => {
                 // Its last holder recorded the result before it let go.
@@ -277,12 +381,12 @@ impl Store {
         }
     }
 
-    /// The memo of a stage. Its objects may be gone: ask [`Store::has_all`].
+    /// The memo of a stage that this user's own flow made. Its objects may be gone: ask [`Store::has_all`].
     ///
     /// # Errors
     /// The store cannot be read.
     pub fn memo(&self, stage: &Key) -> Result<Option<Memo>, StoreError> {
-        memo::read(&self.disk, stage)
+        memo::read(&self.disk, &self.mark, stage)
     }
 
     /// Keeps the memo of a stage, in place of an earlier one.
@@ -290,7 +394,7 @@ impl Store {
     /// # Errors
     /// The store cannot be written.
     pub fn keep_memo(&self, stage: &Key, memo: &Memo) -> Result<(), StoreError> {
-        memo::write(&self.disk, stage, memo)
+        memo::write(&self.disk, &self.mark, stage, memo)
     }
 
     /// Records a campaign and returns its number.
@@ -298,7 +402,7 @@ impl Store {
     /// # Errors
     /// The store cannot be written.
     pub fn record_campaign(&self, campaign: &Campaign) -> Result<u64, StoreError> {
-        campaign::record(&self.disk, campaign)
+        campaign::record(&self.disk, &self.mark, campaign)
     }
 
     /// Numbers of the recorded campaigns, the last one last.
@@ -309,12 +413,12 @@ impl Store {
         campaign::numbers(&self.disk)
     }
 
-    /// A recorded campaign.
+    /// A recorded campaign; whether this user's own flow recorded it is said in it.
     ///
     /// # Errors
     /// The store cannot be read.
     pub fn campaign(&self, number: u64) -> Result<Option<Campaign>, StoreError> {
-        campaign::read(&self.disk, number)
+        campaign::read(&self.disk, &self.mark, number)
     }
 
     /// All records, in the order of their keys.
@@ -335,40 +439,54 @@ impl Store {
         std::mem::take(&mut locked(&self.damages))
     }
 
-    fn read(&self, record: &Record) -> Result<(Artifact, String), StoreError> {
-        let image = self.image(record)?;
-        hdf5::decode(image).map_err(|why| self.unreadable(record, why))
+    /// The object of a record, proven.
+    fn read(&self, record: &Record) -> Result<Proven, StoreError> {
+        let id = record.object();
+        let seal = record.own.then_some(&record.seal);
+        self.noted(&id, prove::object(&self.disk, &id, seal))
     }
 
-    fn image(&self, record: &Record) -> Result<Vec<u8>, StoreError> {
-        let image = object::read(&self.disk, &record.object(), &record.seal);
-        if let Err(StoreError::Damaged { fault }) = &image {
-            locked(&self.damages).push(fault.clone());
-        }
-        if image.is_err() {
-            locked(&self.presence).remove(&record.object());
-        }
-        image
+    /// The record of somebody else, as one's own when its object proves it.
+    fn proven(&self, record: &Record) -> Result<Option<Record>, StoreError> {
+        let Some(proven) = self.if_sound(self.read(record))? else { return Ok(None) };
+        let timing = Timing { started: moment(record.started), seconds: record.seconds };
+        Ok(Some(self.remember(self.marked(&proven.id, proven.seal, &timing, record.origin.clone()))))
     }
 
-    /// An object with the right digest that cannot be read.
-    fn unreadable(&self, record: &Record, why: Hdf5Error) -> StoreError {
-        let path = self.path(&record.object());
-        if matches!(why, Hdf5Error::Newer { .. }) {
-            return StoreError::Newer { path, why };
-        }
-        self.set_aside(&record.object(), &why.to_string())
+    /// A record of an object that had none.
+    fn record_again(&self, proven: &Proven) -> Record {
+        let timing = Timing { started: UNIX_EPOCH, seconds: 0.0 };
+        self.remember(self.marked(&proven.id, proven.seal, &timing, Arc::default()))
     }
 
-    /// Moves a damaged object out of the way and reports it.
-    fn set_aside(&self, object: &ObjectId, why: &str) -> StoreError {
-        locked(&self.presence).remove(object);
-        match object::set_aside(&self.disk, &self.path(object), why) {
-            Ok(fault) => {
+    /// Records what was proven, so that it need not be proven again. Where the store cannot be written, it is known to
+    /// this process alone.
+    fn remember(&self, record: Record) -> Record {
+        let _ = locked(&self.segments).append(&self.disk, &record, false);
+        if let Some(index) = self.index.get() {
+            locked(index).add(&record);
+        }
+        locked(&self.presence).add(&record.object());
+        record
+    }
+
+    /// Notes the damage that reading an object has met.
+    fn noted<T>(&self, id: &ObjectId, result: Result<T, StoreError>) -> Result<T, StoreError> {
+        if let Err(error) = &result {
+            if let StoreError::Damaged { fault } = error {
                 locked(&self.damages).push(fault.clone());
-                StoreError::Damaged { fault }
             }
-            Err(error) => error,
+            locked(&self.presence).remove(id);
+        }
+        result
+    }
+
+    /// What is missing or was damaged is nothing; any other error stays.
+    fn if_sound<T>(&self, result: Result<T, StoreError>) -> Result<Option<T>, StoreError> {
+        match result {
+            Ok(sound) => Ok(Some(sound)),
+            Err(StoreError::Missing { .. } | StoreError::Damaged { .. }) => Ok(None),
+            Err(error) => Err(error),
         }
     }
 
@@ -378,33 +496,21 @@ impl Store {
             return Ok(index);
         }
         // Records that this process appends meanwhile are read from its own segment, or added twice, which is the same.
-        let mut index = Index::default();
-        let segment = locked(&self.segment);
-        index.refresh(&self.disk, segment.name())?;
+        let mut index = self.new_index();
+        index.refresh(&self.disk, &locked(&self.segments))?;
         Ok(self.index.get_or_init(|| Mutex::new(index)))
+    }
+
+    fn new_index(&self) -> Index {
+        Index::new(self.mark.clone(), &self.machine)
     }
 
     /// Reads what other processes have recorded since.
     fn refresh(&self) -> Result<(), StoreError> {
-        let own = locked(&self.segment).name().map(OsStr::to_owned);
-        locked(self.index()?).refresh(&self.disk, own.as_deref())
+        let index = self.index()?;
+        let segments = locked(&self.segments);
+        locked(index).refresh(&self.disk, &segments)
     }
-}
-
-/// Makes the folder of a new store, with a note that keeps its files out of version control.
-fn create(disk: &Disk) -> Result<(), StoreError> {
-    let root = &disk.root;
-    if root.exists() {
-        return Err(StoreError::NotAStore { path: root.clone(), why: "it is not a folder".to_owned() });
-    }
-    std::fs::create_dir_all(root).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotADirectory => {
-            StoreError::NotAStore { path: root.clone(), why: "a part of the path is a file".to_owned() }
-        }
-        // The folder that is missing cannot have vanished.
-        _ => StoreError::io("make the folder", root, Path::new("/"), error),
-    })?;
-    disk.replace(&root.join(".gitignore"), b"*\n")
 }
 
 /// Locks; a thread that panicked while it held the lock has left the value as it was before or after one change.
@@ -414,6 +520,10 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 fn milliseconds(time: SystemTime) -> i64 {
     time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis() as i64)
+}
+
+fn moment(milliseconds: i64) -> SystemTime {
+    UNIX_EPOCH + std::time::Duration::from_millis(u64::try_from(milliseconds).unwrap_or(0))
 }
 
 fn now_ms() -> i64 {

@@ -3,13 +3,10 @@
 //! **Name.** `objects/ab/abcd…-0123456789abcdef.h5`: the content hash of the artifact and the first 16 digits of the
 //! task's key. The content comes first, so equal results lie side by side; the key makes a file belong to one task, so
 //! the task text inside it does not depend on which of two tasks with equal results ended first, and two runs on two
-//! empty stores leave the same files.
+//! empty stores leave the same files. The name is a claim that the file itself proves: see `prove.rs`.
 //!
 //! **Writing.** The image is made in memory, written under another name, read back, and only then given its name,
 //! without replacing. If the name exists, the file there is kept when it is sound, and set aside when not.
-//!
-//! **Reading.** Size and blake3 of the file are compared with the journal before the HDF5 library sees a byte. What
-//! differs is moved to `aside/`, reported, and counts as missing. Nothing is deleted here.
 //!
 //! **Durability.** A result that took [`SYNC_FROM`] seconds or longer is synced before it is recorded; a shorter one
 //! is left to the kernel (30 s on Linux), because three syncs of about 0.4 ms each would cost more than the task. A
@@ -17,11 +14,11 @@
 //! half-written is noticed by its digest.
 
 use super::disk::Disk;
-use super::{Damage, Guard, StoreError, hdf5};
+use super::folder::{Entry, Folder};
+use super::{Damage, Guard, StoreError, prove};
 use crate::artifact::{ContentHash, Key};
-use std::fs;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Results of tasks that took this many seconds or more are synced to the disk.
 pub(super) const SYNC_FROM: f64 = 0.1;
@@ -35,27 +32,71 @@ pub struct ObjectId {
     pub key: Key,
 }
 
+/// Folder of damaged files.
+pub(super) const ASIDE: &str = "aside";
+/// Length of the name of an object's file.
+const NAME: usize = 64 + 1 + KEY_DIGITS + 3;
+const KEY_DIGITS: usize = 16;
+
 impl ObjectId {
     /// The name of its file.
-    fn file_name(&self) -> String {
-        format!("{}-{}.h5", self.content, &self.key.to_string()[..16])
+    pub(super) fn file_name(&self) -> String {
+        format!("{}-{}.h5", self.content, &self.key.to_string()[..KEY_DIGITS])
     }
+
+    /// The folder of its file.
+    pub(super) fn folder(&self) -> String {
+        shard(&self.content.to_string())
+    }
+}
+
+/// The folder of objects whose names begin like this.
+fn shard(name: &str) -> String {
+    format!("objects/{}", &name[..2])
+}
+
+/// Whether a folder among the objects is one that flow makes.
+pub(super) fn is_shard(name: &str) -> bool {
+    name.len() == 2 && is_hex(name)
+}
+
+/// Whether a name is one that flow gives to an object in this folder.
+pub(super) fn is_name(shard: &str, name: &str) -> bool {
+    name.len() == NAME
+        && name.starts_with(shard)
+        && name.is_char_boundary(64)
+        && is_hex(&name[..64])
+        && name[64..].strip_prefix('-').and_then(|rest| rest.strip_suffix(".h5")).is_some_and(is_hex)
+}
+
+/// Whether a file in a folder of objects is one that flow wrote.
+pub(super) fn is_ours(at: &Folder, shard: &str, name: &str) -> bool {
+    is_name(shard, name) && super::memo::begins_with(at, name, b"\x89HDF\r\n\x1a\n")
+}
+
+/// Lower-case hexadecimal digits.
+pub(super) fn is_hex(text: &str) -> bool {
+    text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
 /// Digest and size of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Seal {
-    pub(super) digest: [u8; 32],
+    /// First bytes of the blake3 of the file: it finds damage before the file is decoded; what a file proves is its
+    /// content hash.
+    pub(super) digest: [u8; 16],
     pub(super) size: u64,
 }
 
 impl Seal {
     pub(super) fn of(bytes: &[u8]) -> Self {
-        Self { digest: *blake3::hash(bytes).as_bytes(), size: bytes.len() as u64 }
+        let mut digest = [0; 16];
+        digest.copy_from_slice(&blake3::hash(bytes).as_bytes()[..16]);
+        Self { digest, size: bytes.len() as u64 }
     }
 
     /// What differs between this seal and the file found.
-    fn difference(&self, found: &Self) -> Option<String> {
+    pub(super) fn difference(&self, found: &Self) -> Option<String> {
         if self.size != found.size {
             return Some(format!("it has {} bytes instead of {}", found.size, self.size));
         }
@@ -65,8 +106,12 @@ impl Seal {
 
 /// Where an object lies, or would lie.
 pub(super) fn path(disk: &Disk, id: &ObjectId) -> PathBuf {
-    let name = id.file_name();
-    disk.root.join("objects").join(&name[..2]).join(name)
+    disk.path(&id.folder(), &id.file_name())
+}
+
+/// Whether something stands under the object's name.
+pub(super) fn is_there(disk: &Disk, id: &ObjectId) -> bool {
+    disk.folder(&id.folder()).is_ok_and(|folder| matches!(folder.entry(&id.file_name()), Ok(Entry::File(_))))
 }
 
 /// Writes an object, into the file of its claim if there is one; returns the seal of the file that now has its name.
@@ -77,102 +122,106 @@ pub(super) fn write(
     durable: bool,
     mut claim: Option<&mut Guard>,
 ) -> Result<Seal, StoreError> {
-    let path = path(disk, id);
+    let (folder, name) = (id.folder(), id.file_name());
     let seal = Seal::of(image);
     for _ in 0..3 {
-        let written = match &mut claim {
-            Some(claim) => disk.link_new(&claim.path, &mut claim.held.0, &path, image, durable)?,
-            None => disk.write_new(&path, image, durable)?,
+        let linked = match claim.as_mut().and_then(|claim| claim.draft()) {
+            Some(draft) => disk.link_new(draft, (&folder, &name), image, durable)?,
+            None => None,
+        };
+        let written = match linked {
+            Some(written) => written,
+            // The claim's file is not ours any more, or was none.
+            None => {
+                claim = None;
+                disk.write_new(&folder, &name, image, durable)?
+            }
         };
         if written {
             return Ok(seal);
         }
-        let Some(found) = disk.read(&path)? else { continue };
-        if found == image {
-            return Ok(seal);
+        match prove::object(disk, id, None) {
+            // Another version of flow may describe the same values differently.
+            Ok(proven) => return Ok(proven.seal),
+            Err(error) if error.is_missing() => {}
+            Err(error) => return Err(error),
         }
-        // Another version of flow may describe the same values differently; anything else is damage.
-        let kept = Seal::of(&found);
-        match hdf5::decode(found) {
-            Ok((artifact, _)) if artifact.content_hash() == id.content => return Ok(kept),
-            _ => set_aside(disk, &path, "it is not the object of its name")?,
-        };
     }
-    Err(disk.fail("write", &path, ErrorKind::AlreadyExists.into()))
+    Err(disk.fail("write", &disk.path(&folder, &name), ErrorKind::AlreadyExists.into()))
 }
 
-/// The image of an object, compared with its seal.
-pub(super) fn read(disk: &Disk, id: &ObjectId, seal: &Seal) -> Result<Vec<u8>, StoreError> {
-    let path = path(disk, id);
-    let size = match fs::metadata(&path) {
-        Ok(metadata) => metadata.len(),
-        Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => {
-            return Err(StoreError::Missing { content: id.content });
-        }
-        Err(error) => return Err(disk.fail("read", &path, error)),
-    };
-    // A file of another size is not even read: it may be huge.
-    let found = if size == seal.size {
-        let image = disk.read(&path)?.ok_or(StoreError::Missing { content: id.content })?;
-        let found = Seal::of(&image);
-        if found == *seal {
-            return Ok(image);
-        }
-        found
-    } else {
-        Seal { size, digest: [0; 32] }
-    };
-    let why = seal.difference(&found).unwrap_or_default();
-    Err(StoreError::Damaged { fault: set_aside(disk, &path, &why)? })
-}
-
-/// Moves a damaged file to `aside/`, under a name of its own.
-pub(super) fn set_aside(disk: &Disk, path: &Path, why: &str) -> Result<Damage, StoreError> {
-    let damage = |aside| Damage { path: path.to_owned(), why: why.to_owned(), aside };
-    let folder = disk.root.join("aside");
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    if disk.make_dir(&folder).is_err() {
-        return Ok(damage(None));
-    }
+/// Moves what stands under an object's name to `aside/`, under a name of its own. A link is moved as a link.
+pub(super) fn set_aside(disk: &Disk, folder: &str, name: &str, why: &str) -> Result<Damage, StoreError> {
+    let path = disk.path(folder, name);
+    let damage = |aside| Damage { path: path.clone(), why: why.to_owned(), aside };
+    let (Ok(from), Ok(aside)) = (disk.folder(folder), disk.make_folder(ASIDE)) else { return Ok(damage(None)) };
     for number in 1..10_000 {
-        let target = folder.join(format!("{name}.{number}"));
-        match fs::hard_link(path, &target) {
-            Ok(()) => {
-                fs::remove_file(path).map_err(|error| disk.fail("set aside", path, error))?;
-                return Ok(damage(Some(target)));
-            }
+        let target = format!("{name}.{number}");
+        match from.rename_new(name, &aside, &target) {
+            Ok(()) => return Ok(damage(Some(disk.path(ASIDE, &target)))),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            // Somebody else was faster.
+            Err(error) if error.kind() == ErrorKind::NotFound => break,
             Err(_) => break,
         }
     }
-    // A file system without links, or one that cannot be written.
-    let target = folder.join(format!("{name}.{}", std::process::id()));
-    Ok(damage(fs::rename(path, &target).is_ok().then_some(target)))
+    Ok(damage(None))
 }
 
-/// Calls `visit` with the folder and the name of every file among the objects, temporary ones included.
-pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Path, &str)) -> Result<(), StoreError> {
-    for folder in shards(disk)? {
-        list_shard(&folder, |name| visit(&folder, name));
+/// Whether a name in `aside/` is one that [`set_aside`] gives.
+pub(super) fn is_aside(name: &str) -> bool {
+    let Some((object, number)) = name.rsplit_once('.') else { return false };
+    object.len() == NAME && is_name(&object[..2], object) && number.parse::<u32>().is_ok()
+}
+
+/// Calls `visit` with each folder of objects, its name, and the name and size of every object in it that is a plain file.
+pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Folder, &str, &str, u64)) -> Result<(), StoreError> {
+    let Some((objects, shards)) = shards(disk)? else { return Ok(()) };
+    for shard in shards {
+        let Ok(folder) = objects.inner(&shard) else { continue };
+        for name in names(&folder, &shard) {
+            if let Ok(Entry::File(bytes)) = folder.entry(&name) {
+                visit(&folder, &shard, &name, bytes);
+            }
+        }
     }
     Ok(())
 }
 
-/// The folders that objects lie in.
-pub(super) fn shards(disk: &Disk) -> Result<Vec<PathBuf>, StoreError> {
-    let objects = disk.root.join("objects");
-    match fs::read_dir(&objects) {
-        Ok(shards) => Ok(shards.flatten().map(|shard| shard.path()).collect()),
-        Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => Ok(Vec::new()),
-        Err(error) => Err(disk.fail("list", &objects, error)),
-    }
+/// The folder of objects, and the names of the folders in it that they lie in.
+pub(super) fn shards(disk: &Disk) -> Result<Option<(Folder, Vec<String>)>, StoreError> {
+    let Some(objects) = disk.find_folder("objects")? else { return Ok(None) };
+    let mut names = Vec::new();
+    let listed = objects.list(|name, folder| names.extend((folder && is_shard(name)).then(|| name.to_owned())));
+    listed.map_err(|error| disk.fail("list", &disk.root.join("objects"), error))?;
+    names.sort_unstable();
+    Ok(Some((objects, names)))
 }
 
-/// Calls `visit` with the name of every file in one of these folders.
-pub(super) fn list_shard(folder: &Path, mut visit: impl FnMut(&str)) {
-    for file in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if let Some(name) = file.file_name().to_str() {
-            visit(name);
-        }
-    }
+/// Names of objects in one of these folders.
+pub(super) fn names(folder: &Folder, shard: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    // A folder that cannot be listed holds nothing that can be used.
+    let _ = folder.list(|name, _| names.extend(is_name(shard, name).then(|| name.to_owned())));
+    names
+}
+
+/// Names of the objects with this content.
+pub(super) fn with_content(disk: &Disk, content: &ContentHash) -> Vec<String> {
+    let content = content.to_string();
+    let Ok(folder) = disk.folder(&shard(&content)) else { return Vec::new() };
+    let mut names = names(&folder, &content[..2]);
+    names.retain(|name| name.starts_with(&content));
+    names.sort_unstable();
+    names
+}
+
+/// Names of the objects in a folder that belong to a task.
+pub(super) fn of_task(disk: &Disk, shard: u8, key: &Key) -> Vec<String> {
+    let shard = format!("{shard:02x}");
+    let Ok(folder) = disk.folder(&format!("objects/{shard}")) else { return Vec::new() };
+    let end = format!("-{}.h5", &key.to_string()[..KEY_DIGITS]);
+    let mut names = names(&folder, &shard);
+    names.retain(|name| name.ends_with(&end));
+    names
 }

@@ -20,12 +20,16 @@ const LONGEST: usize = 100;
 impl Origin {
     /// This machine and this version, with no commit.
     pub fn here() -> Self {
+        Self { machine: Self::machine(), version: env!("CARGO_PKG_VERSION").to_owned(), commit: String::new() }
+    }
+
+    /// Name of this machine.
+    pub(super) fn machine() -> String {
         let machine = ["/proc/sys/kernel/hostname", "/etc/hostname"].iter().find_map(|file| {
             let name = std::fs::read_to_string(file).ok()?.trim().to_owned();
             (!name.is_empty()).then_some(name)
         });
-        let machine = machine.or_else(|| std::env::var("HOSTNAME").ok()).unwrap_or_else(|| "unknown".to_owned());
-        Self { machine, version: env!("CARGO_PKG_VERSION").to_owned(), commit: String::new() }
+        machine.or_else(|| std::env::var("HOSTNAME").ok()).unwrap_or_else(|| "unknown".to_owned())
     }
 
     /// With every text short enough for the journal.

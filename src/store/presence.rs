@@ -1,33 +1,36 @@
 //! Which objects are on the disk, without asking for each of them.
 //!
 //! A few objects are asked for one by one. When many are, the folders are listed, and the listing is kept in the file
-//! `listing`: of each folder its state (inode, times of change), then the names found in it. A folder whose state is
-//! still the same holds the same names, so ten thousand objects cost 256 questions. The time of change of an inode cannot
-//! be set by hand: whatever is added, removed or restored shows. Times move in steps, so what changed less than
-//! [`SETTLED`] before it was listed is listed again. The file is a short cut: damaged or missing, the folders are listed.
+//! `listing-…` under the user's mark: of each folder its state (inode, times of change), then the names found in it. A
+//! folder whose state is still the same holds the same names, so ten thousand objects cost 256 questions. The time of
+//! change of an inode cannot be set by hand: whatever is added, removed or restored shows. Times move in steps, so what
+//! changed less than [`SETTLED`] before it was listed, by the clock of the file system itself, is listed again. The file
+//! is a short cut: damaged, somebody else's or missing, the folders are listed.
 //!
 //! | bytes | field |
 //! |---|---|
-//! | 0–7 | `flowlst1` |
+//! | 0–7 | `flowlst2` |
 //! | … | per folder: inode, seconds and nanoseconds of its change, number n of names, all of 8 bytes; 16 bytes per name |
-//! | last 32 | blake3 of all before |
+//! | last 32 | the mark |
 
 use super::StoreError;
 use super::disk::Disk;
-use super::object::{self, ObjectId};
-use crate::artifact::FirstBytes;
+use super::folder::Folder;
+use super::mark::Mark;
+use super::object::{self, ObjectId, is_hex};
+use crate::artifact::{FirstBytes, Key};
+use rustix::fs::Stat;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::fs;
 use std::hash::BuildHasherDefault;
 use std::ops::Range;
-use std::path::Path;
-use std::time::{Duration, SystemTime};
 
-const MAGIC: &[u8; 8] = b"flowlst1";
+const MAGIC: &[u8; 8] = b"flowlst2";
+/// The largest listing: one of ten million objects.
+const MOST: u64 = 1 << 29;
 
-/// Longer than the step of any file system's times.
-const SETTLED: Duration = Duration::from_secs(2);
+/// Longer than the step of any file system's times, seconds.
+const SETTLED: i64 = 2;
 
 /// From this many questions on the folders are listed.
 const LIST_FROM: usize = 500;
@@ -40,19 +43,28 @@ type Short = [u64; 2];
 pub(super) struct Presence {
     asked: usize,
     listed: Option<Listed>,
+    /// First bytes of the contents of a task's objects, by the first bytes of its key, as they were first listed.
+    of_tasks: Option<HashMap<u64, Vec<u64>, BuildHasherDefault<FirstBytes>>>,
 }
 
 type Listed = HashSet<Short, BuildHasherDefault<FirstBytes>>;
 
 impl Presence {
     /// Announces that `count` objects will be asked for.
-    pub(super) fn expect(&mut self, disk: &Disk, count: usize) -> Result<(), StoreError> {
+    pub(super) fn expect(&mut self, disk: &Disk, mark: &Mark, count: usize) -> Result<(), StoreError> {
         self.asked += count;
-        if self.asked < LIST_FROM || self.listed.is_some() {
-            return Ok(());
+        if self.asked >= LIST_FROM {
+            self.listed(disk, mark)?;
         }
-        self.listed = Some(list(disk)?);
         Ok(())
+    }
+
+    fn listed(&mut self, disk: &Disk, mark: &Mark) -> Result<&mut Listed, StoreError> {
+        let listed = match self.listed.take() {
+            Some(listed) => listed,
+            None => list(disk, mark)?,
+        };
+        Ok(self.listed.insert(listed))
     }
 
     /// Whether the object is there; call [`Presence::expect`] first. Objects of other processes that came after the
@@ -61,11 +73,27 @@ impl Presence {
         if self.listed.as_ref().is_some_and(|listed| listed.contains(&short(id))) {
             return true;
         }
-        let found = fs::metadata(object::path(disk, id)).is_ok_and(|metadata| metadata.is_file());
+        let found = object::is_there(disk, id);
         if found {
             self.add(id);
         }
         found
+    }
+
+    /// Names of the objects of a task that were there when this was first asked for any task.
+    pub(super) fn names_of_task(&mut self, disk: &Disk, mark: &Mark, key: &Key) -> Result<Vec<String>, StoreError> {
+        if self.of_tasks.is_none() {
+            let mut of_tasks: HashMap<u64, Vec<u64>, _> = HashMap::default();
+            for &[content, key] in self.listed(disk, mark)?.iter() {
+                of_tasks.entry(key).or_default().push(content);
+            }
+            self.of_tasks = Some(of_tasks);
+        }
+        let contents = self.of_tasks.as_ref().and_then(|tasks| tasks.get(&first_word(&key.0)));
+        let mut shards: Vec<u8> = contents.into_iter().flatten().map(|content| content.to_be_bytes()[0]).collect();
+        shards.sort_unstable();
+        shards.dedup();
+        Ok(shards.into_iter().flat_map(|shard| object::of_task(disk, shard, key)).collect())
     }
 
     pub(super) fn add(&mut self, id: &ObjectId) {
@@ -95,21 +123,42 @@ struct Known {
     folders: HashMap<[u64; 3], Range<usize>>,
 }
 
+/// Name of the listing of the user with this mark.
+fn file_name(mark: &Mark) -> String {
+    format!("listing-{}", mark.name())
+}
+
+/// Whether a name in the root is one of a listing.
+pub(super) fn is_listing(name: &str) -> bool {
+    name.strip_prefix("listing-").is_some_and(|user| user.len() == 8 && is_hex(user))
+}
+
 /// The objects of all folders; what is new in the listing is kept for the next time.
-fn list(disk: &Disk) -> Result<Listed, StoreError> {
-    let file = disk.root.join("listing");
-    let known = fs::read(&file).ok().and_then(|bytes| unpack(&bytes)).unwrap_or_default();
-    let (mut shards, mut news) = (Vec::new(), false);
-    for folder in object::shards(disk)? {
-        let state = state(&folder);
-        let old = state.and_then(|state| known.folders.get(&state));
+fn list(disk: &Disk, mark: &Mark) -> Result<Listed, StoreError> {
+    let Some((objects, names)) = object::shards(disk)? else { return Ok(Listed::default()) };
+    let file = file_name(mark);
+    let known = disk.folder("").and_then(|root| root.read(&file, MOST)).ok();
+    let known = known.and_then(|bytes| unpack(mark, &bytes)).unwrap_or_default();
+    let (mut shards, mut news, mut clock) = (Vec::new(), false, None);
+    for name in names {
+        let Ok(stat) = objects.stat_of(&name) else { continue };
+        let old = known.folders.get(&state(&stat));
+        let state = match old {
+            Some(_) => Some(state(&stat)),
+            // The time by the file system's own clock, of a file made after the first folder was looked at.
+            None => clock
+                .get_or_insert_with(|| disk.draft("", 0o444).ok()?.file_time())
+                .is_some_and(|now: i64| now - stat.st_ctime > SETTLED)
+                .then(|| state(&stat)),
+        };
         news |= old.is_none() && state.is_some();
-        let names = old.map_or_else(|| Cow::from(names(&folder)), |old| Cow::from(&known.names[old.clone()]));
+        let names =
+            old.map_or_else(|| Cow::from(short_names(&objects, &name)), |old| Cow::from(&known.names[old.clone()]));
         shards.push(Shard { state, names });
     }
     if news {
         // A store that cannot be written is listed each time.
-        let _ = disk.replace(&file, &pack(&shards));
+        let _ = disk.replace("", &file, &pack(mark, &shards));
     }
     let mut listed = Listed::default();
     listed.reserve(shards.iter().map(|shard| shard.names.len()).sum());
@@ -117,41 +166,30 @@ fn list(disk: &Disk) -> Result<Listed, StoreError> {
     Ok(listed)
 }
 
-fn names(folder: &Path) -> Vec<Short> {
-    let mut names = Vec::new();
-    object::list_shard(folder, |name| names.extend(short_of_name(name)));
-    names
+/// The objects in a folder that are plain files, or that the file system does not tell from such.
+fn short_names(objects: &Folder, shard: &str) -> Vec<Short> {
+    let Ok(folder) = objects.inner(shard) else { return Vec::new() };
+    object::names(&folder, shard).iter().filter_map(|name| short_of_name(name)).collect()
 }
 
-/// The state of a folder, unless it changed so lately that it may change again without showing it.
-#[cfg(unix)]
-fn state(folder: &Path) -> Option<[u64; 3]> {
-    use std::os::unix::fs::MetadataExt;
-    let data = fs::metadata(folder).ok()?;
-    let (seconds, nanoseconds) = (u64::try_from(data.ctime()).ok()?, u32::try_from(data.ctime_nsec()).ok()?);
-    let changed = SystemTime::UNIX_EPOCH + Duration::new(seconds, nanoseconds);
-    let settled = SystemTime::now().duration_since(changed).is_ok_and(|age| age > SETTLED);
-    settled.then_some([data.ino(), seconds, u64::from(nanoseconds)])
+fn state(stat: &Stat) -> [u64; 3] {
+    [stat.st_ino, stat.st_ctime as u64, stat.st_ctime_nsec as u64]
 }
 
-#[cfg(not(unix))]
-fn state(_: &Path) -> Option<[u64; 3]> {
-    None
-}
-
-fn pack(shards: &[Shard<'_>]) -> Vec<u8> {
+fn pack(mark: &Mark, shards: &[Shard<'_>]) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     for (state, names) in shards.iter().filter_map(|shard| Some((shard.state?, &shard.names))) {
         let words = state.into_iter().chain([names.len() as u64]).chain(names.iter().flatten().copied());
         words.for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
     }
-    bytes.extend_from_slice(blake3::hash(&bytes).as_bytes());
+    let check = mark.note(MAGIC, &bytes);
+    bytes.extend_from_slice(&check);
     bytes
 }
 
-fn unpack(bytes: &[u8]) -> Option<Known> {
+fn unpack(mark: &Mark, bytes: &[u8]) -> Option<Known> {
     let (body, check) = bytes.split_last_chunk::<32>()?;
-    if blake3::hash(body).as_bytes() != check {
+    if mark.note(MAGIC, body) != *check {
         return None;
     }
     let (words, []) = body.strip_prefix(MAGIC)?.as_chunks::<8>() else { return None };
@@ -198,15 +236,22 @@ mod tests {
             Shard { state: None, names: vec![[8, 9]].into() },
             Shard { state: Some([9, 2, 3]), names: Vec::new().into() },
         ];
-        let bytes = pack(&shards);
+        let mark = Mark::of(&[1; 32]);
+        let bytes = pack(&mark, &shards);
         let folders = HashMap::from([([1, 2, 3], 0..2), ([9, 2, 3], 2..2)]);
-        assert_eq!(unpack(&bytes), Some(Known { names: vec![[4, 5], [6, 7]], folders }));
+        assert_eq!(unpack(&mark, &bytes), Some(Known { names: vec![[4, 5], [6, 7]], folders }));
         for place in 0..bytes.len() {
             let mut damaged = bytes.clone();
             damaged[place] ^= 1;
-            assert_eq!(unpack(&damaged), None);
-            assert_eq!(unpack(&bytes[..place]), None);
+            assert_eq!(unpack(&mark, &damaged), None);
+            assert_eq!(unpack(&mark, &bytes[..place]), None);
         }
+    }
+
+    #[test]
+    fn the_listing_of_another_user_says_nothing() {
+        let shards = [Shard { state: Some([1, 2, 3]), names: vec![[4, 5]].into() }];
+        assert_eq!(unpack(&Mark::of(&[2; 32]), &pack(&Mark::of(&[1; 32]), &shards)), None);
     }
 
     #[test]

@@ -56,3 +56,5 @@ fn one_of_two_claims_waits() {
     assert_eq!(found, record);
     assert_eq!(std::fs::read_dir(folder.path().join("locks")).unwrap().count(), 0);
 }
+
+mod faults;

@@ -68,6 +68,15 @@ impl Power {
     }
 }
 
+impl std::fmt::Display for Power {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.denominator {
+            1 => write!(f, "{}", self.numerator),
+            _ => write!(f, "({}/{})", self.numerator, self.denominator),
+        }
+    }
+}
+
 /// Reads a sign, digits and at most four decimals.
 fn decimal(text: &str) -> Option<Power> {
     let (sign, digits) = match text.strip_prefix(['-', '−']) {

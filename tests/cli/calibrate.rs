@@ -194,8 +194,8 @@ Ec = { sets = "mortar.Ec", unit = "GPa", range = [10, 30] }
 sigma_c = { sets = "mortar.sigma_c", unit = "MPa", range = [10, 30] }
 [material.base]
 mortar = { Ec = "20 GPa", kn_ks = 2.5, sigma_c = "20 MPa", tau_c = "20 MPa", mu = 0.5 }
-aggregate = { Ec = "30 GPa", kn_ks = 2, mu = 0.5 }
-interface = { Ec = "10 GPa", kn_ks = 2.5, sigma_c = "15 MPa", tau_c = "15 MPa", mu = 0.5 }
+aggregate = { Ec = "30 GPa", kn_ks = 2, mu = 0.5, bond = "none" }
+interface = { between = ["mortar", "aggregate"], Ec = "10 GPa", kn_ks = 2.5, sigma_c = "15 MPa", tau_c = "15 MPa", mu = 0.5 }
 [stage.specimen]
 kind = "specimen"
 width = "20 mm"

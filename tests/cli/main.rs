@@ -12,3 +12,4 @@ mod report;
 mod reruns;
 mod space;
 mod stop;
+mod trust;

@@ -39,7 +39,7 @@ impl Space {
         self.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("starting flow")
     }
 
-    fn command(&self, arguments: &[&str]) -> Command {
+    pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_flow"));
         command.args(arguments).current_dir(self.folder.path());
         command

@@ -6,6 +6,7 @@ mod damage;
 mod disk;
 mod processes;
 mod readers;
+mod trust;
 mod upkeep;
 
 use flow::artifact::{Artifact, Group, Key, Node, Table};

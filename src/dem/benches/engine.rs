@@ -33,7 +33,7 @@ fn table(friction: f64) -> ContactTable {
         cohesion: 20e6,
         friction_angle: 0.0,
         moment_factor: 1.0,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     };
     ContactTable::new().with(MORTAR, MORTAR, Interaction { linear, bond: Bond::Parallel(bond) }).with(
         MORTAR,

@@ -270,6 +270,7 @@ mod tests {
     use crate::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
     use crate::law::Rows;
     use crate::space::{D2, D3};
+    use crate::strength::Scatter;
 
     /// Loads a bonded pair, then turns it as a whole once around `axis` in `steps` steps (chords against arcs leave an
     /// error of the order of steps⁻²); normal force, shear force,
@@ -282,7 +283,7 @@ mod tests {
             cohesion: f64::INFINITY,
             friction_angle: 0.0,
             moment_factor: 1.0,
-            deviation: 0.0,
+            scatter: Scatter::default(),
         };
         let constants =
             Constants::new(&Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) });

@@ -6,14 +6,15 @@ use crate::error::Faults;
 use crate::interaction::Bond;
 use crate::law::{Memory, REFERENCE, Rows, SHEAR};
 use crate::space::Space;
+use crate::strength::Strength;
 use math::random::Stream;
 
 impl<S: Space> Engine<S> {
     /// Installs the bond of its class into every unbonded contact whose gap is at most `gap` (m); how many.
     ///
     /// The bond starts without force. A negative gap becomes the reference gap (a contact bond takes any gap), and the
-    /// spring's shear force is dropped with its overlap. Strengths are drawn per contact from N(mean, deviation),
-    /// negative ones again, from the stream "bond strength" of `seed`, contacts in the caller's order.
+    /// spring's shear force is dropped with its overlap. Strengths are drawn per contact, tension first
+    /// ([`strength`](crate::strength)), from the stream "bond strength" of `seed`, contacts in the caller's order.
     ///
     /// # Errors
     /// A gap that is not finite or above the largest radius.
@@ -50,16 +51,15 @@ impl<S: Space> Engine<S> {
     /// Strengths of the chosen contacts, drawn in the caller's order; each stands at the number of its contact.
     fn draw_strengths(&self, chosen: &mut [(Key, u32)], stream: &mut Stream) -> Vec<[f64; 2]> {
         chosen.sort_unstable_by_key(|&(key, order)| (self.caller_ends(key), order));
-        let mut strengths = vec![[0.0; 2]; chosen.len()];
+        let laws: Vec<Option<[Strength; 2]>> =
+            self.table.entries.iter().map(|entry| strengths(&entry.2.bond)).collect();
+        let mut drawn = vec![[0.0; 2]; chosen.len()];
         for &(key, order) in &*chosen {
-            let (means, deviation) = match self.table.entries[self.class_of(key) as usize].2.bond {
-                Bond::None => continue,
-                Bond::Contact(b) => ([b.tensile_strength, b.shear_strength], b.deviation),
-                Bond::Parallel(b) => ([b.tensile_strength, b.cohesion], b.deviation),
-            };
-            strengths[order as usize] = means.map(|mean| draw(mean, deviation, stream));
+            if let Some(laws) = &laws[self.class_of(key) as usize] {
+                drawn[order as usize] = laws.map(|law| law.draw(stream));
+            }
         }
-        strengths
+        drawn
     }
 
     /// The caller's places of the two ends, the smaller first; walls after all particles.
@@ -108,15 +108,13 @@ impl<S: Space> Engine<S> {
     }
 }
 
-/// A strength, never negative.
-fn draw(mean: f64, deviation: f64, stream: &mut Stream) -> f64 {
-    if deviation == 0.0 || !mean.is_finite() {
-        return mean;
-    }
-    loop {
-        let strength = mean * (1.0 + deviation * stream.normal());
-        if strength > 0.0 {
-            return strength;
-        }
-    }
+/// The laws of the two strengths of a bond, tension first.
+fn strengths(bond: &Bond) -> Option<[Strength; 2]> {
+    let (means, scatter) = match bond {
+        Bond::None => return None,
+        Bond::Contact(b) => ([b.tensile_strength, b.shear_strength], b.scatter),
+        Bond::Parallel(b) => ([b.tensile_strength, b.cohesion], b.scatter),
+    };
+    let law = |mean, deviation| Strength::new(mean, deviation, scatter.distribution);
+    Some([law(means[0], scatter.tensile), law(means[1], scatter.shear)])
 }

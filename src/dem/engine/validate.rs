@@ -279,10 +279,10 @@ fn interaction_faults(interaction: &Interaction, check: &mut impl FnMut(&'static
     for beta in [linear.dashpot.normal, linear.dashpot.shear] {
         check("dashpot", beta, beta >= 0.0 && beta.is_finite(), NOT_NEGATIVE);
     }
-    let strengths = match interaction.bond {
+    let (strengths, scatter) = match interaction.bond {
         Bond::None => return,
         Bond::Contact(b) => {
-            [("tensile strength", b.tensile_strength), ("shear strength", b.shear_strength), ("deviation", b.deviation)]
+            ([("tensile strength", b.tensile_strength), ("shear strength", b.shear_strength)], b.scatter)
         }
         Bond::Parallel(b) => {
             match b.stiffness {
@@ -299,13 +299,15 @@ fn interaction_faults(interaction: &Interaction, check: &mut impl FnMut(&'static
             check("moment factor", b.moment_factor, (0.0..=1.0).contains(&b.moment_factor), "in [0, 1]");
             let right = std::f64::consts::FRAC_PI_2;
             check("friction angle", b.friction_angle, (0.0..right).contains(&b.friction_angle), "in [0, π/2)");
-            [("tensile strength", b.tensile_strength), ("cohesion", b.cohesion), ("deviation", b.deviation)]
+            ([("tensile strength", b.tensile_strength), ("cohesion", b.cohesion)], b.scatter)
         }
     };
-    for (name, value) in &strengths[..2] {
-        check(name, *value, *value > 0.0, POSITIVE);
+    for (name, value) in strengths {
+        check(name, value, value > 0.0, POSITIVE);
     }
-    check(strengths[2].0, strengths[2].1, strengths[2].1 >= 0.0 && strengths[2].1.is_finite(), NOT_NEGATIVE);
+    for (name, value) in [("tensile deviation", scatter.tensile), ("shear deviation", scatter.shear)] {
+        check(name, value, value >= 0.0 && value.is_finite(), NOT_NEGATIVE);
+    }
 }
 
 /// Starts too deep in one another, or with one centre, also across the faces of a cell.

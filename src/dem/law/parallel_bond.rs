@@ -166,6 +166,7 @@ mod tests {
     use super::*;
     use crate::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
     use crate::space::{D2, D3};
+    use crate::strength::Scatter;
     use math::random::Stream;
 
     /// Draws cements whose stress is at the strength to within `share`; how often the quick check held.
@@ -177,7 +178,7 @@ mod tests {
             cohesion: 1.0,
             friction_angle: 0.4,
             moment_factor: 0.7,
-            deviation: 0.0,
+            scatter: Scatter::default(),
         };
         let law = Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) };
         let (constants, mut stream) = (Constants::new(&law), Stream::new(3, "cement", 0));

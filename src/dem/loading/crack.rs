@@ -1,18 +1,7 @@
 //! Cracks of a loading test: one for each bond that broke, with the strain of the specimen at that moment.
 
-use super::material::AGGREGATE;
 use crate::measure::Mode;
 use crate::{D2, Engine, Other};
-use serde::{Deserialize, Serialize};
-
-/// Contact group of a crack.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum CrackGroup {
-    /// Between mortar balls.
-    Mortar,
-    /// Between mortar and aggregate.
-    Interface,
-}
 
 /// A broken bond.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +10,8 @@ pub struct CrackEvent {
     pub strain: f64,
     /// Tension or shear.
     pub mode: Mode,
-    /// Contact group.
-    pub group: CrackGroup,
+    /// Groups of the two particles, by number, the smaller first.
+    pub groups: [usize; 2],
     /// Place (m).
     pub position: [f64; 2],
     /// Unit normal of the contact; the crack lies across it.
@@ -36,12 +25,14 @@ pub(super) fn note_cracks(engine: &Engine<D2>, cracks: &mut Vec<CrackEvent>, (st
     let steps = (engine.steps() - step).max(1) as f64;
     for crack in &engine.cracks()[cracks.len()..] {
         let share = (crack.step - step) as f64 / steps;
-        let touches_aggregate = |particle: usize| engine.group(particle) == AGGREGATE;
-        let other = matches!(crack.other, Other::Particle(j) if touches_aggregate(j));
+        let group = |particle: usize| usize::from(engine.group(particle).0);
+        let first = group(crack.particle);
+        // Walls are never bonded.
+        let second = if let Other::Particle(other) = crack.other { group(other) } else { first };
         cracks.push(CrackEvent {
             strain: strain + share * (now - strain),
             mode: crack.mode,
-            group: if other || touches_aggregate(crack.particle) { CrackGroup::Interface } else { CrackGroup::Mortar },
+            groups: [first.min(second), first.max(second)],
             position: crack.position,
             normal: crack.normal,
             size: crack.size,

@@ -1,202 +1,342 @@
-//! Microparameters of a plane specimen of mortar and aggregate, and the contact table they make.
+//! Microparameters of a specimen by contact, and the contact table that they make.
 //!
-//! | contact | law | values |
-//! |---|---|---|
-//! | mortar–mortar | linear + bond | `mortar` |
-//! | mortar–aggregate | linear + bond | `interface` |
-//! | aggregate–aggregate | linear, never bonded | `aggregate` |
-//! | inside a clump | none | |
-//! | platen–any | linear, never bonded | modulus and ratio of `mortar`, friction of the platen |
+//! A specimen has groups of particles. Contacts within a group and between two groups have values of their own: a linear
+//! spring, and a bond where the contact is bonded. Platens are never bonded; the spring of a platen is that of the first group
+//! with the friction of the platen, whatever it touches (a platen of the material's own modulus). Inside a clump there are
+//! no contacts.
 //!
-//! Linear spring and cement act in parallel and **each** has the modulus E_c and the ratio k_n/k_s of its contact, so an
-//! intact contact is twice as stiff as one of them (E_c = Ē_c and k_n/k_s = k̄_n/k̄_s in the paper).
-//!
-//! Symbols: E_c modulus (Pa), κ = k_n/k_s, σ_c tensile strength (Pa), τ_c shear strength (Pa), μ friction, λ bond radius
-//! multiplier, β moment factor, φ friction angle of the bond.
-//!
-//! Source: Su et al. 2021, doi:10.3390/ma14071627, sections 2.1 and 3.2, Tables 3 and 4.
+//! Linear spring and cement act in parallel. Without stiffness of its own the cement has the modulus and ratio of the spring, so
+//! an intact contact is twice as stiff as one of them (E_c = Ē_c and k_n/k_s = k̄_n/k̄_s, Su et al. 2021, doi:10.3390/ma14071627).
 
-use crate::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Group, Interaction, Linear};
-use crate::{NormalForce, ParallelBond, ShearBreak, Stiffness};
+use crate::parameter::{Law, Parameter};
+use crate::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Distribution, Group, Interaction};
+use crate::{Linear, NormalForce, ParallelBond, Scatter, ShearBreak, Space, Stiffness};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
-/// Contact group of mortar balls.
-pub const MORTAR: Group = Group(0);
-/// Contact group of the pebbles of aggregate.
-pub const AGGREGATE: Group = Group(1);
 /// Contact group of platens.
-pub const PLATEN: Group = Group(2);
-
-/// Microparameters of a contact that can be bonded.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bonded {
-    /// E_c of spring and cement each (Pa).
-    pub modulus: f64,
-    /// k_n/k_s of spring and cement.
-    pub stiffness_ratio: f64,
-    /// σ_c (Pa).
-    pub tensile_strength: f64,
-    /// τ_c (Pa).
-    pub shear_strength: f64,
-    /// μ of the spring.
-    pub friction: f64,
-}
-
-/// Microparameters of a contact that is never bonded.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Unbonded {
-    /// E_c (Pa).
-    pub modulus: f64,
-    /// k_n/k_s.
-    pub stiffness_ratio: f64,
-    /// μ.
-    pub friction: f64,
-}
+pub const PLATEN: Group = Group(u8::MAX);
 
 /// Kind of bond.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum BondKind {
     /// Cement with a moment.
+    #[default]
     Parallel,
     /// Point bond.
     Contact,
+    /// No bond: spring and friction only.
+    None,
 }
 
-/// How bonds are formed and act, the same for all bonded contacts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Bonding {
-    /// Kind.
-    pub kind: BondKind,
-    /// Bonds form at gaps up to this share of the mean radius; 0: at contacts that overlap.
-    pub gap: f64,
-    /// λ.
-    pub radius_multiplier: f64,
-    /// β.
-    pub moment_factor: f64,
-    /// φ (rad).
-    pub friction_angle: f64,
-    /// Standard deviation of the strengths over their mean.
-    pub deviation: f64,
-    /// How a modulus becomes a stiffness.
-    pub convention: Convention,
+impl BondKind {
+    /// The laws of a contact with this bond.
+    pub const fn laws(self) -> &'static [Law] {
+        match self {
+            Self::Parallel => &[Law::Spring, Law::Parallel],
+            Self::Contact => &[Law::Spring, Law::Contact],
+            Self::None => &[Law::Spring],
+        }
+    }
+}
+
+/// Values of the contacts between two groups, or within one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// Names of the two groups.
+    pub between: [String; 2],
+    /// Bond.
+    pub bond: BondKind,
+    /// Distribution of the strengths.
+    #[serde(default, skip_serializing_if = "is_normal")]
+    pub distribution: Distribution,
+    /// Microparameters, SI; deviations over the mean.
+    #[serde(flatten)]
+    pub values: BTreeMap<Parameter, f64>,
+}
+
+fn is_normal(distribution: &Distribution) -> bool {
+    *distribution == Distribution::Normal
 }
 
 /// All microparameters of a specimen.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// Between mortar balls.
-    pub mortar: Bonded,
-    /// Between clumps.
-    pub aggregate: Unbonded,
-    /// Between mortar and clumps.
-    pub interface: Bonded,
-    /// Bonds.
-    pub bonding: Bonding,
+    /// Names of the groups by their number.
+    pub groups: Vec<String>,
+    /// Contacts by name.
+    pub contacts: BTreeMap<String, Contact>,
+    /// Bonds form at gaps up to this share of the mean radius; 0: at contacts that overlap.
+    #[serde(default)]
+    pub gap: f64,
+    /// How a modulus becomes a stiffness.
+    #[serde(default)]
+    pub convention: Convention,
 }
 
-/// A microparameter outside the law's domain.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{group} {name} is {found}; it must be {expected}")]
-pub struct MaterialError {
-    /// Contact group.
-    pub group: &'static str,
-    /// Microparameter.
-    pub name: &'static str,
-    /// What was given.
-    pub found: f64,
-    /// What it must be.
-    pub expected: &'static str,
+/// What is wrong with a microparameter of a contact.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MaterialFault {
+    /// The law needs it.
+    #[error("contact `{contact}` lacks `{key}`, {meaning}", key = .parameter.key(), meaning = .parameter.declaration().meaning)]
+    Missing {
+        /// The contact's name.
+        contact: String,
+        /// The microparameter.
+        parameter: Parameter,
+    },
+    /// No law of the contact has it.
+    #[error("`{key}` has no effect on contact `{contact}`, which has {}", with_bond(*.bond), key = .parameter.key())]
+    NoEffect {
+        /// The contact's name.
+        contact: String,
+        /// The microparameter.
+        parameter: Parameter,
+        /// Its bond.
+        bond: BondKind,
+    },
+    /// Another microparameter stands for it.
+    #[error("`{}` of contact `{contact}` has no effect beside `{}`", .parameter.key(), .other.key())]
+    Beside {
+        /// The contact's name.
+        contact: String,
+        /// The microparameter.
+        parameter: Parameter,
+        /// The other one.
+        other: Parameter,
+    },
+    /// Outside its range.
+    #[error("`{}` of contact `{contact}` is {found}; it must be {}", .parameter.key(), .parameter.declaration().range.words())]
+    Outside {
+        /// The contact's name.
+        contact: String,
+        /// The microparameter.
+        parameter: Parameter,
+        /// The value.
+        found: f64,
+    },
 }
 
-impl Default for Bonding {
-    /// Bonds at overlapping contacts, λ = 1, β = 1, φ = 0, no scatter, present stiffness convention.
-    fn default() -> Self {
-        Self {
-            kind: BondKind::Parallel,
-            gap: 0.0,
-            radius_multiplier: 1.0,
-            moment_factor: 1.0,
-            friction_angle: 0.0,
-            deviation: 0.0,
-            convention: Convention::Present,
+impl MaterialFault {
+    /// The contact's name and the microparameter.
+    pub fn subject(&self) -> (&str, Parameter) {
+        match self {
+            Self::Missing { contact, parameter }
+            | Self::NoEffect { contact, parameter, .. }
+            | Self::Beside { contact, parameter, .. }
+            | Self::Outside { contact, parameter, .. } => (contact, *parameter),
         }
+    }
+
+    /// What to do.
+    pub fn hint(&self) -> String {
+        match self {
+            Self::Missing { parameter, .. } => match parameter {
+                Parameter::Modulus | Parameter::Ratio => "give `Ec` and `kn_ks`, or `kn` and `ks`".to_owned(),
+                Parameter::Kn | Parameter::Ks => "`kn` and `ks` go together".to_owned(),
+                Parameter::BondKn | Parameter::BondKs => {
+                    "give `pb_kn` and `pb_ks`, or `pb_Ec` and `pb_kn_ks`".to_owned()
+                }
+                Parameter::TensileStrength | Parameter::ShearStrength => {
+                    "give it, or say `bond = \"none\"` for a contact without bond".to_owned()
+                }
+                _ => format!("write for example {}", parameter.declaration().quantity.example()),
+            },
+            Self::NoEffect { parameter, .. } => {
+                format!("leave out `{}`, or choose a bond that has it", parameter.key())
+            }
+            Self::Beside { parameter, other, .. } => format!("leave out `{}` or `{}`", parameter.key(), other.key()),
+            Self::Outside { .. } => String::new(),
+        }
+    }
+}
+
+fn with_bond(bond: BondKind) -> &'static str {
+    match bond {
+        BondKind::Parallel => "a parallel bond",
+        BondKind::Contact => "a contact bond",
+        BondKind::None => "no bond",
+    }
+}
+
+impl Contact {
+    /// Of one group, with a parallel bond: E_c (Pa), k_n/k_s, σ_c and τ_c (Pa), μ.
+    pub fn bonded(group: &str, modulus: f64, ratio: f64, strengths: [f64; 2], friction: f64) -> Self {
+        let values = [
+            (Parameter::Modulus, modulus),
+            (Parameter::Ratio, ratio),
+            (Parameter::TensileStrength, strengths[0]),
+            (Parameter::ShearStrength, strengths[1]),
+            (Parameter::Friction, friction),
+        ];
+        let between = [group.to_owned(), group.to_owned()];
+        Self { between, bond: BondKind::Parallel, distribution: Distribution::Normal, values: values.into() }
+    }
+
+    /// All that is wrong with its values; `name` is its name.
+    pub fn faults(&self, name: &str) -> Vec<MaterialFault> {
+        let contact = || name.to_owned();
+        let bond = self.bond;
+        let mut faults = Vec::new();
+        for (&parameter, &found) in &self.values {
+            let declaration = parameter.declaration();
+            if !declaration.laws.iter().any(|law| bond.laws().contains(law)) {
+                faults.push(MaterialFault::NoEffect { contact: contact(), parameter, bond });
+            } else if !declaration.range.holds(found) {
+                faults.push(MaterialFault::Outside { contact: contact(), parameter, found });
+            }
+        }
+        for (parameter, other) in self.beside() {
+            faults.push(MaterialFault::Beside { contact: contact(), parameter, other });
+        }
+        faults.extend(
+            self.missing().into_iter().map(|parameter| MaterialFault::Missing { contact: contact(), parameter }),
+        );
+        faults
+    }
+
+    fn has(&self, parameter: Parameter) -> bool {
+        self.values.contains_key(&parameter)
+    }
+
+    /// Values given beside those that stand for them.
+    fn beside(&self) -> Vec<(Parameter, Parameter)> {
+        use Parameter::{BondKn, BondKs, BondModulus, BondRatio, Kn, Ks, Modulus, Ratio};
+        // `kn_ks` beside `kn` and `ks` still is the ratio of a cement that is given by its modulus.
+        let cement = self.has(BondModulus) && !self.has(BondRatio);
+        let pairs = [(Kn, Modulus), (Ks, Ratio), (BondKn, BondModulus), (BondKs, BondRatio)];
+        let both = pairs.into_iter().filter(|&(direct, other)| self.has(direct) && self.has(other));
+        both.filter(|&(direct, _)| !(direct == Ks && cement)).collect()
+    }
+
+    /// Values that the laws need and that are not given.
+    fn missing(&self) -> Vec<Parameter> {
+        use Parameter::{BondKn, BondKs, BondModulus, BondRatio, Kn, Ks, Modulus, Ratio};
+        let direct = self.has(Kn) || self.has(Ks);
+        let mut needed = if direct { vec![Kn, Ks] } else { vec![Modulus, Ratio] };
+        needed.push(Parameter::Friction);
+        if self.bond == BondKind::Parallel {
+            if self.has(BondKn) || self.has(BondKs) {
+                needed.extend([BondKn, BondKs]);
+            } else if direct && !self.has(BondModulus) {
+                needed.extend([BondKn, BondKs]);
+            } else if direct && !self.has(Ratio) {
+                needed.push(BondRatio);
+            }
+        }
+        if self.bond != BondKind::None {
+            needed.extend([Parameter::TensileStrength, Parameter::ShearStrength]);
+        }
+        needed.into_iter().filter(|&parameter| !self.has(parameter)).collect()
+    }
+
+    /// A value, or its default; NaN where it has none, which the engine refuses.
+    fn get(&self, parameter: Parameter) -> f64 {
+        self.values.get(&parameter).copied().unwrap_or(parameter.declaration().default)
+    }
+
+    fn stiffness(&self, convention: Convention) -> Stiffness {
+        if self.has(Parameter::Kn) {
+            return Stiffness::Direct { kn: self.get(Parameter::Kn), ks: self.get(Parameter::Ks) };
+        }
+        Stiffness::Modulus { modulus: self.get(Parameter::Modulus), ratio: self.get(Parameter::Ratio), convention }
+    }
+
+    fn linear(&self, convention: Convention, friction: f64) -> Linear {
+        let stiffness = self.stiffness(convention);
+        Linear { stiffness, normal_force: NormalForce::Absolute, friction, dashpot: Dashpot::default() }
+    }
+
+    fn cement(&self) -> BondStiffness {
+        if self.has(Parameter::BondKn) {
+            return BondStiffness::PerArea { kn: self.get(Parameter::BondKn), ks: self.get(Parameter::BondKs) };
+        }
+        let own = |bond, spring| if self.has(bond) { self.get(bond) } else { self.get(spring) };
+        BondStiffness::Modulus {
+            modulus: own(Parameter::BondModulus, Parameter::Modulus),
+            ratio: own(Parameter::BondRatio, Parameter::Ratio),
+        }
+    }
+
+    /// Law and values as the engine takes them.
+    pub fn interaction(&self, convention: Convention) -> Interaction {
+        let scatter = Scatter {
+            tensile: self.get(Parameter::TensileDeviation),
+            shear: self.get(Parameter::ShearDeviation),
+            distribution: self.distribution,
+        };
+        let [tensile_strength, shear] = [Parameter::TensileStrength, Parameter::ShearStrength].map(|p| self.get(p));
+        let bond = match self.bond {
+            BondKind::None => Bond::None,
+            BondKind::Contact => Bond::Contact(ContactBond {
+                tensile_strength,
+                shear_strength: shear,
+                scatter,
+                shear_break: ShearBreak::Keep,
+            }),
+            BondKind::Parallel => Bond::Parallel(ParallelBond {
+                radius_multiplier: self.get(Parameter::RadiusMultiplier),
+                stiffness: self.cement(),
+                tensile_strength,
+                cohesion: shear,
+                friction_angle: self.get(Parameter::FrictionAngle),
+                moment_factor: self.get(Parameter::MomentFactor),
+                scatter,
+            }),
+        };
+        Interaction { linear: self.linear(convention, self.get(Parameter::Friction)), bond }
     }
 }
 
 impl Material {
-    /// All microparameters that are outside the domain of their law.
-    pub fn faults(&self) -> Vec<MaterialError> {
-        let mut faults = Vec::new();
-        for (group, bonded) in [("mortar", &self.mortar), ("interface", &self.interface)] {
-            faults.extend(spring_faults(group, bonded.modulus, bonded.stiffness_ratio, bonded.friction));
-            for (name, found) in [("sigma_c", bonded.tensile_strength), ("tau_c", bonded.shear_strength)] {
-                if !(found > 0.0 && found.is_finite()) {
-                    faults.push(MaterialError { group, name, found, expected: "a positive stress" });
+    /// Of one group with the values of `contact`.
+    pub fn of_one(contact: Contact) -> Self {
+        let name = contact.between[0].clone();
+        Self { groups: vec![name.clone()], contacts: [(name, contact)].into(), ..Self::default() }
+    }
+
+    /// All microparameters that are missing, without effect or outside their range.
+    pub fn faults(&self) -> Vec<MaterialFault> {
+        self.contacts.iter().flat_map(|(name, contact)| contact.faults(name)).collect()
+    }
+
+    /// Name and values of the contacts of two groups, by their numbers.
+    pub fn contact(&self, a: usize, b: usize) -> Option<(&str, &Contact)> {
+        let (a, b) = (self.groups.get(a)?, self.groups.get(b)?);
+        let is = |between: &[String; 2]| (&between[0], &between[1]) == (a, b) || (&between[1], &between[0]) == (a, b);
+        self.contacts.iter().find(|(_, contact)| is(&contact.between)).map(|(name, contact)| (name.as_str(), contact))
+    }
+
+    /// The contact table, platens with the given friction. A pair without values has no entry: the engine refuses a
+    /// specimen in which it could touch.
+    pub fn table(&self, platen_friction: f64) -> ContactTable {
+        let mut table = ContactTable::new();
+        let group = |number: usize| Group(number as u8);
+        for a in 0..self.groups.len() {
+            for b in a..self.groups.len() {
+                if let Some((_, contact)) = self.contact(a, b) {
+                    table.set(group(a), group(b), contact.interaction(self.convention));
                 }
             }
         }
-        let Unbonded { modulus, stiffness_ratio, friction } = self.aggregate;
-        faults.extend(spring_faults("aggregate", modulus, stiffness_ratio, friction));
-        let bonding = &self.bonding;
-        let rules = [
-            ("gap", bonding.gap, (0.0..=1.0).contains(&bonding.gap), "a share of the mean radius, 0 to 1"),
-            ("radius_multiplier", bonding.radius_multiplier, bonding.radius_multiplier > 0.0, "positive"),
-            ("moment_factor", bonding.moment_factor, (0.0..=1.0).contains(&bonding.moment_factor), "0 to 1"),
-            ("friction_angle", bonding.friction_angle, (0.0..1.5).contains(&bonding.friction_angle), "0 to 1.5 rad"),
-            ("deviation", bonding.deviation, (0.0..1.0).contains(&bonding.deviation), "at least 0 and below 1"),
-        ];
-        let bad = rules.into_iter().filter(|rule| !rule.2);
-        faults.extend(bad.map(|(name, found, _, expected)| MaterialError { group: "bond", name, found, expected }));
-        faults
+        if let Some((_, first)) = self.contact(0, 0) {
+            let platen = Interaction::unbonded(first.linear(self.convention, platen_friction));
+            (0..self.groups.len()).for_each(|number| table.set(PLATEN, group(number), platen));
+        }
+        table
     }
 
-    /// The contact table, platens with the given friction.
-    pub fn table(&self, platen_friction: f64) -> ContactTable {
-        let platen = self.linear(self.mortar.modulus, self.mortar.stiffness_ratio, platen_friction);
-        let Unbonded { modulus, stiffness_ratio, friction } = self.aggregate;
-        ContactTable::new()
-            .with(MORTAR, MORTAR, self.bonded(&self.mortar))
-            .with(MORTAR, AGGREGATE, self.bonded(&self.interface))
-            .with(AGGREGATE, AGGREGATE, Interaction::unbonded(self.linear(modulus, stiffness_ratio, friction)))
-            .with(PLATEN, MORTAR, Interaction::unbonded(platen))
-            .with(PLATEN, AGGREGATE, Interaction::unbonded(platen))
-    }
-
-    fn linear(&self, modulus: f64, ratio: f64, friction: f64) -> Linear {
-        let stiffness = Stiffness::Modulus { modulus, ratio, convention: self.bonding.convention };
-        Linear { stiffness, normal_force: NormalForce::Absolute, friction, dashpot: Dashpot::default() }
-    }
-
-    fn bonded(&self, values: &Bonded) -> Interaction {
-        let bonding = &self.bonding;
-        let bond = match bonding.kind {
-            BondKind::Parallel => Bond::Parallel(ParallelBond {
-                radius_multiplier: bonding.radius_multiplier,
-                stiffness: BondStiffness::Modulus { modulus: values.modulus, ratio: values.stiffness_ratio },
-                tensile_strength: values.tensile_strength,
-                cohesion: values.shear_strength,
-                friction_angle: bonding.friction_angle,
-                moment_factor: bonding.moment_factor,
-                deviation: bonding.deviation,
-            }),
-            BondKind::Contact => Bond::Contact(ContactBond {
-                tensile_strength: values.tensile_strength,
-                shear_strength: values.shear_strength,
-                deviation: bonding.deviation,
-                shear_break: ShearBreak::Keep,
-            }),
-        };
-        Interaction { linear: self.linear(values.modulus, values.stiffness_ratio, values.friction), bond }
+    /// Modulus of the linear springs of the first group (Pa): E_c, or the one that gives k_n between two particles of this
+    /// radius.
+    pub fn modulus<S: Space>(&self, radius: f64) -> f64 {
+        match self.contact(0, 0).map(|(_, first)| first.stiffness(self.convention)) {
+            Some(Stiffness::Modulus { modulus, .. }) => modulus,
+            Some(Stiffness::Direct { kn, .. }) => kn * 2.0 * radius / S::section(radius),
+            None => f64::NAN,
+        }
     }
 }
 
-fn spring_faults(group: &'static str, modulus: f64, ratio: f64, friction: f64) -> Vec<MaterialError> {
-    let rules = [
-        ("Ec", modulus, modulus > 0.0 && modulus.is_finite(), "a positive modulus"),
-        ("kn_ks", ratio, ratio > 0.0 && ratio.is_finite(), "positive"),
-        ("mu", friction, friction >= 0.0 && friction.is_finite(), "at least 0"),
-    ];
-    let bad = rules.into_iter().filter(|rule| !rule.2);
-    bad.map(|(name, found, _, expected)| MaterialError { group, name, found, expected }).collect()
-}
+#[cfg(test)]
+mod tests;

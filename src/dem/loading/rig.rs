@@ -3,10 +3,10 @@
 //! Everything starts free of force: bonds take the gaps of the packing as reference gaps, and so do the contacts that
 //! stay unbonded (clump–clump, platens). Reference gaps belong to the pair and outlive a loss of contact.
 
-use super::material::{AGGREGATE, MORTAR, Material};
+use super::material::Material;
 use crate::genesis::region::Point;
 use crate::genesis::specimen::Specimen;
-use crate::{Clump, D2, Engine, Faults, Masses, Model, Particle, Settings, Wall};
+use crate::{Clump, D2, Engine, Faults, Group, Masses, Model, Particle, Settings, Wall};
 use serde::{Deserialize, Serialize};
 
 /// What the machine adds to the physics: damping, masses, share of the critical time step.
@@ -39,7 +39,7 @@ pub fn mount(
     seed: u64,
 ) -> Result<Engine<D2>, Faults> {
     let of = specimen.clump_of_balls();
-    let group = |i: usize| if of[i].is_some() { AGGREGATE } else { MORTAR };
+    let group = |i: usize| Group(u8::from(of[i].is_some()));
     let ball = |i: usize| Particle::ball(specimen.centres[i], specimen.radii[i], specimen.density, group(i));
     let [width, height] = specimen.region.extent();
     let model = Model {
@@ -56,7 +56,7 @@ pub fn mount(
         },
     };
     let mut engine = Engine::new(&model)?;
-    engine.install_bonds(material.bonding.gap * specimen.mean_radius(), seed)?;
+    engine.install_bonds(material.gap * specimen.mean_radius(), seed)?;
     engine.absorb_overlaps();
     Ok(engine)
 }

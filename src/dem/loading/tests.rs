@@ -1,7 +1,7 @@
 //! The tests against closed forms, on lattices where there are any and on small random specimens.
 
 use super::drive::{Loading, TestError, TestFailure, TestKind, TestRecord};
-use super::material::{Bonded, Bonding, Material, Unbonded};
+use super::material::{Contact, Material};
 use super::uniaxial::{between_platens, platens};
 use crate::genesis::packing::Packing;
 use crate::genesis::region::Region;
@@ -10,10 +10,8 @@ use crate::measure::{self, stress};
 use crate::{D2, Faults, Watch};
 
 fn material(modulus: f64, ratio: f64, strength: f64) -> Material {
-    let bonded =
-        Bonded { modulus, stiffness_ratio: ratio, tensile_strength: strength, shear_strength: strength, friction: 0.5 };
-    let aggregate = Unbonded { modulus, stiffness_ratio: ratio, friction: 0.5 };
-    Material { mortar: bonded, aggregate, interface: bonded, bonding: Bonding { gap: 1e-3, ..Bonding::default() } }
+    let contact = Contact::bonded("rock", modulus, ratio, [strength; 2], 0.5);
+    Material { gap: 1e-3, ..Material::of_one(contact) }
 }
 
 /// Unit discs in `rows` rows of `columns`, touching; every other row shifted by a radius and one shorter.

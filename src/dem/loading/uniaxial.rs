@@ -97,7 +97,7 @@ pub(super) fn judge(
         steps: run.steps,
         strain_rate: rate,
         strain_per_step: rate * run.time_step,
-        speed_ratio: test.speed * (density / material.mortar.modulus).sqrt(),
+        speed_ratio: test.speed * (density / material.modulus::<D2>(specimen.mean_radius())).sqrt(),
         inertial_number: rate * 2.0 * specimen.mean_radius() * (density / values.strength).sqrt(),
         coordination: 2.0 * bonds as f64 / specimen.radii.len() as f64,
         unbalanced: unbalanced_ratio(engine),
@@ -113,6 +113,6 @@ pub fn warnings(test: &Loading, specimen: &Specimen, material: &Material) -> Res
     let engine = between_platens(test, specimen, material, 0)?;
     let [_, height] = specimen.region.extent();
     let strain_per_step = 2.0 * test.speed / height * engine.time_step();
-    let speed_ratio = test.speed * (specimen.density / material.mortar.modulus).sqrt();
+    let speed_ratio = test.speed * (specimen.density / material.modulus::<D2>(specimen.mean_radius())).sqrt();
     Ok(rate_warnings(test.speed, strain_per_step, speed_ratio))
 }

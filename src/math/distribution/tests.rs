@@ -54,3 +54,19 @@ fn limits_and_faults() {
     assert_eq!(normal_quantile(0.0), f64::NEG_INFINITY);
     assert_eq!(normal_quantile(0.5), 0.0);
 }
+
+/// Shape 1 is the exponential distribution, shape 2 Rayleigh's; for shape 3 by Γ(1/3) and Γ(2/3);
+/// a small deviation is √6/π of it (Gumbel's limit).
+#[test]
+fn a_weibull_distribution_has_the_mean_and_deviation_asked_for() {
+    let near = |(scale, shape): (f64, f64), wanted: [f64; 2]| {
+        assert!((scale / wanted[0] - 1.0).abs() < 1e-12 && (shape / wanted[1] - 1.0).abs() < 1e-12, "{scale} {shape}");
+    };
+    near(weibull_of_deviation(1.0), [1.0, 1.0]);
+    near(weibull_of_deviation((4.0 / PI - 1.0).sqrt()), [2.0 / PI.sqrt(), 2.0]);
+    let (one_third, two_thirds) = (2.678_938_534_707_747_6, 1.354_117_939_426_400_4);
+    let (mean, square): (f64, f64) = (one_third / 3.0, two_thirds * 2.0 / 3.0);
+    near(weibull_of_deviation((square / (mean * mean) - 1.0).sqrt()), [1.0 / mean, 3.0]);
+    let (_, shape) = weibull_of_deviation(1e-3);
+    assert!((shape * 1e-3 / (PI / 6.0_f64.sqrt()) - 1.0).abs() < 2e-3, "{shape}");
+}

@@ -239,7 +239,8 @@ impl Calibrate {
     /// The value that the stage's material has for a factor, in the factor's unit.
     fn held(&self, context: &Context, name: &str) -> Option<f64> {
         let factor = context.factors.get(name)?;
-        let parameter = context.materials.get(self.material.as_ref()?)?.get(&factor.sets)?;
+        let values = context.materials.get(self.material.as_ref()?)?.resolve_alone();
+        let parameter = factor.sets.iter().find_map(|path| values.get(path))?;
         let unit = Unit::parse(&factor.unit).ok()?;
         Some(unit.of_si(parameter.value))
     }

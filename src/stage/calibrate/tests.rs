@@ -6,7 +6,6 @@ use crate::artifact::{Artifact, ContentHash};
 use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
 use math::random::Stream;
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 
 /// Runs tasks on first sight; `patience` tasks, then it says that nothing is known of others.
 struct Laboratory {
@@ -80,8 +79,7 @@ fn context() -> Context {
         .map(|(name, factor)| (name.to_owned(), factor))
         .into(),
         responses: [("UCS", response("MPa")), ("E", response("GPa"))].map(|(n, r)| (n.to_owned(), r)).into(),
-        materials: BTreeMap::new(),
-        outline: Vec::new(),
+        ..Context::default()
     }
 }
 
@@ -89,8 +87,15 @@ fn known<'a>(context: &'a Context, laboratory: &'a Laboratory) -> Known<'a> {
     let sample = |point: &Point, number: u64| Ok(Task::new("run", json!({ "point": point, "number": number })));
     let content = ContentHash([0; 32]);
     let replicate = Box::new(|_| None);
-    let input = Input { key: "simulator", stage: "lab", content, replicate, sample: Box::new(sample) };
-    Known { context, inputs: vec![input], library: laboratory }
+    let input = Input {
+        key: "simulator",
+        stage: "lab",
+        content,
+        vary: Box::new(|_, _| Ok(None)),
+        replicate,
+        sample: Box::new(sample),
+    };
+    Known { name: "calibrate", context, inputs: vec![input], library: laboratory }
 }
 
 fn stage(text: &str) -> Calibrate {

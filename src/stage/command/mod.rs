@@ -17,7 +17,9 @@ mod folder;
 mod read;
 
 use super::rows::{self, GATHER};
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
+};
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit;
@@ -113,9 +115,9 @@ impl Stage for Command {
         if self.shell && self.run.len() > 1 {
             found.push(Complaint::new("run", "with `shell` the command is one text").hint("run = [\"a | b\"]"));
         }
-        let values = self.material.iter().filter_map(|name| context.materials.get(name)).flat_map(|m| m.keys());
-        let values: Vec<&str> =
-            values.chain(context.factors.keys()).map(String::as_str).chain(["seed", "replicate"]).collect();
+        let material = self.material.iter().filter_map(|name| context.materials.get(name));
+        let names = context.factors.keys().cloned().chain(["seed", "replicate"].map(str::to_owned));
+        let values: Vec<String> = material.flat_map(|material| material.paths()).chain(names).collect();
         if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument, &values)) {
             let message = format!("`{{{{{name}}}}}` is filled in templates, not in `run`");
             let hint = "put the value into a file of `templates` that the program reads";
@@ -131,6 +133,10 @@ impl Stage for Command {
         }
         found.extend(self.read.iter().flat_map(|(name, read)| read.check(name)));
         found
+    }
+
+    fn sketch(&self) -> Sketch {
+        Sketch { varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -168,9 +174,9 @@ impl Kind for Command {
 }
 
 /// The first of `{{name}}` in the text that names a value; other braces are the program's own.
-fn placeholder<'a>(text: &'a str, values: &[&str]) -> Option<&'a str> {
+fn placeholder<'a>(text: &'a str, values: &[String]) -> Option<&'a str> {
     let mut within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
-    within.find(|name| values.contains(&name.trim()))
+    within.find(|name| values.iter().any(|value| value == name.trim()))
 }
 
 fn execute(job: &Job) -> Result<Artifact, Failure> {

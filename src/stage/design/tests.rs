@@ -44,7 +44,7 @@ fn stage(text: &str) -> Design {
 
 fn task(text: &str) -> Task {
     let context = context();
-    let known = Known { context: &context, inputs: vec![], library: &NoLibrary(None) };
+    let known = Known { name: "design", context: &context, inputs: vec![], library: &NoLibrary(None) };
     match stage(text).next(&known).unwrap() {
         Step::Finish(task) => task,
         Step::Ask(..) => panic!("a design asks for nothing"),

@@ -234,7 +234,12 @@ impl Figure {
             let factor = known.context.factors.get(key).cloned().unwrap_or_default();
             let (low, high) = figure::axis::extent(factor.levels.iter().copied());
             let range = factor.range.or((!factor.levels.is_empty()).then_some([low, high]));
-            let group = factor.sets.split_once('.').map(|(group, _)| group.to_owned()).unwrap_or_default();
+            let group = factor
+                .sets
+                .first()
+                .and_then(|path| path.split_once('.'))
+                .map(|(group, _)| group.to_owned())
+                .unwrap_or_default();
             let name = self.names.get(key).cloned().unwrap_or_default();
             Label { key: key.clone(), name, symbol: factor.symbol, unit: factor.unit, group, range }
         };

@@ -2,8 +2,9 @@
 
 use super::super::StageError;
 use super::Params;
-use super::source::{Source, Sources};
+use super::source::Sources;
 use crate::artifact::run::{CrackMode, Cracks as StoredCracks, Curve as Stored, Run};
+use crate::artifact::specimen::Specimen as StoredSpecimen;
 use crate::unit::Conversion;
 use figure::chains::{Chains, Link};
 use figure::cracks::{Crack, Cracks, Moment};
@@ -70,49 +71,34 @@ fn counts(cracks: &StoredCracks, axial: &[f64]) -> Vec<(String, Vec<f64>)> {
 }
 
 /// Lower left and upper right corner of a specimen in mm; its centre is the origin.
-fn domain(specimen: Source) -> Result<([f64; 2], [f64; 2]), StageError> {
-    let half = |name: &str| specimen.number(name).map(|v| v * MM / 2.0).ok_or_else(|| specimen.lacks(name));
-    let (w, h) = (half("width")?, half("height")?);
-    Ok(([-w, -h], [w, h]))
+fn domain(specimen: &StoredSpecimen) -> ([f64; 2], [f64; 2]) {
+    let [w, h] = [specimen.width, specimen.height].map(|v| v * MM / 2.0);
+    ([-w, -h], [w, h])
 }
 
 /// Polygons of the aggregate in mm.
-fn outlines(specimen: Source) -> Vec<Vec<[f64; 2]>> {
-    let vertices = specimen.vectors("vertices").unwrap_or_default();
-    let owner = specimen.numbers("polygon_of").unwrap_or_default();
-    let mut polygons: Vec<Vec<[f64; 2]>> = Vec::new();
-    let mut last = f64::NAN;
-    for (vertex, &of) in vertices.iter().zip(&owner) {
-        if of != last {
-            polygons.push(Vec::new());
-            last = of;
-        }
-        if let Some(polygon) = polygons.last_mut() {
-            polygon.push(vertex.map(|v| v * MM));
-        }
-    }
-    polygons
+fn outlines(specimen: &StoredSpecimen) -> Vec<Vec<[f64; 2]>> {
+    let corners: Vec<(&i64, &[f64; 2])> = specimen.polygon_of.iter().zip(&specimen.vertices).collect();
+    let polygon = |corners: &[(&i64, &[f64; 2])]| corners.iter().map(|(_, vertex)| vertex.map(|v| v * MM)).collect();
+    corners.chunk_by(|a, b| a.0 == b.0).map(polygon).collect()
 }
 
 pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
-    let source = sources.first()?;
-    let (low, high) = domain(source)?;
-    let centres = source.vectors("centres").ok_or_else(|| source.lacks("centres"))?;
-    let radii = source.numbers("radii").ok_or_else(|| source.lacks("radii"))?;
-    let clump = source.numbers("clump_of").unwrap_or_default();
-    let group: Vec<usize> = (0..radii.len()).map(|i| usize::from(clump.get(i).is_some_and(|&c| c >= 0.0))).collect();
+    let stored = StoredSpecimen::from_artifact(sources.first()?.0)?;
+    let group: Vec<usize> = stored.clump_of.iter().map(|&clump| usize::from(clump >= 0)).collect();
     let mut groups = vec!["mortar".to_owned()];
     if group.contains(&1) {
         groups.push("aggregate".into());
     }
+    let (low, high) = domain(&stored);
     Ok(Specimen {
         low,
         high,
-        centres: centres.iter().map(|c| c.map(|v| v * MM)).collect(),
-        radii: radii.iter().map(|r| r * MM).collect(),
+        centres: stored.centres.iter().map(|c| c.map(|v| v * MM)).collect(),
+        radii: stored.radii.iter().map(|r| r * MM).collect(),
         group,
         groups,
-        outlines: outlines(source),
+        outlines: outlines(&stored),
     })
 }
 
@@ -121,9 +107,10 @@ type Ground = ([f64; 2], [f64; 2], Vec<Vec<[f64; 2]>>);
 
 /// Domain and polygons: of the specimen when it is given, else around the points.
 fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
-    if let Some(&specimen) = sources.compare.first() {
-        let (low, high) = domain(specimen)?;
-        return Ok((low, high, outlines(specimen)));
+    if let Some(specimen) = sources.compare.first() {
+        let specimen = StoredSpecimen::from_artifact(specimen.0)?;
+        let (low, high) = domain(&specimen);
+        return Ok((low, high, outlines(&specimen)));
     }
     let around = figure::scene::Rect::around(points.iter().copied());
     let r = around.ok_or_else(|| StageError::new("there is nothing to draw").hint("the run has no cracks"))?;

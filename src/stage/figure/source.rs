@@ -1,7 +1,7 @@
 //! Reading the inputs of a figure, with errors that say which table or column is missing and which there are.
 
 use super::super::{Job, StageError, artifact_kind};
-use crate::artifact::{Array, Artifact, ArtifactKind, Node, Table, Values};
+use crate::artifact::{Artifact, ArtifactKind, Table, Values};
 use std::sync::Arc;
 
 /// The inputs of a figure by port.
@@ -35,56 +35,11 @@ impl<'a> Sources<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The first of the named tables that is there.
-    pub(super) fn rows(self, names: &[&'a str]) -> Result<Rows<'a>, StageError> {
-        let found = names.iter().find_map(|name| self.0.table(name).map(|table| Rows { table }));
-        found.ok_or_else(|| {
-            let there: Vec<String> = self.0.tables().into_iter().map(|(name, _)| name).collect();
-            StageError::new(format!("the artifact `{}` holds no table `{}`", self.0.kind, names.join("` or `")))
-                .hint(format!("it holds {}", if there.is_empty() { "no table".into() } else { there.join(", ") }))
-        })
-    }
-
     /// The main table of its kind.
     pub(super) fn main(self) -> Result<Rows<'a>, StageError> {
-        let name = artifact_kind(self.0).and_then(ArtifactKind::main_table).unwrap_or_default();
-        self.rows(&[name])
-    }
-
-    /// An array of vectors of the plane.
-    pub(super) fn vectors(self, name: &str) -> Option<Vec<[f64; 2]>> {
-        match self.0.root.get(name) {
-            Some(Node::Array(Array { shape, values: Values::Reals(values), .. })) if shape.get(1) == Some(&2) => {
-                Some(values.as_chunks::<2>().0.to_vec())
-            }
-            _ => None,
-        }
-    }
-
-    /// A plain array of numbers.
-    pub(super) fn numbers(self, name: &str) -> Option<Vec<f64>> {
-        match self.0.root.get(name) {
-            Some(Node::Array(Array { values: Values::Reals(values), .. })) => Some(values.clone()),
-            Some(Node::Array(Array { values: Values::Ints(values), .. })) => {
-                Some(values.iter().map(|&v| v as f64).collect())
-            }
-            _ => None,
-        }
-    }
-
-    /// A single number.
-    pub(super) fn number(self, name: &str) -> Option<f64> {
-        match self.0.root.get(name) {
-            Some(Node::Real { value, .. }) => Some(*value),
-            _ => None,
-        }
-    }
-
-    /// What is missing, in words.
-    pub(super) fn lacks(self, name: &str) -> StageError {
-        let there: Vec<&str> = self.0.root.iter().map(|(name, _)| name).collect();
-        StageError::new(format!("the artifact `{}` holds no `{name}`", self.0.kind))
-            .hint(format!("it holds {}", there.join(", ")))
+        let name = artifact_kind(self.0).and_then(ArtifactKind::main_table);
+        let found = name.and_then(|name| self.0.table(name)).map(|table| Rows { table });
+        found.ok_or_else(|| StageError::new(format!("the artifact `{}` holds no table to draw", self.0.kind)))
     }
 }
 

@@ -3,11 +3,12 @@ use crate::artifact::calibration::{
     Alternatives, Evaluations, Prediction, Solution, Solved, Summary, Verification, VerifiedRuns,
 };
 use crate::artifact::run::{CrackMode, Cracks, Curve, Forces, Responses, Run, States};
+use crate::artifact::specimen::Specimen;
 use crate::artifact::statistics::{
     Anova, Coefficients, Domains, Effects, Fits, LevelValues, Limits, Paths, PrincipalAxes, Range, Ranges, Remarks,
     Residuals, Screening, Selections, Stationary, Surfaces, Variances,
 };
-use crate::artifact::{Array, ArtifactKind, ContentHash, Numbered, Values};
+use crate::artifact::{ContentHash, Numbered};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use ndarray::{Array2, Array3};
 use std::sync::Arc;
@@ -92,33 +93,21 @@ fn run() -> Artifact {
 }
 
 fn specimen() -> Artifact {
-    let vectors = |values: Vec<f64>| {
-        Node::Array(Array {
-            shape: vec![values.len() / 2, 2],
-            unit: "m".into(),
-            about: String::new(),
-            values: Values::Reals(values),
-        })
+    let specimen = Specimen {
+        outline: "rectangle".into(),
+        width: 0.05,
+        height: 0.1,
+        density: 2000.0,
+        centres: vec![[0.0, 0.0], [0.002, 0.0], [0.004, 0.01]],
+        radii: vec![1e-3; 3],
+        clump_of: vec![-1, 0, 0],
+        clumps: table(),
+        polygon_of: vec![0, 0, 0],
+        vertices: vec![[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]],
+        quality: table(),
+        warnings: Vec::new(),
     };
-    let ints = |values: Vec<i64>| {
-        Node::Array(Array {
-            shape: vec![values.len()],
-            unit: String::new(),
-            about: String::new(),
-            values: Values::Ints(values),
-        })
-    };
-    let radii = Array { shape: vec![3], unit: "m".into(), about: String::new(), values: Values::Reals(vec![1e-3; 3]) };
-    let metre = |value: f64| Node::Real { value, unit: "m".into() };
-    let root = Group::new()
-        .with("width", metre(0.05))
-        .with("height", metre(0.1))
-        .with("centres", vectors(vec![0.0, 0.0, 0.002, 0.0, 0.004, 0.01]))
-        .with("radii", Node::Array(radii))
-        .with("clump_of", ints(vec![-1, 0, 0]))
-        .with("polygon_of", ints(vec![0, 0, 0]))
-        .with("vertices", vectors(vec![0.0, 0.0, 0.005, 0.0, 0.0, 0.005]));
-    Artifact::of(ArtifactKind::SPECIMEN, root)
+    specimen.to_artifact()
 }
 
 fn surfaces() -> Artifact {
@@ -263,7 +252,8 @@ fn verification() -> Artifact {
 fn context() -> Context {
     let mut context = Context::default();
     let mut add = |name: &str, sets: &str, symbol: &str, levels: &[f64]| {
-        let factor = Factor { sets: sets.into(), symbol: symbol.into(), levels: levels.to_vec(), ..Factor::default() };
+        let factor =
+            Factor { sets: vec![sets.into()], symbol: symbol.into(), levels: levels.to_vec(), ..Factor::default() };
         context.factors.insert(name.into(), factor);
     };
     add("Ec", "mortar.Ec", "E_c", &[10.0, 20.0]);
@@ -301,10 +291,11 @@ fn task_of(figure: &Figure, context: &Context, from: &[Artifact], compare: &[Art
         key: if i < from.len() { "of" } else { "compare" },
         stage: "s",
         content: ContentHash([i as u8; 32]),
+        vary: Box::new(|_, _| Ok(None)),
         replicate: Box::new(|_| None),
         sample: Box::new(|_, _| Err(StageError::new("none"))),
     };
-    let known = Known { context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
+    let known = Known { name: "figure", context, inputs: (0..shelf.0.len()).map(input).collect(), library: &shelf };
     match figure.next(&known).unwrap() {
         Step::Finish(task) => task,
         Step::Ask(..) => panic!("a figure asks for nothing"),

@@ -2,10 +2,13 @@ use super::*;
 use crate::artifact::run::Responses;
 use crate::artifact::{ArtifactKind, Group};
 use crate::stage::Factor;
+use crate::stage::material::MaterialTable;
 
 fn context() -> Context {
     let mut context = Context::default();
-    context.factors.insert("Ec".into(), Factor { sets: "mortar.Ec".into(), unit: "GPa".into(), ..Factor::default() });
+    context
+        .factors
+        .insert("Ec".into(), Factor { sets: vec!["mortar.Ec".into()], unit: "GPa".into(), ..Factor::default() });
     context.factors.insert("null".into(), Factor::default());
     context
 }
@@ -39,11 +42,11 @@ fn rows_are_told_apart_by_point_and_replicate() {
 
 #[test]
 fn a_point_sets_parameters_in_si_units() {
-    let base = BTreeMap::from([("mortar.Ec".to_owned(), 1.0), ("mortar.mu".to_owned(), 0.5)]);
+    let base: MaterialTable = toml::from_str("mortar = { Ec = '1 Pa', mu = 0.5 }").unwrap();
     let point = Point::from([("Ec".to_owned(), 16.0), ("null".to_owned(), 2.0)]);
-    let set = apply(&base, &point, &context()).unwrap();
-    assert_eq!(set.into_values().collect::<Vec<_>>(), [1.6e10, 0.5]);
-    let error = apply(&BTreeMap::new(), &point, &context()).unwrap_err();
+    let set = apply(&base.0, &point, &context()).unwrap();
+    assert_eq!(set.into_values().map(|found| found.value).collect::<Vec<_>>(), [1.6e10, 0.5]);
+    let error = apply(&Material::default(), &point, &context()).unwrap_err();
     assert!(error.message.contains("mortar.Ec"));
 }
 

@@ -1,14 +1,17 @@
 //! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
 
-use super::super::{Complaint, Context, Parameter, StageError};
-use crate::unit::{Angle, Dimension, Pressure, Velocity};
+use super::super::material::{self, Bonding, Need};
+use super::super::rows;
+use super::super::{Complaint, Context, Point, StageError};
+use crate::expression::Measure;
+use crate::unit::{Angle, Pressure, Velocity};
 use dem::loading::drive::{Loading, Rule, TestKind};
-use dem::loading::material::{BondKind, Bonded, Bonding, Material, MaterialError, Unbonded};
+use dem::loading::material::{BondKind, Material};
 use dem::loading::rig::Machine;
+use dem::parameter::Parameter;
 use dem::{Convention, Masses};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// Settings of a `simulate` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -68,45 +71,47 @@ pub enum PackingChoice {
 }
 
 /// How bonds form and act.
-#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BondConfig {
-    /// Parallel bond or contact bond.
+    /// Parallel bond, contact bond or none, where an entry of the material says nothing else.
     pub kind: BondKind,
-    /// Bonds form at gaps up to this share of the mean radius; 0: where discs overlap.
+    /// Bonds form at gaps up to this share of the mean radius; 0: where particles overlap.
     pub gap: f64,
-    /// Bond radius over the smaller radius.
-    pub radius_multiplier: f64,
-    /// Share of the moment in the bond stresses.
-    pub moment_factor: f64,
-    /// Friction angle of the bond.
-    pub friction_angle: Angle,
-    /// Standard deviation of the strengths over their mean.
-    pub deviation: f64,
+    /// Radius multiplier of the contacts that have none of their own in the material.
+    pub radius_multiplier: Option<f64>,
+    /// Moment factor of the contacts that have none of their own in the material.
+    pub moment_factor: Option<f64>,
+    /// Friction angle of the bonds that have none of their own in the material.
+    pub friction_angle: Option<Angle>,
     /// How a modulus becomes a stiffness.
     pub convention: Convention,
 }
 
-impl Default for BondConfig {
-    fn default() -> Self {
-        let Bonding { kind, gap, radius_multiplier, moment_factor, friction_angle, deviation, convention } =
-            Bonding::default();
-        let friction_angle = Angle::si(friction_angle);
-        Self { kind, gap, radius_multiplier, moment_factor, friction_angle, deviation, convention }
-    }
-}
-
 impl BondConfig {
     pub(super) fn bonding(&self) -> Bonding {
-        Bonding {
-            kind: self.kind,
-            gap: self.gap,
-            radius_multiplier: self.radius_multiplier,
-            moment_factor: self.moment_factor,
-            friction_angle: self.friction_angle.get(),
-            deviation: self.deviation,
-            convention: self.convention,
+        let values = [
+            (Parameter::RadiusMultiplier, self.radius_multiplier),
+            (Parameter::MomentFactor, self.moment_factor),
+            (Parameter::FrictionAngle, self.friction_angle.map(Angle::get)),
+        ];
+        let values = values.into_iter().filter_map(|(parameter, value)| Some((parameter, value?))).collect();
+        Bonding { kind: self.kind, gap: self.gap, convention: self.convention, values }
+    }
+
+    fn faults(&self) -> Vec<Complaint> {
+        let outside =
+            self.bonding().values.into_iter().filter(|(parameter, value)| !parameter.declaration().range.holds(*value));
+        let fault = |(parameter, value): (Parameter, f64)| {
+            let (key, range) = (parameter.key(), parameter.declaration().range);
+            Complaint::new(&format!("bond.{key}"), format!("`{key}` is {value}; it must be {}", range.words()))
+        };
+        let mut faults: Vec<Complaint> = outside.map(fault).collect();
+        if !(0.0..=1.0).contains(&self.gap) {
+            let message = format!("`gap` is {}; it must be a share of the mean radius, 0 to 1", self.gap);
+            faults.push(Complaint::new("bond.gap", message));
         }
+        faults
     }
 }
 
@@ -137,25 +142,6 @@ pub(super) struct Params {
     pub(super) test: Loading,
 }
 
-const STRESS: Dimension = Dimension::new(-1, 1, -2);
-
-/// Every microparameter by its path, with its dimension.
-const MICROPARAMETERS: [(&str, Dimension); 13] = [
-    ("mortar.Ec", STRESS),
-    ("mortar.kn_ks", Dimension::NONE),
-    ("mortar.sigma_c", STRESS),
-    ("mortar.tau_c", STRESS),
-    ("mortar.mu", Dimension::NONE),
-    ("aggregate.Ec", STRESS),
-    ("aggregate.kn_ks", Dimension::NONE),
-    ("aggregate.mu", Dimension::NONE),
-    ("interface.Ec", STRESS),
-    ("interface.kn_ks", Dimension::NONE),
-    ("interface.sigma_c", STRESS),
-    ("interface.tau_c", STRESS),
-    ("interface.mu", Dimension::NONE),
-];
-
 /// Platens faster than this cannot be a quasi-static test of anything (m/s).
 const FASTEST: f64 = 1.0;
 
@@ -178,61 +164,58 @@ impl Simulate {
         }
     }
 
-    /// The material's values by path, SI.
-    pub(super) fn base(&self, context: &Context) -> Result<BTreeMap<String, f64>, StageError> {
+    /// The microparameters at a point of the factor space.
+    ///
+    /// # Errors
+    /// The material lacks what the specimen's contacts need, or a value is outside the domain of its law.
+    pub(super) fn contacts(&self, context: &Context, point: &Point) -> Result<Material, StageError> {
         let found = context.materials.get(&self.material);
-        let found = found.ok_or_else(|| StageError::new(format!("there is no [material.{}]", self.material)))?;
-        Ok(found.iter().map(|(path, parameter)| (path.clone(), parameter.value)).collect())
+        let material = found.ok_or_else(|| StageError::new(format!("there is no [material.{}]", self.material)))?;
+        let values = rows::apply(material, point, context)?;
+        let bonding = self.bond.bonding();
+        material.contacts(&values, self.need(context, &bonding)).map_err(|faults| {
+            let hint = faults.iter().find_map(|fault| fault.hint.clone());
+            let words: Vec<String> = faults.into_iter().map(|fault| fault.message).collect();
+            StageError { message: words.join("; "), hint }
+        })
+    }
+
+    fn need<'a>(&'a self, context: &'a Context, bonding: &'a Bonding) -> Need<'a> {
+        let groups = context.sketches.get(&self.specimen).map_or(&[][..], |sketch| &sketch.groups);
+        Need { name: Some(&self.material), groups, bonding }
     }
 
     /// All that is wrong with settings and material.
     pub(super) fn faults(&self, context: &Context) -> Vec<Complaint> {
         let mut faults = self.setting_faults();
-        let Some(values) = context.materials.get(&self.material) else {
-            let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
-            let message = format!("there is no [material.{}]", self.material);
-            faults.push(Complaint::new("material", message).hint(format!("known: {}", known.join(", "))));
+        faults.extend(self.bond.faults());
+        let Some(material) = context.materials.get(&self.material) else {
+            faults.extend(rows::check_material(Some(&self.material), context));
             return faults;
         };
-        faults.extend(self.material_faults(values));
-        // What it lacks was told already.
-        let mut base: BTreeMap<String, f64> = MICROPARAMETERS.map(|(path, _)| (path.to_owned(), 1.0)).into();
-        base.extend(values.iter().map(|(path, parameter)| (path.clone(), parameter.value)));
-        let outside = assembled(&base, self.bond.bonding()).map_or_else(|_| Vec::new(), |material| material.faults());
-        faults.extend(outside.into_iter().map(|MaterialError { group, name, expected, .. }| {
-            let complaint = Complaint::new(&format!("{group}.{name}"), format!("`{group}.{name}` must be {expected}"));
-            if group == "bond" { complaint } else { complaint.in_material(&self.material) }
+        let (values, unresolved) = material.resolve(&material::Values::new(), &|name| self.factor(context, name));
+        faults.extend(unresolved.iter().map(|fault| {
+            let complaint = Complaint::new(&fault.path, &fault.why).in_material(&self.material);
+            if fault.factor.is_some() {
+                complaint.hint("let the design of the stage vary it, or give the value itself")
+            } else {
+                complaint
+            }
         }));
+        let bonding = self.bond.bonding();
+        // Without the specimen there is another fault.
+        if unresolved.is_empty() && context.sketches.get(&self.specimen).is_some_and(|sketch| !sketch.groups.is_empty())
+        {
+            faults.extend(material.contacts(&values, self.need(context, &bonding)).err().unwrap_or_default());
+        }
         faults
     }
 
-    /// Microparameters that are missing, of another kind, or unknown.
-    fn material_faults(&self, values: &BTreeMap<String, Parameter>) -> Vec<Complaint> {
-        let known = || MICROPARAMETERS.iter().map(|(path, _)| *path);
-        let mut faults = Vec::new();
-        for (path, wanted) in MICROPARAMETERS {
-            let complaint = match values.get(path) {
-                None => Complaint::new(path, format!("[material.{}] lacks `{path}`", self.material))
-                    .hint("every contact group needs its values"),
-                Some(found) if found.dimension != wanted => {
-                    let message = match (wanted == Dimension::NONE, found.dimension == Dimension::NONE) {
-                        (true, _) => format!("`{path}` is a pure number and has no unit"),
-                        (_, true) => format!("`{path}` needs a unit, found the number {}", found.value),
-                        (false, false) => format!("`{path}` is a stress and cannot have this unit"),
-                    };
-                    let form = if wanted == STRESS { "\"16 GPa\"" } else { "2.5" };
-                    Complaint::new(path, message).hint(format!("write for example {form}"))
-                }
-                Some(_) => continue,
-            };
-            faults.push(complaint.in_material(&self.material));
-        }
-        for path in values.keys().filter(|path| known().all(|known| known != path.as_str())) {
-            let complaint = Complaint::new(path, format!("`{path}` is not a microparameter"));
-            let hint = format!("known: {}", known().collect::<Vec<_>>().join(", "));
-            faults.push(complaint.in_material(&self.material).hint(hint));
-        }
-        faults
+    /// A value of a factor that formulas of the material may name: one that the design varies.
+    fn factor(&self, context: &Context, name: &str) -> Option<Measure> {
+        let design = context.sketches.get(self.design.as_ref()?)?;
+        let varied = design.factors.as_ref().is_none_or(|factors| factors.iter().any(|factor| factor == name));
+        context.factors.get(name).filter(|_| varied)?.sample()
     }
 
     fn setting_faults(&self) -> Vec<Complaint> {
@@ -260,38 +243,4 @@ impl Simulate {
         }
         faults
     }
-}
-
-/// The material of parameters by path.
-///
-/// # Errors
-/// A value is missing or outside the domain of its law.
-pub(super) fn material(values: &BTreeMap<String, f64>, bonding: Bonding) -> Result<Material, StageError> {
-    let material = assembled(values, bonding)?;
-    let faults = material.faults();
-    if faults.is_empty() {
-        return Ok(material);
-    }
-    Err(StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")))
-}
-
-/// The material of parameters by path, whatever their values.
-fn assembled(values: &BTreeMap<String, f64>, bonding: Bonding) -> Result<Material, StageError> {
-    let get =
-        |path: &str| values.get(path).copied().ok_or_else(|| StageError::new(format!("the material lacks `{path}`")));
-    let bonded = |group: &str| -> Result<Bonded, StageError> {
-        Ok(Bonded {
-            modulus: get(&format!("{group}.Ec"))?,
-            stiffness_ratio: get(&format!("{group}.kn_ks"))?,
-            tensile_strength: get(&format!("{group}.sigma_c"))?,
-            shear_strength: get(&format!("{group}.tau_c"))?,
-            friction: get(&format!("{group}.mu"))?,
-        })
-    };
-    let aggregate = Unbonded {
-        modulus: get("aggregate.Ec")?,
-        stiffness_ratio: get("aggregate.kn_ks")?,
-        friction: get("aggregate.mu")?,
-    };
-    Ok(Material { mortar: bonded("mortar")?, aggregate, interface: bonded("interface")?, bonding })
 }

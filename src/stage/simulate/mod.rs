@@ -1,6 +1,7 @@
 //! `kind = "simulate"`: a loading test on a specimen, once or per design row and replicate.
 //!
-//! Rows are microparameter sets: the material with the row's factors put in. Equal rows of a design are replicates, each
+//! Rows are microparameter sets: the material with the row's factors put in. Factors may set numbers of the test and of the
+//! specimen too ([`vary`](super::vary)); rows that change the specimen stand on packings of their own. Equal rows of a design are replicates, each
 //! on its own packing. Whether *different* rows share packings is a setting:
 //! * `packing = "shared"`: replicate k of every row stands on replicate k of the specimen. Differences between rows
 //!   are then free of packing noise, one packing serves a whole design, and calibration compares like with like.
@@ -18,7 +19,8 @@ pub use config::{BondConfig, PackingChoice, Simulate};
 
 use super::rows::{self, GATHER};
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError, Step, Task,
+    Work,
 };
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use config::Params;
@@ -53,19 +55,25 @@ impl Stage for Simulate {
         found
     }
 
+    fn sketch(&self) -> Sketch {
+        Sketch { varies: true, ..Sketch::default() }
+    }
+
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         rows::fan_out(self, known)
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
-        let base = self.base(known.context)?;
-        let material = config::material(&rows::apply(&base, point, known.context)?, self.bond.bonding())?;
+        let material = self.contacts(known.context, point)?;
         let specimen = known.one("specimen")?;
         let packing = match self.packing {
             PackingChoice::Shared => number,
             PackingChoice::Own => own_packing(point, number),
         };
         let task = Task::new("simulate", json!(Params { material, test: self.spec() }));
+        if let Some(make) = (specimen.vary)(point, packing)? {
+            return Ok(task.after("specimen", Arc::new(make)).seed(number));
+        }
         if packing == 1 {
             return Ok(task.input("specimen", specimen.content).seed(1));
         }
@@ -117,5 +125,5 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
         return Err(Failure::Stopped);
     }
     record::unmet(&record).for_each(|words| (job.say)(Progress::warning(&words)));
-    Ok(record::artifact(&record, &params.test))
+    Ok(record::artifact(&record, &params.test, &params.material))
 }

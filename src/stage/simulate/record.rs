@@ -2,9 +2,10 @@
 
 use crate::artifact::Artifact;
 use crate::artifact::run::{Checks, CrackMode, Cracks, Curve, Energies, Forces, Quantities, Responses, Run, States};
-use dem::loading::crack::{CrackEvent, CrackGroup};
+use dem::loading::crack::CrackEvent;
 use dem::loading::curve::thinned;
 use dem::loading::drive::{Loading, TestKind, TestRecord};
+use dem::loading::material::Material;
 use dem::loading::snapshot::Snapshot;
 use dem::measure::{Energy, Link, Mode};
 use ndarray::{Array2, Array3};
@@ -13,7 +14,7 @@ use ndarray::{Array2, Array3};
 const CURVE_POINTS: usize = 400;
 
 /// The storable form of a record.
-pub(super) fn artifact(record: &TestRecord, test: &Loading) -> Artifact {
+pub(super) fn artifact(record: &TestRecord, test: &Loading, material: &Material) -> Artifact {
     let snapshots = &record.run.snapshots;
     let run = Run {
         failure: record.run.failure.map_or_else(String::new, |failure| failure.to_string()),
@@ -23,7 +24,7 @@ pub(super) fn artifact(record: &TestRecord, test: &Loading) -> Artifact {
         checks: Some(checks(record)),
         curve: Some(curve(record)),
         energies: Some(energies(&record.run.energies)),
-        cracks: Some(cracks(&record.run.cracks)),
+        cracks: Some(cracks(&record.run.cracks, material)),
         states: Some(states(snapshots)),
         state_centres: Some(centres(snapshots)),
         forces: test.rule.forces.then(|| forces(snapshots)),
@@ -120,14 +121,14 @@ fn energies(energies: &[(f64, Energy)]) -> Energies {
     }
 }
 
-fn cracks(cracks: &[CrackEvent]) -> Cracks {
+fn cracks(cracks: &[CrackEvent], material: &Material) -> Cracks {
     let mode = |crack: &CrackEvent| match crack.mode {
         Mode::Tension => CrackMode::Tension,
         Mode::Shear => CrackMode::Shear,
     };
-    let group = |crack: &CrackEvent| match crack.group {
-        CrackGroup::Mortar => "mortar".to_owned(),
-        CrackGroup::Interface => "interface".to_owned(),
+    let group = |crack: &CrackEvent| {
+        let [a, b] = crack.groups;
+        material.contact(a, b).map_or_else(String::new, |(name, _)| name.to_owned())
     };
     Cracks {
         axial_strain: each(cracks, |crack| crack.strain),

@@ -136,7 +136,7 @@ impl Table {
         let ranges: Vec<_> = factors.iter().map(|factor| range(factor)).collect();
         let mut list = Given(Vec::new())
             .texts("factor", names.clone())
-            .texts("parameter", factors.iter().map(|factor| factor.sets.clone()).collect())
+            .texts("parameter", factors.iter().map(|factor| factor.sets.join(", ")).collect())
             .texts("unit", factors.iter().map(|factor| factor.unit.clone()).collect())
             .reals("low", "", ranges.iter().map(|range| range.map(|[low, _]| low)).collect())
             .reals("high", "", ranges.iter().map(|range| range.map(|[_, high]| high)).collect());
@@ -149,14 +149,19 @@ impl Table {
 
     /// Parameters by path, in the units of the factors that set them.
     fn material_list(&self, context: &Context) -> Result<Given, StageError> {
-        let materials: Vec<_> =
-            self.materials.iter().filter_map(|name| Some((name, context.materials.get(name)?))).collect();
+        let materials: Vec<_> = self
+            .materials
+            .iter()
+            .filter_map(|name| Some((name, context.materials.get(name)?.resolve_alone())))
+            .collect();
         let mut paths: Vec<&String> = materials.iter().flat_map(|(_, material)| material.keys()).collect();
         paths.sort();
         paths.dedup();
         let unit_of = |path: &str| {
-            let factor = context.factors.values().find(|factor| factor.sets == path);
-            factor.map_or(String::new(), |factor| factor.unit.clone())
+            let factor = context.factors.values().find(|factor| factor.sets.iter().any(|set| set == path));
+            let declared = || path.split_once('.').and_then(|(_, key)| dem::parameter::Parameter::from_key(key));
+            let own = || declared().map_or("", |parameter| parameter.declaration().quantity.unit()).to_owned();
+            factor.map_or_else(own, |factor| factor.unit.clone())
         };
         let units: Vec<String> = paths.iter().map(|path| unit_of(path)).collect();
         let shown = units.iter().map(|unit| Unit::parse(unit));

@@ -1,5 +1,6 @@
 use super::*;
 use crate::artifact::Table as Data;
+use crate::stage::material::MaterialTable;
 use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -100,19 +101,18 @@ fn given(text: &str) -> Option<Given> {
     }
     let mut context = Context::default();
     let factor = |sets: &str, unit: &str, levels: &[f64]| crate::stage::Factor {
-        sets: sets.into(),
+        sets: vec![sets.into()],
         unit: unit.into(),
         levels: levels.to_vec(),
         ..Default::default()
     };
     context.factors.insert("Ec".into(), factor("mortar.Ec", "GPa", &[30.0, 10.0, 20.0]));
     context.factors.insert("mu".into(), factor("mortar.mu", "", &[0.5, 1.5]));
-    let values = [("mortar.Ec", 1.6e10), ("mortar.mu", 0.5)];
-    let parameter = |value| crate::stage::Parameter { value, dimension: crate::unit::Dimension::NONE };
-    context.materials.insert("trial".into(), values.map(|(path, value)| (path.to_owned(), parameter(value))).into());
+    let trial: MaterialTable = toml::from_str("mortar = { Ec = '16 GPa', mu = 0.5 }").unwrap();
+    context.materials.insert("trial".into(), trial.0);
     let stage: super::Table = toml::from_str(text).unwrap();
     assert_eq!(stage.check(&context), []);
-    stage.given(&Known { context: &context, inputs: Vec::new(), library: &Nothing }).unwrap()
+    stage.given(&Known { name: "table", context: &context, inputs: Vec::new(), library: &Nothing }).unwrap()
 }
 
 #[test]

@@ -29,15 +29,6 @@ pub(in crate::store) fn decode(image: Vec<u8>) -> Result<(Artifact, String), Hdf
     Ok((Artifact::new(&kind, version, root), task))
 }
 
-/// Only the text of the task.
-///
-/// # Errors
-/// As [`decode`].
-pub(in crate::store) fn task_text(image: Vec<u8>) -> Result<String, Hdf5Error> {
-    let (_, attributes) = open(image)?;
-    attribute_text(&attributes, "", "task")
-}
-
 type Attributes = HashMap<String, AttrValue>;
 
 /// Opens the image and chooses the reader of its layout; so far there is one.

@@ -30,7 +30,7 @@ pub(crate) fn laws<S: Space>() -> Vec<(&'static str, Interaction)> {
     let capacity = 1.5e4 / S::section(0.5);
     let point = |shear_break| {
         let (tensile_strength, shear_strength) = (capacity, capacity);
-        Bond::Contact(ContactBond { tensile_strength, shear_strength, deviation: 0.0, shear_break })
+        Bond::Contact(ContactBond { tensile_strength, shear_strength, scatter: Scatter::default(), shear_break })
     };
     let parallel = Bond::Parallel(ParallelBond {
         radius_multiplier: 0.8,
@@ -39,7 +39,7 @@ pub(crate) fn laws<S: Space>() -> Vec<(&'static str, Interaction)> {
         cohesion: capacity,
         friction_angle: 0.3,
         moment_factor: 0.5,
-        deviation: 0.1,
+        scatter: Scatter::both(0.1),
     });
     vec![
         ("linear", Interaction::unbonded(linear)),

@@ -36,7 +36,7 @@ fn tip<S: Space>(force: Vector<S>, moment: Spin<S>) -> (Vector<S>, Spin<S>) {
         cohesion: f64::INFINITY,
         friction_angle: 0.0,
         moment_factor: 1.0,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     };
     let soft = Interaction { linear: Linear::direct(1e-6, 1e-6, 0.0), bond: Bond::Parallel(bond) };
     let balls = (0..=BONDS).map(|n| Particle::ball(place(n), LENGTH / 2.0, 2000.0, GRAIN)).collect();

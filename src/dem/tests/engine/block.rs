@@ -54,7 +54,7 @@ pub(crate) fn bonded() -> Interaction {
         cohesion: 20e6,
         friction_angle: 0.3,
         moment_factor: 1.0,
-        deviation: 0.2,
+        scatter: Scatter::both(0.2),
     };
     Interaction { linear: Linear::modulus(20e9, 2.5, 0.5), bond: Bond::Parallel(bond) }
 }

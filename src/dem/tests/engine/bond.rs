@@ -46,7 +46,7 @@ fn cement(slope: f64) -> Bond {
         cohesion: TAU,
         friction_angle: atan(slope),
         moment_factor: BETA,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     })
 }
 
@@ -169,8 +169,12 @@ fn twisted(cases: &mut Vec<Case>) {
 }
 
 fn point<S: Space>(cases: &mut Vec<Case>) {
-    let bond =
-        ContactBond { tensile_strength: SIGMA, shear_strength: TAU, deviation: 0.0, shear_break: ShearBreak::Keep };
+    let bond = ContactBond {
+        tensile_strength: SIGMA,
+        shear_strength: TAU,
+        scatter: Scatter::default(),
+        shear_break: ShearBreak::Keep,
+    };
     let make = || pair::<S>(Linear::direct(KN, KS, 0.5), Bond::Contact(bond));
     let (name, area) = (S::NAME, S::section(0.4));
     let (pull, drag) = (SIGMA * area, TAU * area);

@@ -64,7 +64,7 @@ fn measured(rows: i32) -> [f64; 2] {
         cohesion: f64::INFINITY,
         friction_angle: 0.0,
         moment_factor: 1.0,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     };
     let law = Interaction { linear: Linear::direct(1e-6, 1e-6, 0.0), bond: Bond::Parallel(bond) };
     let last = balls.len() - 1;

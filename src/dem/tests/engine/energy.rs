@@ -23,7 +23,7 @@ fn cases() -> Vec<Case> {
     let point = Bond::Contact(ContactBond {
         tensile_strength: 20e6,
         shear_strength: 20e6,
-        deviation: 0.2,
+        scatter: Scatter::both(0.2),
         shear_break: ShearBreak::Keep,
     });
     let row = |name: &str, imbalance: f64| Case::new(name, "0, at most 1 %", 0.0, imbalance, few);

@@ -126,7 +126,8 @@ fn with(linear: Linear) -> Interaction {
 }
 
 fn point(tensile_strength: f64, shear_strength: f64) -> Interaction {
-    let bond = ContactBond { tensile_strength, shear_strength, deviation: 0.0, shear_break: ShearBreak::Keep };
+    let bond =
+        ContactBond { tensile_strength, shear_strength, scatter: Scatter::default(), shear_break: ShearBreak::Keep };
     Interaction { bond: Bond::Contact(bond), ..bonded() }
 }
 

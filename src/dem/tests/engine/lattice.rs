@@ -144,7 +144,7 @@ fn elastic<S: Space>(lattice: &Lattice, cases: &mut Vec<Case>) {
     let strong = ContactBond {
         tensile_strength: f64::INFINITY,
         shear_strength: f64::INFINITY,
-        deviation: 0.0,
+        scatter: Scatter::default(),
         shear_break: ShearBreak::Keep,
     };
     let law = Interaction { linear: Linear::direct(KN, KS, 0.0), bond: Bond::Contact(strong) };
@@ -186,7 +186,7 @@ fn strength(axis: usize, sign: f64, tensile: f64, cohesion: f64, at: f64) -> (f6
         cohesion,
         friction_angle: 0.0,
         moment_factor: 1.0,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     };
     let law = Interaction { linear: Linear::direct(1e-6, 1e-6, 0.0), bond: Bond::Parallel(cement) };
     let mut engine = crystal::<D2>(&hexagon(), 1.0, law);

@@ -50,7 +50,7 @@ fn bonded_row<S: Space>(count: usize, step: Option<f64>) -> Engine<S> {
     let bond = ContactBond {
         tensile_strength: endless,
         shear_strength: endless,
-        deviation: 0.0,
+        scatter: Scatter::default(),
         shear_break: ShearBreak::Keep,
     };
     let law = Interaction { linear: Linear::direct(KN, KS, 0.0), bond: Bond::Contact(bond) };

@@ -70,7 +70,7 @@ fn endless() -> Bond {
     Bond::Contact(ContactBond {
         tensile_strength: endless,
         shear_strength: endless,
-        deviation: 0.0,
+        scatter: Scatter::default(),
         shear_break: ShearBreak::Keep,
     })
 }

@@ -34,7 +34,7 @@ fn law(ratio: f64) -> Interaction {
         cohesion: f64::INFINITY,
         friction_angle: 0.0,
         moment_factor: 1.0,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     };
     Interaction { linear: Linear::direct(1e-6, 1e-6, 0.0), bond: Bond::Parallel(cement) }
 }

@@ -13,7 +13,7 @@ use dem::genesis::region::Region;
 use dem::genesis::specimen::Recipe;
 use dem::loading::curve::Macro;
 use dem::loading::drive::{Loading, TestKind};
-use dem::loading::material::{Bonded, Bonding, Material, Unbonded};
+use dem::loading::material::{Contact, Material};
 use dem::space::Tuple;
 use dem::*;
 use std::sync::LazyLock;
@@ -44,15 +44,7 @@ fn uniaxial(factor: f64, speed: f64) -> Macro {
     let packing = Packing { porosity: 0.12, mean_radius: 2e-3, ratio: 2.5, floaters: 0.0 };
     let recipe = Recipe { region, packing, density: 2000.0, aggregate: None };
     let (specimen, _) = recipe.make(1, &|| Watch::Continue).unwrap();
-    let mortar = Bonded {
-        modulus: 20e9 * factor,
-        stiffness_ratio: 2.5,
-        tensile_strength: 20e6 * factor,
-        shear_strength: 20e6 * factor,
-        friction: 0.5,
-    };
-    let aggregate = Unbonded { modulus: mortar.modulus, stiffness_ratio: 2.5, friction: 0.5 };
-    let material = Material { mortar, aggregate, interface: mortar, bonding: Bonding::default() };
+    let material = Material::of_one(Contact::bonded("mortar", 20e9 * factor, 2.5, [20e6 * factor; 2], 0.5));
     let test = Loading { speed, ..Loading::new(TestKind::Uniaxial) };
     test.run(&specimen, &material, 1, &mut |_| Watch::Continue).unwrap().values
 }

@@ -81,7 +81,7 @@ fn cemented(multiplier: f64) -> Interaction {
         cohesion: f64::INFINITY,
         friction_angle: 0.0,
         moment_factor: 1.0,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     };
     Interaction { bond: Bond::Parallel(bond), ..spring(Convention::Present) }
 }

@@ -42,7 +42,7 @@ fn pair<S: Space>() -> Engine<S> {
         cohesion: f64::INFINITY,
         friction_angle: 0.0,
         moment_factor: 1.0,
-        deviation: 0.0,
+        scatter: Scatter::default(),
     };
     let ball = |x: f64| {
         let mut ball = Particle::<S>::ball(along::<S>(0, x), 0.5, 1.0, GRAIN);

@@ -21,7 +21,7 @@ fn thrown<S: Space>() -> Engine<S> {
     let bond = ContactBond {
         tensile_strength: capacity,
         shear_strength: capacity,
-        deviation: 0.0,
+        scatter: Scatter::default(),
         shear_break: ShearBreak::Keep,
     };
     let law = Interaction { linear: Linear::direct(1e6, 4e5, 0.3), bond: Bond::Contact(bond) };

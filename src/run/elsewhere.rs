@@ -1,0 +1,90 @@
+//! Tasks that other processes on the same store compute: looked at now and then, while this one works on others.
+//!
+//! Two campaigns that begin together meet at the same first task. From then on each takes its next tasks from a place of its
+//! own among those that are left, so that they seldom meet again.
+
+use super::board::NodeId;
+use crate::store::Waiting;
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+/// Longest pause between two looks.
+const LONGEST: Duration = Duration::from_millis(50);
+
+/// Tasks that were found with others.
+#[derive(Default)]
+pub(super) struct Elsewhere {
+    tasks: Vec<(NodeId, Waiting)>,
+    /// How often a task was found with another process.
+    met: usize,
+    pause: Duration,
+}
+
+impl Elsewhere {
+    pub(super) fn is_empty(&self) -> bool {
+        self.tasks.is_empty()
+    }
+
+    /// Notes a task that another process has.
+    pub(super) fn put(&mut self, node: NodeId, waiting: Waiting) {
+        self.met += 1;
+        self.pause = Duration::from_millis(1);
+        self.tasks.push((node, waiting));
+    }
+
+    /// Forgets all.
+    pub(super) fn clear(&mut self) {
+        self.tasks.clear();
+    }
+
+    /// The tasks that others have let go of, finished or not.
+    pub(super) fn over(&mut self) -> Vec<NodeId> {
+        let over: Vec<NodeId> =
+            self.tasks.extract_if(.., |(_, waiting)| waiting.is_over()).map(|(node, _)| node).collect();
+        self.pause = if over.is_empty() { (self.pause * 2).min(LONGEST) } else { Duration::from_millis(1) };
+        over
+    }
+
+    /// How long to wait before the next look.
+    pub(super) fn pause(&self) -> Duration {
+        self.pause
+    }
+
+    /// The first task that another process has, and who that is.
+    pub(super) fn first(&self) -> Option<(NodeId, String)> {
+        self.tasks.first().map(|(node, waiting)| (*node, waiting.holder.to_string()))
+    }
+
+    /// Takes the task to start next: the first, or from where this process is at work.
+    pub(super) fn next(&self, ready: &mut BTreeSet<NodeId>) -> Option<NodeId> {
+        if self.met == 0 {
+            return ready.pop_first();
+        }
+        let (first, last) = (*ready.first()?, *ready.last()?);
+        // Another place each time: one that stays is soon somebody else's again.
+        let number = (u64::from(std::process::id()) << 20 | self.met as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let from = first + (number >> 33) as usize % (last - first + 1);
+        let node = *ready.range(from..).next()?;
+        ready.remove(&node);
+        Some(node)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_task_is_taken_once_wherever_one_begins() {
+        for met in 0..20 {
+            let elsewhere = Elsewhere { met, ..Elsewhere::default() };
+            let mut ready: BTreeSet<NodeId> = [3, 4, 9, 11].into();
+            let mut taken: Vec<NodeId> = std::iter::from_fn(|| elsewhere.next(&mut ready)).collect();
+            if met == 0 {
+                assert_eq!(taken, [3, 4, 9, 11]);
+            }
+            taken.sort_unstable();
+            assert_eq!(taken, [3, 4, 9, 11]);
+        }
+    }
+}

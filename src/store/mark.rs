@@ -1,0 +1,145 @@
+//! The user's mark: how the store tells what this user's own `flow` has written from what anybody else has.
+//!
+//! Whoever can write to a shared store can write a record or a memo with a right checksum. So each record and each
+//! note that spares work carries a mark: a keyed blake3 under a secret of 32 bytes that lies outside of every store, in
+//! the user's own state folder (`$XDG_STATE_HOME/flow/mark`, else `~/.local/state/flow/mark`), readable by the user
+//! alone. What carries the own mark is believed. What does not is proven from the objects (`prove.rs`) or counts as
+//! missing. Without a home folder the secret lives as long as the process: nothing is believed the next time, and all is
+//! proven again, which costs time only.
+
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// Length of the mark in a record, bytes.
+pub(super) const SHORT: usize = 16;
+
+/// What marks are made with.
+#[derive(Clone)]
+pub struct Mark {
+    record: [u8; 32],
+    note: [u8; 32],
+    name: [u8; 4],
+}
+
+impl Mark {
+    /// The mark of the user who runs this process.
+    pub fn of_user() -> Self {
+        static SECRET: OnceLock<[u8; 32]> = OnceLock::new();
+        Self::of(SECRET.get_or_init(|| {
+            let kept = folder().and_then(|folder| secret(&folder).ok());
+            kept.unwrap_or_else(fresh)
+        }))
+    }
+
+    /// The mark that a secret makes.
+    pub fn of(secret: &[u8; 32]) -> Self {
+        let [a, b, c, d, ..] = blake3::derive_key("flow store 1 name", secret);
+        Self {
+            record: blake3::derive_key("flow store 1 record", secret),
+            note: blake3::derive_key("flow store 1 note", secret),
+            name: [a, b, c, d],
+        }
+    }
+
+    /// What tells the files of this user's notes from those of others: eight digits.
+    pub(super) fn name(&self) -> String {
+        format!("{:08x}", u32::from_be_bytes(self.name))
+    }
+
+    /// Of a record.
+    pub(super) fn record(&self, bytes: &[u8]) -> [u8; SHORT] {
+        let mut mark = [0; SHORT];
+        mark.copy_from_slice(&blake3::keyed_hash(&self.record, bytes).as_bytes()[..SHORT]);
+        mark
+    }
+
+    /// Of a note called `name`, so that none can stand in for another.
+    pub(super) fn note(&self, name: &[u8], bytes: &[u8]) -> [u8; 32] {
+        let mut hash = blake3::Hasher::new_keyed(&self.note);
+        hash.update(&(name.len() as u64).to_le_bytes()).update(name).update(bytes);
+        *hash.finalize().as_bytes()
+    }
+}
+
+/// The folder of the user's state.
+fn folder() -> Option<PathBuf> {
+    let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let state = absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?;
+    Some(state.join("flow"))
+}
+
+/// The secret in a folder, made when there is none.
+fn secret(folder: &Path) -> io::Result<[u8; 32]> {
+    let path = folder.join("mark");
+    match read(&path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        other => return other,
+    }
+    fs::create_dir_all(folder)?;
+    // Whole before it has its name; of two processes that make one, both read that of the first.
+    let mut file = tempfile::Builder::new().prefix(".mark-").tempfile_in(folder)?;
+    file.write_all(&fresh())?;
+    file.as_file().sync_all()?;
+    match file.persist_noclobber(&path) {
+        Err(error) if error.error.kind() != ErrorKind::AlreadyExists => Err(error.error),
+        _ => read(&path),
+    }
+}
+
+/// A secret that others can read or change is none.
+fn read(path: &Path) -> io::Result<[u8; 32]> {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    let data = fs::symlink_metadata(path)?;
+    let own = data.uid() == rustix::process::geteuid().as_raw();
+    if !data.is_file() || !own || data.permissions().mode() & 0o077 != 0 || data.len() != 32 {
+        return Err(ErrorKind::InvalidData.into());
+    }
+    let bytes = fs::read(path)?;
+    bytes.try_into().map_err(|_| ErrorKind::InvalidData.into())
+}
+
+/// Bytes that nobody can guess: from the system's source, through the hash maps' seeds where that cannot be opened.
+fn fresh() -> [u8; 32] {
+    let mut bytes = [0; 32];
+    let read = fs::File::open("/dev/urandom").and_then(|mut source| io::Read::read_exact(&mut source, &mut bytes));
+    if read.is_err() {
+        use std::hash::{BuildHasher, RandomState};
+        for word in bytes.chunks_mut(8) {
+            word.copy_from_slice(&RandomState::new().hash_one(word.len()).to_le_bytes());
+        }
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+
+    #[test]
+    fn a_secret_is_made_once_and_not_taken_from_a_file_that_others_can_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let state = folder.path().join("flow");
+        let first = secret(&state).unwrap();
+        assert_eq!(secret(&state).unwrap(), first);
+        assert_ne!(secret(&folder.path().join("other")).unwrap(), first);
+        let path = state.join("mark");
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o644)).unwrap();
+        assert!(secret(&state).is_err());
+        fs::remove_file(&path).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        assert!(secret(&state).is_err());
+    }
+
+    #[test]
+    fn a_mark_depends_on_the_secret_the_name_and_the_bytes() {
+        let (a, b) = (Mark::of(&[1; 32]), Mark::of(&[2; 32]));
+        assert_ne!(a.record(b"x"), b.record(b"x"));
+        assert_ne!(a.note(b"n", b"x"), b.note(b"n", b"x"));
+        assert_ne!(a.note(b"n", b"x"), a.note(b"nx", b""));
+        assert_ne!(a.record(b"x")[..], a.note(b"", b"x")[..SHORT]);
+    }
+}

@@ -1,0 +1,129 @@
+//! Which folder is a store: one with the file `flow.store` that flow made when it made the store.
+//!
+//! A folder that is not there, or is empty but for notes for its readers, becomes a store when it is first opened. Any
+//! other folder without the marker is refused, so that nobody's files are taken for results: not read, moved or removed.
+//! A store of an earlier flow has no marker; [`adopt`] makes one when nothing but what flow makes lies in the folder.
+
+use super::StoreError;
+use super::disk::{Disk, is_temporary};
+use super::folder::{Folder, Strange};
+use super::journal;
+use super::presence::is_listing;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Name of the marker.
+pub(super) const MARKER: &str = "flow.store";
+const FIRST_LINE: &str = "flow store 1\n";
+const TEXT: &str = "flow store 1\n\
+    flow keeps results in this folder and made this file with it. Without this file flow does not touch the folder.\n";
+/// Files that stand beside a store and are not flow's to touch.
+const NOTES: &[&str] = &[".gitignore", "README.md"];
+/// Folders that flow makes in a store.
+const FOLDERS: &[&str] = &["objects", "journal", "memo", "runs", "locks", "aside"];
+/// Files that flow makes in the root of a store.
+const FILES: &[&str] = &[MARKER, super::lock::IN_USE, "listing"];
+
+/// Opens the folder of a store, and makes it when there is none.
+pub(super) fn open(disk: &Disk) -> Result<(), StoreError> {
+    let root = &disk.root;
+    if !root.is_dir() {
+        create(disk)?;
+    }
+    let folder = Folder::at(root).map_err(|error| disk.fail("open the folder", root, error))?;
+    match folder.read(MARKER, 1 << 12) {
+        Ok(text) if text.starts_with(FIRST_LINE.as_bytes()) => return Ok(()),
+        Ok(text) if text.starts_with(b"flow store ") => {
+            return Err(refuse(root, "a newer flow made it; use that one".to_owned()));
+        }
+        Ok(_) => return Err(refuse(root, format!("its file `{MARKER}` is not the one that flow writes"))),
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Err(error) if Strange::is(&error) => return Err(refuse(root, format!("`{MARKER}`: {error}"))),
+        Err(error) => return Err(disk.fail("read", &root.join(MARKER), error)),
+    }
+    match other_names(disk, &folder)?.as_slice() {
+        [] => mark(disk),
+        // Another process has made it in the meantime.
+        names if names.iter().any(|name| name == MARKER) => open(disk),
+        names if names.iter().all(|name| is_ours(name)) => Err(refuse(
+            root,
+            format!(
+                "it has no file `{MARKER}`; if an earlier flow made it, adopt it with `flow store adopt --store {}`",
+                root.display()
+            ),
+        )),
+        [first, ..] => Err(refuse(
+            root,
+            format!("it has no file `{MARKER}`, which flow makes with a store, and holds other files (`{first}`)"),
+        )),
+    }
+}
+
+/// Makes the marker in a store of an earlier flow.
+///
+/// # Errors
+/// The folder holds what flow does not make, or no journal of flow.
+pub(super) fn adopt(disk: &Disk) -> Result<(), StoreError> {
+    let folder = Folder::at(&disk.root).map_err(|error| disk.fail("open the folder", &disk.root, error))?;
+    let names = other_names(disk, &folder)?;
+    if let Some(other) = names.iter().find(|name| !is_ours(name)) {
+        return Err(refuse(&disk.root, format!("it holds `{other}`, which flow does not make; move that away first")));
+    }
+    if !journal::is_there(disk)? {
+        return Err(refuse(&disk.root, "it holds no journal that a flow has written".to_owned()));
+    }
+    mark(disk)
+}
+
+/// What lies in the root besides notes and files that are being written.
+fn other_names(disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> {
+    let mut names = Vec::new();
+    let listed = folder.list(|name, _| names.extend((!is_note(name) && !is_temporary(name)).then(|| name.to_owned())));
+    listed.map_err(|error| disk.fail("list", &disk.root, error))?;
+    names.sort_unstable();
+    Ok(names)
+}
+
+/// Whether flow makes something of this name in the root of a store.
+pub(super) fn is_ours(name: &str) -> bool {
+    FOLDERS.contains(&name) || FILES.contains(&name) || is_listing(name) || is_temporary(name)
+}
+
+/// Whether this is a note for readers of the folder.
+pub(super) fn is_note(name: &str) -> bool {
+    NOTES.contains(&name)
+}
+
+/// Whether flow makes a folder of this name in this folder of a store.
+pub(super) fn is_folder(folder: &str, name: &str) -> bool {
+    match folder {
+        "" => FOLDERS.contains(&name),
+        "objects" | super::memo::FOLDER => super::object::is_shard(name),
+        _ => false,
+    }
+}
+
+fn mark(disk: &Disk) -> Result<(), StoreError> {
+    // Of two that make it, one is first, and both write the same.
+    disk.write_new("", MARKER, TEXT.as_bytes(), true)?;
+    Ok(())
+}
+
+/// Makes the folder of a new store, with a note that keeps its files out of version control.
+fn create(disk: &Disk) -> Result<(), StoreError> {
+    let root = &disk.root;
+    if root.exists() {
+        return Err(refuse(root, "it is not a folder".to_owned()));
+    }
+    std::fs::create_dir_all(root).map_err(|error| match error.kind() {
+        ErrorKind::NotADirectory => refuse(root, "a part of the path is a file".to_owned()),
+        // The folder that is missing cannot have vanished.
+        _ => StoreError::io("make the folder", root, Path::new("/"), error),
+    })?;
+    disk.write_new("", ".gitignore", b"*\n", false)?;
+    Ok(())
+}
+
+fn refuse(root: &Path, why: String) -> StoreError {
+    StoreError::NotAStore { path: root.to_owned(), why }
+}

@@ -1,0 +1,148 @@
+//! Reading everything: what is sound, what is not, what flow has not written.
+
+use super::folder::Entry;
+use super::object::{self, ObjectId};
+use super::{Amount, Damage, Record, Store, StoreError, campaign, clean, journal, locked, memo, prove, root};
+use crate::artifact::{ContentHash, Key};
+use rayon::prelude::*;
+use std::collections::HashSet;
+use std::path::PathBuf;
+
+/// What verify found.
+#[derive(Clone, Debug, Default)]
+pub struct Verdict {
+    /// Results that prove themselves.
+    pub sound: Amount,
+    /// Objects that were not, and were set aside.
+    pub damages: Vec<Damage>,
+    /// Tasks with a record whose object is not there, and with no other.
+    pub missing: Vec<Key>,
+    /// Sound objects without a record, which have been recorded again.
+    pub adopted: Vec<Key>,
+    /// Sound objects that only others have recorded; they are recorded as proven now.
+    pub proven: Vec<Key>,
+    /// Records of the journal that could not be read.
+    pub lost_records: usize,
+    /// Tasks with two different results that are both sound: they depend on something that is not in their key, or one is
+    /// forged. Neither is believed; the next run computes them again.
+    pub contradictions: Vec<(Key, ContentHash, ContentHash)>,
+    /// Memos and records of runs that others have made, or that were changed: they are not believed.
+    pub not_own: usize,
+    /// What lies in the store and was not written by flow; it is not touched.
+    pub strangers: Vec<PathBuf>,
+}
+
+impl Verdict {
+    /// Whether all that flow wrote is what it was, and nothing contradicts.
+    pub fn is_sound(&self) -> bool {
+        self.damages.is_empty() && self.contradictions.is_empty()
+    }
+}
+
+impl Store {
+    /// Reads every object and compares it with its record, its name and its task. Damaged ones are set aside; sound
+    /// ones that no record knows (their journal was lost) are recorded again.
+    ///
+    /// # Errors
+    /// The store cannot be read, or a newer version wrote a part of it.
+    pub fn verify(&self) -> Result<Verdict, StoreError> {
+        self.refresh()?;
+        let mut verdict = Verdict { lost_records: locked(self.index()?).damaged(), ..Verdict::default() };
+        let records = self.records()?;
+        let checked: Vec<_> = records.par_iter().map(|record| (record, self.read(record))).collect();
+        let (mut sound, mut lost): (Vec<ObjectId>, Vec<Key>) = Default::default();
+        for (record, result) in checked {
+            match result {
+                Ok(proven) => {
+                    verdict.sound.add(proven.seal.size);
+                    sound.push(proven.id);
+                    if !record.own {
+                        verdict.proven.extend(self.proven(record)?.map(|record| record.key));
+                    }
+                }
+                Err(StoreError::Missing { .. }) => lost.push(record.key),
+                Err(StoreError::Damaged { fault }) => verdict.damages.push(fault),
+                Err(other) => return Err(other),
+            }
+        }
+        self.adopt_strays(&records, &mut sound, &mut verdict)?;
+        sound.sort_unstable_by_key(|id| (id.key, id.content));
+        let differ = |pair: &&[ObjectId]| pair[0].key == pair[1].key && pair[0].content != pair[1].content;
+        let pairs = sound.windows(2).filter(differ);
+        verdict.contradictions = pairs.map(|pair| (pair[0].key, pair[0].content, pair[1].content)).collect();
+        let there: HashSet<Key> = sound.iter().map(|id| id.key).collect();
+        lost.retain(|key| !there.contains(key));
+        lost.dedup();
+        verdict.missing = lost;
+        self.look_around(&mut verdict)?;
+        Ok(verdict)
+    }
+
+    /// Records the objects again that no record knows.
+    fn adopt_strays(
+        &self,
+        records: &[Record],
+        sound: &mut Vec<ObjectId>,
+        verdict: &mut Verdict,
+    ) -> Result<(), StoreError> {
+        let known: HashSet<String> = records.iter().map(|record| record.object().file_name()).collect();
+        let mut strays = Vec::new();
+        object::list(&self.disk, |_, _, name, _| {
+            if !known.contains(name) {
+                strays.push(name.to_owned());
+            }
+        })?;
+        for name in strays {
+            match prove::named(&self.disk, &name) {
+                Ok(proven) => {
+                    verdict.adopted.push(self.record_again(&proven).key);
+                    verdict.sound.add(proven.seal.size);
+                    sound.push(proven.id);
+                }
+                Err(StoreError::Missing { .. }) => {}
+                Err(StoreError::Damaged { fault }) => verdict.damages.push(fault),
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds notes that are not this user's, and what flow has not written.
+    fn look_around(&self, verdict: &mut Verdict) -> Result<(), StoreError> {
+        for number in self.campaigns()? {
+            verdict.not_own += usize::from(!self.campaign(number)?.is_some_and(|campaign| campaign.own));
+        }
+        let (mark, disk) = (&self.mark, &self.disk);
+        clean::walk(disk, &mut |place| {
+            if place.folder.starts_with(memo::FOLDER) && place.is_ours() {
+                let memo = memo::key_of(place.name).zip(place.at.read(place.name, memo::MOST).ok());
+                let own = memo.is_some_and(|(key, bytes)| memo::unpack(mark, &key, &bytes).is_some());
+                verdict.not_own += usize::from(!own);
+            } else if !place.is_ours() {
+                verdict.strangers.push(disk.path(place.folder, place.name));
+            }
+        })?;
+        verdict.strangers.sort();
+        Ok(())
+    }
+}
+
+/// Whether flow writes what has this name in this folder of the store.
+pub(super) fn is_ours(place: &clean::Place<'_>) -> bool {
+    let clean::Place { at, folder, name, entry } = place;
+    if !matches!(entry, Entry::File(_)) {
+        return false;
+    }
+    let (top, shard) = folder.split_once('/').unwrap_or((folder, ""));
+    match (top, shard) {
+        _ if super::disk::is_temporary(name) => true,
+        ("", "") => root::is_ours(name) || root::is_note(name),
+        ("objects", shard) => object::is_shard(shard) && object::is_ours(at, shard, name),
+        (memo::FOLDER, shard) => object::is_shard(shard) && memo::is_ours(at, shard, name),
+        (journal::FOLDER, "") => journal::is_ours(at, name),
+        (campaign::FOLDER, "") => campaign::is_ours(at, name),
+        (super::lock::FOLDER, "") => super::lock::is_name(name),
+        (object::ASIDE, "") => object::is_aside(name),
+        _ => false,
+    }
+}

@@ -1,0 +1,196 @@
+//! A store that was lost in part, or that others have written to: never two truths, nothing wrong, nothing outside touched.
+
+use crate::space::{Space, told};
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::PathBuf;
+
+const CAMPAIGN: &str = r#"
+[workflow]
+seed = 1
+[factor]
+a = { sets = "m.a", levels = [1, 2, 3] }
+[response]
+y = {}
+[material.base]
+m = { a = 1 }
+[stage.grid]
+kind = "design"
+method = "full-factorial"
+factors = ["a"]
+[stage.sim]
+kind = "formula"
+design = "grid"
+material = "base"
+responses.y = { value = "a" }
+[stage.mean]
+kind = "range"
+table = "sim"
+"#;
+
+fn campaign() -> Space {
+    let space = Space::new();
+    space.write("w.toml", CAMPAIGN);
+    space.run(&[]);
+    space
+}
+
+/// Files two folders below one of the store's.
+fn files(space: &Space, folder: &str) -> Vec<PathBuf> {
+    let below = |path: PathBuf| fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut files: Vec<PathBuf> = below(space.path(&format!("store/{folder}"))).collect();
+    if files.iter().any(|path| path.is_dir()) {
+        files = files.into_iter().flat_map(below).collect();
+    }
+    files.sort();
+    files
+}
+
+/// All commands that read results agree that they are there.
+fn all_agree(space: &Space, wanted: &str) {
+    space.run(&[]).expect(&[]);
+    let shown = space.stdout(&["show", "w.toml", "sim", "--table", "runs", "--csv", "--quiet"]);
+    assert_eq!(shown, wanted);
+    space.stdout(&["report", "w.toml", "--output", "page.html"]);
+    space.stdout(&["export", "w.toml", "sim", "--to", "csv", "--quiet"]);
+}
+
+#[test]
+fn a_lost_journal_is_found_again_by_every_command() {
+    let space = campaign();
+    let wanted = space.stdout(&["show", "w.toml", "sim", "--table", "runs", "--csv", "--quiet"]);
+    for command in
+        [&["show", "w.toml", "sim"][..], &["run", "w.toml", "sim"], &["report", "w.toml", "--output", "p.html"]]
+    {
+        fs::remove_dir_all(space.path("store/journal")).expect("the journal");
+        space.stdout(command);
+        all_agree(&space, &wanted);
+    }
+    fs::remove_dir_all(space.path("store/journal")).expect("the journal");
+    let said = space.stdout(&["store", "verify"]);
+    assert!(said.contains("6 results are sound") && said.contains("had no record"), "{said}");
+    assert!(!space.stdout(&["store", "verify"]).contains("had no record"));
+    fs::remove_dir_all(space.path("store/journal")).expect("the journal");
+    let kept = space.stdout(&["store", "gc", "w.toml", "--yes"]);
+    assert!(kept.contains("kept 6 results"), "{kept}");
+    all_agree(&space, &wanted);
+}
+
+#[test]
+fn a_lost_object_is_computed_again_whatever_memos_and_journal_say() {
+    let count = files(&campaign(), "objects").len();
+    for number in 0..count {
+        let space = campaign();
+        let wanted = space.stdout(&["show", "w.toml", "sim", "--table", "runs", "--csv", "--quiet"]);
+        fs::remove_file(&files(&space, "objects")[number]).expect("an object");
+        space.run(&[]);
+        all_agree(&space, &wanted);
+    }
+}
+
+/// Changes the last 2.0 in the data of every memo, with the checksum that anybody can make.
+fn forge_memos(space: &Space) -> usize {
+    let mut changed = 0;
+    for path in files(space, "memo") {
+        let mut bytes = fs::read(&path).expect("a memo");
+        let end = bytes.len() - 32;
+        let two = 2.0_f64.to_le_bytes();
+        let Some(at) = bytes[..end].windows(8).rposition(|window| window == two) else { continue };
+        bytes[at..at + 8].copy_from_slice(&1e6_f64.to_le_bytes());
+        let check = blake3::hash(&bytes[..end]);
+        bytes[end..].copy_from_slice(check.as_bytes());
+        fs::remove_file(&path).expect("a memo");
+        fs::write(&path, bytes).expect("a memo");
+        changed += 1;
+    }
+    changed
+}
+
+#[test]
+fn a_forged_memo_reaches_no_table_and_verify_says_so() {
+    let (space, fresh) = (campaign(), Space::new());
+    assert!(forge_memos(&space) > 0, "there was nothing to forge");
+    let said = space.stdout(&["store", "verify"]);
+    assert!(said.contains("were not written by you"), "{said}");
+    let more = CAMPAIGN.replace("[1, 2, 3]", "[1, 2, 3, 4]");
+    space.write("w.toml", &more);
+    fresh.write("w.toml", &more);
+    assert_eq!(space.run(&[]).objects, fresh.run(&[]).objects);
+}
+
+#[test]
+fn swapped_memos_change_nothing() {
+    let space = campaign();
+    let memos = files(&space, "memo");
+    let bytes: Vec<Vec<u8>> = memos.iter().map(|path| fs::read(path).expect("a memo")).collect();
+    for (place, path) in memos.iter().enumerate() {
+        fs::remove_file(path).expect("a memo");
+        fs::write(path, &bytes[(place + 1) % bytes.len()]).expect("a memo");
+    }
+    let fresh = campaign();
+    assert_eq!(space.run(&[]).objects, fresh.run(&[]).objects);
+}
+
+#[test]
+fn another_user_of_a_store_gets_the_same_and_proves_it_first() {
+    let space = campaign();
+    let fresh = campaign();
+    let other = |arguments: &[&str]| {
+        let state = space.path("other");
+        let output = space.command(arguments).env("XDG_STATE_HOME", state).output().expect("running flow");
+        assert!(output.status.success(), "{}", told(&output));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let forged = forge_memos(&space);
+    assert!(forged > 0);
+    let document: serde_json::Value =
+        serde_json::from_str(other(&["run", "w.toml", "--json", "--quiet"]).lines().last().unwrap_or_default())
+            .expect("JSON");
+    assert_eq!((&document["tasks"]["ran"], &document["tasks"]["cached"]), (&0.into(), &6.into()));
+    let said = other(&["store", "verify"]);
+    assert!(!said.contains("recorded by others") && said.contains("6 results are sound"), "{said}");
+    assert_eq!(space.run(&[]).objects, fresh.run(&[]).objects);
+}
+
+#[test]
+fn a_changed_record_of_a_run_is_refused() {
+    let space = campaign();
+    let path = space.path("store/runs/1.json");
+    let text = fs::read_to_string(&path).expect("a record");
+    let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let object = |stage: usize| document["stages"][stage]["object"].as_str().expect("an object").to_owned();
+    space.stdout(&["diff", "#1", "w.toml"]);
+    fs::remove_file(&path).expect("a record");
+    fs::write(&path, text.replace(&object(2), &object(1))).expect("a record");
+    let output = space.flow(&["diff", "#1", "w.toml"]);
+    assert_eq!(output.status.code(), Some(3), "{}", told(&output));
+    assert!(told(&output).contains("was not recorded by you"));
+    assert!(space.stdout(&["store", "verify"]).contains("1 memos and records of runs were not written by you"));
+}
+
+#[test]
+fn gc_and_verify_leave_alone_what_lies_outside_and_what_flow_did_not_write() {
+    let space = campaign();
+    fs::create_dir_all(space.path("victim/deep")).expect("a folder");
+    space.write("victim/thesis.tex", "precious");
+    space.write("victim/deep/b", "precious");
+    for link in ["store/aside", "store/objects/zz"] {
+        symlink(space.path("victim"), space.path(link)).expect("a link");
+    }
+    let said = space.stdout(&["store", "verify"]);
+    assert!(said.contains("not by flow, and not touched: "), "{said}");
+    space.stdout(&["store", "gc", "w.toml"]);
+    space.stdout(&["store", "gc", "w.toml", "--yes"]);
+    assert!(space.path("victim/thesis.tex").exists() && space.path("victim/deep/b").exists());
+    fs::create_dir_all(space.path("project/objects/parts")).expect("a folder");
+    space.write("project/objects/parts/mesh.stl", "mesh");
+    for command in
+        [&["store", "verify"][..], &["store", "gc", "w.toml", "--yes"], &["run", "w.toml"], &["store", "adopt"]]
+    {
+        let output = space.flow(&[command, &["--store", "project"]].concat());
+        assert_eq!(output.status.code(), Some(3), "{}", told(&output));
+        assert!(told(&output).contains("is not a store"), "{}", told(&output));
+    }
+    assert_eq!(fs::read_dir(space.path("project")).expect("a folder").count(), 1);
+    assert!(space.path("project/objects/parts/mesh.stl").exists());
+}
