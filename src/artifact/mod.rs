@@ -14,6 +14,7 @@ mod field;
 mod key;
 mod kind;
 mod node;
+pub mod presentation;
 mod read;
 pub mod results;
 pub mod run;

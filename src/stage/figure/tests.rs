@@ -9,6 +9,7 @@ use crate::artifact::statistics::{
     Residuals, Screening, Selections, Stationary, Surfaces, Variances,
 };
 use crate::artifact::{ContentHash, Numbered};
+use crate::artifact::{Group, Node};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use ndarray::{Array2, Array3};
 use std::sync::Arc;
