@@ -1,6 +1,7 @@
 //! Results of calibration and verification as they are stored.
 //!
-//! The tables `solution`, `history`, `solution_set` and `runs` have a column for each factor and response of the
+//! What readers of these artifacts rely on: the tables may hold further columns, which are found by their names in a
+//! table that is printed. The tables `solution`, `history`, `solution_set` and `runs` have a column for each factor and response of the
 //! workflow besides those that are declared here; [`Table::numbers`] reads such a column by its name.
 
 use super::{ArtifactKind, Table};

@@ -83,7 +83,7 @@ impl Run {
         if !self.campaign.common.quiet {
             remarks(&self.campaign, &report, &store).iter().for_each(|line| eprintln!("{line}"));
         }
-        let exit = exit(&report);
+        let exit = unmet(&workflow, &report, &store, exit(&report));
         // The process ends now, and the system takes all of its memory back faster than it is given back piece by piece.
         std::mem::forget((workflow, store, report));
         Ok(exit)
@@ -171,6 +171,24 @@ fn exit(report: &Report) -> Exit {
     } else {
         Exit::Failed
     }
+}
+
+/// Says what finished stages do not give though the workflow asks it of them; a campaign that is done has failed then.
+fn unmet(workflow: &Workflow, report: &Report, store: &Store, exit: Exit) -> Exit {
+    let mut exit = exit;
+    for stage in &report.stages {
+        let (StageStatus::Done(content), Some(index)) = (&stage.status, workflow.position(&stage.name)) else {
+            continue;
+        };
+        let why = store.get(content).ok().and_then(|artifact| workflow.stages[index].stage.unmet(&artifact));
+        if let Some(why) = why {
+            eprintln!("unmet: {}: {why}", stage.name);
+            if matches!(exit, Exit::Done) {
+                exit = Exit::Failed;
+            }
+        }
+    }
+    exit
 }
 
 fn document(workflow: &str, report: &Report, seconds: f64) -> Value {

@@ -61,7 +61,7 @@ impl Factor {
     }
 
     /// Where a value stands; outside the range it lies outside 0 … 1, and a value without logarithm stands at −∞.
-    pub(super) fn unit(&self, natural: f64) -> f64 {
+    pub fn unit(&self, natural: f64) -> f64 {
         match self.scale {
             Scale::Linear => (natural - self.low) / (self.high - self.low),
             Scale::Log if natural <= 0.0 => f64::NEG_INFINITY,

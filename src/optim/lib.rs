@@ -3,10 +3,12 @@
 //! * [`constraint`]: the box of the parameters and linear constraints in it; [`least_distance`] projects onto them
 //! * [`misfit`]: how far responses are from their targets
 //! * [`genetic`], [`annealing`], [`differential`], [`cma_es`]: minimise the misfit as one number
+//! * [`proportional`]: one parameter to which one response is proportional
 //! * [`surrogate`]: models every response over all runs, which is what noisy and dear simulations need
 //! * [`local`], [`polish`]: the descent from a found point that may follow the four of them
 //! * [`search`]: the loop around any of them, as a pure function of settings, seed and history
 //! * [`solution_set`]: all the parameters that meet the targets when there is more than one answer
+//! * [`determination`]: how well the responses determine each parameter
 //!
 //! An optimiser hands out points and is told what came back. It never sees the model, a clock or a thread, so the
 //! same history gives the same points: a killed calibration is resumed by replaying what was told.
@@ -17,6 +19,7 @@
 pub mod annealing;
 pub mod cma_es;
 pub mod constraint;
+pub mod determination;
 pub mod differential;
 pub mod factor;
 pub mod genetic;
@@ -25,6 +28,7 @@ mod level;
 pub mod local;
 pub mod misfit;
 pub mod polish;
+pub mod proportional;
 pub mod search;
 pub mod solution_set;
 pub mod surrogate;

@@ -8,9 +8,10 @@ use super::cma_es::CmaEs;
 use super::differential::Differential;
 use super::genetic::Genetic;
 use super::polish::Polish;
+use super::proportional::Proportional;
 use super::surrogate::{Surrogate, Trend};
 use super::{Error, Interval, Optimiser, Problem, Recommendation, Stop, Trial};
-use super::{annealing, cma_es, differential, genetic, surrogate};
+use super::{annealing, cma_es, differential, genetic, proportional, surrogate};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +29,8 @@ pub enum Method {
     CmaEs(cma_es::Settings),
     /// One model per response over all runs.
     Surrogate(surrogate::Settings),
+    /// Corrections of one parameter by the slope that the last run showed.
+    Proportional(proportional::Settings),
 }
 
 /// When any method ends, and whether its end is refined.
@@ -173,6 +176,7 @@ impl Search {
             Method::Annealing(s) => Box::new(Annealing::new(s, domain, seed, start)),
             Method::Differential(s) => Box::new(Differential::new(s, domain, seed, start)),
             Method::CmaEs(s) => Box::new(CmaEs::new(s, domain, seed, start.unwrap_or(domain.centre()))),
+            Method::Proportional(s) => Box::new(Proportional::new(s, problem)),
             Method::Surrogate(s) => {
                 let known = knowledge.earlier.iter().map(|run| earlier(problem, run)).collect();
                 Box::new(Surrogate::new(s, problem, seed, known, knowledge.trend.clone()))

@@ -8,7 +8,7 @@ use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
 use crate::stage::ledger::Kept;
 use crate::stage::rows::Rows;
-use crate::stage::{FileInput, Library, Outcome, StageError, Task};
+use crate::stage::{FileInput, Library, Memory, Outcome, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -19,6 +19,8 @@ pub(super) struct Shelf<'a> {
     pub(super) board: &'a Board,
     /// What is remembered of the runs of the stage that asks.
     pub(super) ledger: Option<&'a Ledger>,
+    /// What the stage that asks remembers of its last step.
+    pub(super) memory: &'a Memory,
     pub(super) notes: RefCell<Notes>,
 }
 
@@ -56,6 +58,10 @@ impl Library for Shelf<'_> {
             }
             TaskState::Open | TaskState::Running => None,
         }
+    }
+
+    fn memory(&self) -> Option<&Memory> {
+        Some(self.memory)
     }
 
     fn file(&self, name: &str, path: &str) -> Result<FileInput, StageError> {

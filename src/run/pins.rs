@@ -134,14 +134,14 @@ anova 2a92fd32596a
 screening 3597a986b589
 regression 5bbcfc4bea7d
 rsm 592833ad92f1
-calibrate 2da0a0b692ea
+calibrate e38b40d330ef
 verify 38b0cc910644
 agreement bd06fe72410e
 table 464517716712
 figure e5375085b080
 agreement 1
 anova 2
-calibrate 2
+calibrate 3
 command 1
 data 1
 design 2

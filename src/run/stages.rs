@@ -9,7 +9,7 @@ use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
 use crate::stage::rows::Rows;
-use crate::stage::{Input, Known, Library, StageError, Step, vary};
+use crate::stage::{Input, Known, Library, Memory, StageError, Step, vary};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
 use std::collections::HashSet;
@@ -82,6 +82,8 @@ struct Place {
     /// Every node it asked for, and the one it finishes with.
     asked: Vec<NodeId>,
     files: Files,
+    /// What it worked out at its last step.
+    memory: Memory,
     /// What its memo said, when that was enough.
     remembered: Option<memo::Known>,
 }
@@ -111,6 +113,7 @@ impl Stages {
             rows: None,
             asked: Vec::new(),
             files: Vec::new(),
+            memory: Memory::default(),
             remembered: None,
         };
         Self { places: wanted.into_iter().map(place).collect(), base: memo::base(workflow), memos }
@@ -168,7 +171,8 @@ impl Stages {
     ) -> Result<(Vec<NodeId>, Option<String>), Box<Lost>> {
         let key = self.places[index].run.filter(|_| self.memos && matches!(self.places[index].state, State::Waiting));
         let ledger = key.and_then(|key| Ledger::read(workflow, store, &key));
-        let shelf = Shelf { workflow, store, board, ledger: ledger.as_ref(), notes: RefCell::default() };
+        let memory = &self.places[index].memory;
+        let shelf = Shelf { workflow, store, board, ledger: ledger.as_ref(), memory, notes: RefCell::default() };
         let step = workflow.stages[index].stage.next(&self.known(workflow, index, &shelf));
         let Notes { files, rows, lost } = shelf.notes.into_inner();
         if let Some(lost) = lost {

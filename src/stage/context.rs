@@ -4,7 +4,7 @@ use super::ledger::Kept;
 use super::material::Material;
 use super::rows::Rows;
 use super::vary::Template;
-use super::{StageError, Task};
+use super::{Memory, StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
 use crate::expression::Measure;
 use crate::unit::{Dimension, Unit};
@@ -167,6 +167,11 @@ pub trait Library {
     /// The run of a row that an earlier campaign made, if it knows of one and all that decides a run is as it was. Asked
     /// once for every row of a fan-out, in order.
     fn kept(&self, _rows: &Arc<Rows>, _index: usize) -> Option<Kept<'_>> {
+        None
+    }
+
+    /// What the stage that asks remembers of its last step, if it is given a memory.
+    fn memory(&self) -> Option<&Memory> {
         None
     }
 

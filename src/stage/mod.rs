@@ -48,6 +48,7 @@ pub mod fitted;
 pub mod formula;
 pub mod ledger;
 pub mod material;
+mod memory;
 mod notes;
 mod published;
 pub mod range;
@@ -66,6 +67,7 @@ pub use context::{
     Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Scale, Sketch,
     Varier,
 };
+pub use memory::Memory;
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};
@@ -108,6 +110,12 @@ pub trait Stage: Settings + Send + Sync {
     /// # Errors
     /// What makes the stage impossible now that its inputs are known, such as a design that lacks a factor.
     fn next(&self, known: &Known) -> Result<Step, StageError>;
+
+    /// What the workflow asks of the result and it does not give, though it was computed: `flow run` says it and exits
+    /// with 1.
+    fn unmet(&self, _result: &Artifact) -> Option<String> {
+        None
+    }
 
     /// The task that makes replicate `number` (counted from 1) of this stage's result, for kinds that have replicates
     /// (specimens): the result of the stage itself is replicate 1.

@@ -7,14 +7,18 @@
 //!
 //! The artifact `verification` holds the tables `summary` and `runs`.
 
-use super::calibrate::read_response;
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::calibration::{Prediction, Solution, Summary, Verification, VerifiedRuns};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
+use super::calibrate::{Unmet, read_response};
+use super::notes::short;
+use super::{
+    Class, Complaint, Context, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work,
+};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
 use math::distribution::t_for_coverage;
+use optim::misfit::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Settings of a `verify` stage.
@@ -24,10 +28,19 @@ pub struct Verify {
     /// The calibration to verify.
     pub solution: String,
     /// The stage whose simulation is run: its specimen, material and test.
-    pub simulator: String,
+    pub simulator: Option<String>,
+    /// Several such stages, as the calibration has them.
+    #[serde(default)]
+    pub simulators: Vec<String>,
+    /// The simulator that a response is taken from, when several give it; the first that does when not given.
+    #[serde(default)]
+    pub from: BTreeMap<String, String>,
     /// Fresh specimens per set.
     #[serde(default = "five")]
     pub replicates: u64,
+    /// What `flow run` makes of targets that lie outside the interval of the mean.
+    #[serde(default)]
+    pub unmet: Unmet,
 }
 
 fn five() -> u64 {
@@ -42,21 +55,23 @@ const FRESH: u64 = 1_000_001;
 struct Params {
     factors: Vec<String>,
     replicates: usize,
+    /// The simulators, in the order of their runs at one specimen.
+    simulators: Vec<String>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    from: BTreeMap<String, String>,
 }
 
 impl Stage for Verify {
     fn inputs(&self) -> Vec<Port> {
+        let simulators = Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::RUN]);
         vec![
             Port {
                 key: "solution",
                 stages: vec![self.solution.clone()],
                 accepts: Accepts::Only(&[ArtifactKind::SOLUTION]),
             },
-            Port {
-                key: "simulator",
-                stages: vec![self.simulator.clone()],
-                accepts: Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::RUN]),
-            },
+            Port { key: "simulator", stages: self.simulator.iter().cloned().collect(), accepts: simulators },
+            Port { key: "simulators", stages: self.simulators.clone(), accepts: simulators },
         ]
     }
 
@@ -65,35 +80,62 @@ impl Stage for Verify {
     }
 
     fn check(&self, _context: &Context) -> Vec<Complaint> {
-        let few = Complaint::new("replicates", "a standard deviation needs at least two specimens");
-        if self.replicates < 2 { vec![few.hint("replicates = 5")] } else { Vec::new() }
+        let mut found = Vec::new();
+        if self.replicates < 2 {
+            let few = Complaint::new("replicates", "a standard deviation needs at least two specimens");
+            found.push(few.hint("replicates = 5"));
+        }
+        let simulators: Vec<&String> = self.simulator.iter().chain(&self.simulators).collect();
+        if simulators.is_empty() {
+            found.push(Complaint::new("simulator", "no simulator is named").hint("name that of the calibration"));
+        }
+        for name in self.from.values().filter(|name| !simulators.contains(name)) {
+            found.push(Complaint::new("from", format!("`{name}` is none of the simulators")));
+        }
+        found
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let input = known.one("solution")?;
         let artifact = known.load(input)?;
-        let table = Solution::from_artifact(&artifact)?.solution;
+        let table = artifact.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
         let factors: Vec<String> =
             table.columns.iter().map(|c| c.name.clone()).filter(|n| known.context.factors.contains_key(n)).collect();
-        let simulator = known.one("simulator")?;
-        let mut task =
-            Task::new("verify", json!(Params { factors: factors.clone(), replicates: self.replicates as usize }))
-                .input("solution", input.content);
+        let simulators: Vec<&Input<'_>> = known.port("simulator").chain(known.port("simulators")).collect();
+        let params = Params {
+            factors: factors.clone(),
+            replicates: self.replicates as usize,
+            simulators: simulators.iter().map(|simulator| simulator.stage.to_owned()).collect(),
+            from: self.from.clone(),
+        };
+        let mut task = Task::new("verify", json!(params)).input("solution", input.content);
         for set in 0..table.rows() {
             let unit = |name: &String| known.context.factors.get(name).map_or("", |factor| factor.unit.as_str());
             let value = |name: &String| Ok((name.clone(), table.numbers(name, unit(name))?[set]));
-            let point: Point = factors.iter().map(value).collect::<Result<_, StageError>>()?;
+            let mut point = factors.iter().map(value).collect::<Result<Point, StageError>>()?;
+            // What other sets hold and this one does not.
+            point.retain(|_, value| value.is_finite());
             for replicate in 0..self.replicates {
-                task = task.after(
-                    "run",
-                    Arc::new(
-                        (simulator.sample)(&point, FRESH + replicate)?
-                            .row(set * self.replicates as usize + replicate as usize),
-                    ),
-                );
+                let index = set * self.replicates as usize + replicate as usize;
+                for (k, simulator) in simulators.iter().enumerate() {
+                    let run = (simulator.sample)(&point, FRESH + replicate)?.row(index * simulators.len() + k);
+                    task = task.after("run", Arc::new(run));
+                }
             }
         }
         Ok(Step::Finish(task))
+    }
+
+    fn unmet(&self, result: &Artifact) -> Option<String> {
+        if self.unmet != Unmet::Fail {
+            return None;
+        }
+        let table = result.table("summary")?;
+        let (responses, inside) = (table.texts("response").ok()?, table.texts("target_inside").ok()?);
+        let (sets, means) = (table.ints("set").ok()?, table.numbers("mean", "").ok()?);
+        let missed = |i: usize| format!("set {}: the mean of `{}` is {}", sets[i], responses[i], short(means[i]));
+        let missed: Vec<String> = (0..inside.len()).filter(|&i| inside[i] != "yes").map(missed).collect();
+        (!missed.is_empty()).then(|| format!("{}, and the target is not in its interval", missed.join("; ")))
     }
 }
 
@@ -110,21 +152,36 @@ struct Verified {
     set: i64,
     response: String,
     unit: String,
-    target: f64,
+    target: Target,
     values: Vec<f64>,
+}
+
+impl Verified {
+    /// How far a value lies from what is wanted.
+    fn off(&self, value: f64) -> f64 {
+        (value - self.target.nearest(value)).abs()
+    }
+
+    /// The wanted value that others are measured by: the target, or the end of the band that is nearest.
+    fn wanted(&self, value: f64) -> f64 {
+        let nearest = self.target.nearest(value);
+        if nearest == value { self.target.value() } else { nearest }
+    }
 }
 
 fn verify(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let solution = Solution::from_artifact(job.input("solution")?).map_err(StageError::from)?;
+    let solution = job.input("solution")?;
     let runs: Vec<&Artifact> = job.inputs.iter().filter(|(name, _)| name == "run").map(|(_, run)| &**run).collect();
-    let mut verified = targets(&solution.prediction);
+    let mut verified = targets(solution)?;
     let mut failures = Vec::new();
-    for (i, run) in runs.iter().enumerate() {
+    for (i, runs) in runs.chunks(params.simulators.len()).enumerate() {
         let set = (i / params.replicates) as i64 + 1;
+        let runs: Vec<(&str, &Artifact)> =
+            params.simulators.iter().map(String::as_str).zip(runs.iter().copied()).collect();
         let mut failure = String::new();
         for one in verified.iter_mut().filter(|one| one.set == set) {
-            match read_response(run, &one.response, &one.unit)? {
+            match read_response(&runs, &params.from, &one.response, &one.unit)? {
                 Ok(value) => one.values.push(value),
                 Err(reason) => {
                     one.values.push(f64::NAN);
@@ -134,20 +191,32 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
         }
         failures.push(failure);
     }
-    let runs = run_table(&params, &solution.solution, &verified, failures)?;
-    Ok(Verification { summary: summary(&verified), runs }.to_artifact())
+    let root = Group::new()
+        .with("summary", Node::Table(summary(&verified)))
+        .with("runs", Node::Table(run_table(&params, solution, &verified, failures)?));
+    Ok(Artifact::of(ArtifactKind::VERIFICATION, root))
 }
 
-/// The targets of all sets.
-fn targets(prediction: &Prediction) -> Vec<Verified> {
-    let one = |i: usize| Verified {
-        set: prediction.set[i],
-        response: prediction.response[i].clone(),
-        unit: prediction.unit[i].clone(),
-        target: prediction.target[i],
+/// The targets of all sets, from the solution's table `prediction`.
+fn targets(solution: &Artifact) -> Result<Vec<Verified>, StageError> {
+    let wrong = || StageError::new("the solution holds no table `prediction` with the targets");
+    let table = solution.table("prediction").ok_or_else(wrong)?;
+    let (sets, values) = (table.ints("set")?, table.numbers("target", "")?);
+    let end = |name: &str, open: f64| match table.numbers(name, "") {
+        Ok(ends) => ends.into_iter().map(|end| if end.is_nan() { open } else { end }).collect(),
+        Err(_) => values.clone(),
+    };
+    let (low, high): (Vec<f64>, Vec<f64>) = (end("at_least", f64::NEG_INFINITY), end("at_most", f64::INFINITY));
+    let targets: Vec<[f64; 2]> = low.into_iter().zip(high).map(|(low, high)| [low, high]).collect();
+    let names = table.texts("response")?.iter().zip(table.texts("unit")?);
+    let one = |((&set, &ends), (response, unit)): ((&i64, &[f64; 2]), (&String, &String))| Verified {
+        set,
+        response: response.clone(),
+        unit: unit.clone(),
+        target: Target::band(response, ends, 1.0),
         values: Vec::new(),
     };
-    (0..prediction.set.len()).map(one).collect()
+    Ok(sets.iter().zip(&targets).zip(names).map(one).collect())
 }
 
 /// Mean, standard deviation and half the 95 % interval of the mean of the values there are, and their number.
@@ -160,44 +229,56 @@ fn moments(values: &[f64]) -> (f64, f64, f64, usize) {
     (mean, deviation, half, there.len())
 }
 
-fn summary(verified: &[Verified]) -> Summary {
+fn summary(verified: &[Verified]) -> Table {
     let moments: Vec<_> = verified.iter().map(|one| moments(&one.values)).collect();
     let all: Vec<_> = verified.iter().zip(&moments).collect();
     type Row<'a> = (&'a Verified, &'a (f64, f64, f64, usize));
     let reals = |pick: fn(&Row) -> f64| all.iter().map(pick).collect::<Vec<_>>();
     let inside = |(one, (mean, _, half, _)): &Row| {
-        let inside = (one.target - mean).abs() <= *half;
+        let inside = one.off(*mean) <= *half;
         let known = if inside { "yes" } else { "no" };
         if half.is_nan() { "unknown".to_owned() } else { known.to_owned() }
     };
-    Summary {
-        set: verified.iter().map(|one| one.set).collect(),
-        response: verified.iter().map(|one| one.response.clone()).collect(),
-        unit: verified.iter().map(|one| one.unit.clone()).collect(),
-        target: reals(|(one, _)| one.target),
-        mean: reals(|(_, m)| m.0),
-        std: reals(|(_, m)| m.1),
-        cv_percent: reals(|(_, m)| 100.0 * m.1 / m.0.abs()),
-        relative_error_percent: reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / one.target.abs()),
-        error_of_mean_percent: reals(|(one, m)| 100.0 * (m.0 - one.target).abs() / m.0.abs()),
-        low: reals(|(_, m)| m.0 - m.2),
-        high: reals(|(_, m)| m.0 + m.2),
-        target_inside: all.iter().map(inside).collect(),
-        n: moments.iter().map(|m| m.3 as i64).collect(),
-    }
+    Table { about: "calibrated sets on fresh specimens".to_owned(), columns: Vec::new() }
+        .ints_column("set", "target set, from 1", verified.iter().map(|one| one.set).collect())
+        .texts_column("response", "", verified.iter().map(|one| one.response.clone()).collect())
+        .texts_column("unit", "of the numbers beside it", verified.iter().map(|one| one.unit.clone()).collect())
+        .reals_column("target", "", "wanted", reals(|(one, _)| one.target.value()))
+        .reals_column("mean", "", "of the runs", reals(|(_, m)| m.0))
+        .reals_column("std", "", "standard deviation of a run", reals(|(_, m)| m.1))
+        .reals_column("cv_percent", "", "standard deviation over mean", reals(|(_, m)| 100.0 * m.1 / m.0.abs()))
+        .reals_column(
+            "relative_error_percent",
+            "",
+            "of the mean against the target",
+            reals(|(one, m)| 100.0 * one.off(m.0) / one.wanted(m.0).abs()),
+        )
+        .reals_column(
+            "error_of_mean_percent",
+            "",
+            "the same difference against the mean",
+            reals(|(one, m)| 100.0 * one.off(m.0) / m.0.abs()),
+        )
+        .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|(_, m)| m.0 - m.2))
+        .reals_column("high", "", "upper end", reals(|(_, m)| m.0 + m.2))
+        .texts_column("target_inside", "whether the interval holds the target", all.iter().map(inside).collect())
+        .ints_column("n", "runs with a value", moments.iter().map(|m| m.3 as i64).collect())
 }
 
 fn run_table(
     params: &Params,
-    source: &Table,
+    solution: &Artifact,
     verified: &[Verified],
     failures: Vec<String>,
 ) -> Result<Table, StageError> {
-    let (n, count) = (params.replicates, failures.len());
-    let mut table = Table::default();
+    let source = solution.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
+    let n = params.replicates;
+    let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() }
+        .ints_column("set", "target set, from 1", (0..failures.len()).map(|i| (i / n) as i64 + 1).collect())
+        .ints_column("specimen", "counted from 1", (0..failures.len()).map(|i| (i % n) as i64 + 1).collect());
     for name in &params.factors {
         let (values, unit) = source.shown(name)?;
-        table = table.reals_column(name, unit, "", (0..count).map(|i| values[i / n]).collect());
+        table = table.reals_column(name, unit, "", (0..failures.len()).map(|i| values[i / n]).collect());
     }
     let mut seen: Vec<&str> = Vec::new();
     for Verified { response, unit, .. } in verified {
@@ -209,14 +290,9 @@ fn run_table(
             let own = verified.iter().find(|one| one.response == *response && one.set == (i / n) as i64 + 1);
             own.and_then(|one| one.values.get(i % n).copied()).unwrap_or(f64::NAN)
         };
-        table = table.reals_column(response, unit, "", (0..count).map(value).collect());
+        table = table.reals_column(response, unit, "", (0..failures.len()).map(value).collect());
     }
-    let runs = VerifiedRuns {
-        set: (0..count).map(|i| (i / n) as i64 + 1).collect(),
-        specimen: (0..count).map(|i| (i % n) as i64 + 1).collect(),
-        failure: failures,
-    };
-    Ok(runs.to_table().with_after("specimen", table))
+    Ok(table.texts_column("failure", "why the run gave no result; empty when it did", failures))
 }
 
 #[cfg(test)]

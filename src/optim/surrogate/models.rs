@@ -151,6 +151,24 @@ impl Models {
         self.responses.iter().zip(self.predict(unit)).map(|(r, (mean, _))| r.scale.decode(mean)).collect()
     }
 
+    /// The expected responses at a point in natural units, which may lie outside the box.
+    pub fn expected_at(&self, natural: &[f64]) -> Vec<f64> {
+        self.expected(&self.problem.domain.unit(natural))
+    }
+
+    /// The scatter of a single run around the expected response at a point of the unit box, one standard deviation of
+    /// each response in its unit.
+    pub fn deviations(&self, unit: &[f64]) -> Vec<f64> {
+        let one = |(response, (mean, _)): (&Response, (f64, f64))| {
+            let noise = response.process.as_ref().map_or(f64::NAN, |process| process.sizes().noise);
+            match response.scale {
+                Scale::Linear { width, .. } => noise * width,
+                Scale::Logarithm { width, .. } => response.scale.decode(mean) * noise * width,
+            }
+        };
+        self.responses.iter().zip(self.predict(unit)).map(one).collect()
+    }
+
     /// The largest scatter of a single run among the responses, in their coded units (logarithms: relative).
     pub fn scatter(&self) -> Option<f64> {
         self.responses.iter().filter_map(|r| r.process.as_ref()).map(|p| p.sizes().noise).reduce(f64::max)

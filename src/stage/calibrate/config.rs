@@ -1,50 +1,66 @@
-//! The settings of a calibration, and what can be wrong with them before anything runs.
+//! The settings of a calibration, and all that decides its result.
 
-use super::params::{FactorParam, ORDINATE, Params, TargetParam};
-use crate::stage::{Complaint, Context, StageError};
-use crate::unit::{Unit, split_any};
-use optim::Error;
+use super::curve::Curve;
+use super::goal::Goal;
+use super::names::Names;
+use super::params::{FactorParam, Params};
+use super::slope::Slope;
+use crate::artifact::Artifact;
+use crate::stage::{Context, Scale, StageError};
+use crate::unit::Unit;
 use optim::misfit::{Denominator, Form};
 use optim::search::{Limits, Method};
 use optim::{annealing, cma_es, differential, genetic, surrogate};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Settings of a `calibrate` stage.
-#[derive(Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct Calibrate {
     /// The stage with the fitted surfaces.
     pub surfaces: Option<String>,
     /// The stage whose simulation is run: its specimen, material and test.
     pub simulator: Option<String>,
+    /// Several such stages, all run at every point: a compression and a splitting test, say.
+    pub simulators: Vec<String>,
+    /// The simulator that a response is taken from, when several give it; the first that does when not given.
+    pub from: BTreeMap<String, String>,
+    /// Cheaper twins of the simulators, one or in their order: they are searched, and the simulators themselves run only
+    /// to correct what was found.
+    pub coarse: Names,
+    /// Most runs of the simulators themselves where there are coarse ones; 12 when not given.
+    pub full_runs: Option<usize>,
     /// Stages whose runs the surrogate learns from.
-    #[serde(default)]
     pub learn_from: Vec<String>,
     /// The material whose values stand for factors that a table of `learn_from` does not vary.
     pub material: Option<String>,
     /// The parameters to find, between the ends of their ranges.
     pub factors: Vec<String>,
     /// Other ranges than those of the factors, in their units.
-    #[serde(default)]
     pub ranges: BTreeMap<String, [f64; 2]>,
+    /// Factors that are searched on another scale than their own.
+    pub scales: BTreeMap<String, Scale>,
     /// Linear constraints on the factors.
-    #[serde(default)]
     pub constraints: Vec<Constraint>,
-    /// Target sets: the wanted value of each response, such as `{ UCS = "30 MPa", nu = 0.2 }`.
-    #[serde(default)]
-    pub targets: Vec<BTreeMap<String, Wanted>>,
+    /// Target sets: what is wanted of each response, such as `{ UCS = "30 MPa", sigma_t = { at_least = "3 MPa" } }`.
+    pub targets: Vec<BTreeMap<String, Goal>>,
+    /// Factors that are not calibrated and their values, in their units: one table for all target sets, or one for each;
+    /// several with one target set make as many sets.
+    pub held: Vec<BTreeMap<String, f64>>,
     /// A stress–strain curve that every set must follow as well; needs a simulator.
     pub curve: Option<Curve>,
     /// Weight of the deviation of a response, 1 when not given.
-    #[serde(default)]
     pub weights: BTreeMap<String, f64>,
-    /// How deviations are combined.
-    #[serde(default)]
-    pub misfit: Form,
+    /// Relative deviation up to which a target counts as met; 0.02 when not given.
+    pub tolerance: Option<f64>,
+    /// What `flow run` makes of targets that are not met.
+    pub unmet: Unmet,
+    /// How deviations are combined: as the method's preset was published, else their sum, when not given.
+    pub misfit: Option<Form>,
     /// What deviations are relative to.
-    #[serde(default)]
     pub denominator: Denominator,
     /// The optimiser: `genetic` on surfaces and `surrogate` with a simulator when not given.
     pub method: Option<MethodName>,
@@ -58,25 +74,42 @@ pub struct Calibrate {
     pub cma_es: Option<cma_es::Settings>,
     /// Settings of the surrogate.
     pub surrogate: Option<surrogate::Settings>,
+    /// Settings of the proportional corrections.
+    pub proportional: Option<Slope>,
+    /// A first guess, in the factors' units; the middle of the range for factors that are not named.
+    pub start: BTreeMap<String, f64>,
+    /// Seeds of the optimiser, in place of the workflow's: every target set is searched once with each.
+    pub seeds: Vec<u64>,
     /// Most evaluations of a set.
     pub evaluations: Option<usize>,
     /// Misfit that is good enough.
     pub stop_at: Option<f64>,
     /// Refine the best point at the end; on surfaces only.
-    #[serde(default)]
     pub polish: bool,
     /// Point that the solution shall be nearest to, in the factors' units; the centre for factors that are not named.
-    #[serde(default)]
     pub preference: BTreeMap<String, f64>,
-    /// Size of the sample of the solution set.
-    #[serde(default = "solutions")]
-    pub solutions: usize,
+    /// Size of the sample of the solution set; 50 when not given.
+    pub solutions: Option<usize>,
     /// Specimens to cycle through; a fresh one for every simulation of a set when not given.
     pub specimens: Option<u64>,
 }
 
-fn solutions() -> usize {
-    50
+/// Sample of the solution set when nothing is said.
+const SOLUTIONS: usize = 50;
+/// Relative deviation of a target that counts as met when nothing is said.
+const TOLERANCE: f64 = 0.02;
+/// Runs of the simulators themselves when nothing is said.
+const FULL_RUNS: usize = 12;
+
+/// What becomes of a calibration whose targets are not met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unmet {
+    /// It is said.
+    #[default]
+    Say,
+    /// It is said, and `flow run` exits with 1.
+    Fail,
 }
 
 /// Σ terms ≤ `at_most`, in the factors' units.
@@ -87,26 +120,6 @@ pub struct Constraint {
     pub terms: BTreeMap<String, f64>,
     /// Upper bound.
     pub at_most: f64,
-}
-
-/// A curve to follow.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Curve {
-    /// Axial strains, shortening positive.
-    pub strain: Vec<f64>,
-    /// Axial stress at each, compression positive, such as `"12.5 MPa"`.
-    pub stress: Vec<Wanted>,
-}
-
-/// A number, or a text with a unit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Wanted {
-    /// A pure number.
-    Number(f64),
-    /// A number with a unit.
-    Text(String),
 }
 
 /// The optimisers.
@@ -123,35 +136,20 @@ pub enum MethodName {
     CmaEs,
     /// One model per response over all runs.
     Surrogate,
-}
-
-impl Wanted {
-    /// The value in `unit`.
-    ///
-    /// # Errors
-    /// It is of another dimension or cannot be read.
-    pub fn value_in(&self, unit: &str) -> Result<f64, String> {
-        let (value, own) = match self {
-            Self::Number(value) => (*value, ""),
-            Self::Text(text) => split_any(text).map_err(|e| e.to_string())?,
-        };
-        let wanted = Unit::parse(unit).map_err(|e| e.to_string())?;
-        let Ok(conversion) = Unit::parse(own).map_err(|e| e.to_string())?.to(wanted) else {
-            let found = match self {
-                Self::Number(value) => value.to_string(),
-                Self::Text(text) => format!("\"{text}\""),
-            };
-            return Err(format!("{found} is not a value in `{unit}`; write for example \"30 {unit}\""));
-        };
-        Ok(conversion.of(value))
-    }
+    /// One factor, corrected by the slope that the last run showed.
+    Proportional,
 }
 
 impl Calibrate {
+    /// The stages that are run at every point.
+    pub(super) fn simulators(&self) -> Vec<String> {
+        self.simulator.iter().chain(&self.simulators).cloned().collect()
+    }
+
     /// The optimiser that is used.
     pub(super) fn method_name(&self) -> MethodName {
-        let usual = if self.simulator.is_some() { MethodName::Surrogate } else { MethodName::Genetic };
-        self.method.unwrap_or(usual)
+        let simulated = !self.simulators().is_empty();
+        self.method.unwrap_or(if simulated { MethodName::Surrogate } else { MethodName::Genetic })
     }
 
     fn method(&self) -> Method {
@@ -161,6 +159,7 @@ impl Calibrate {
             MethodName::Differential => Method::Differential(self.differential.clone().unwrap_or_default()),
             MethodName::CmaEs => Method::CmaEs(self.cma_es.clone().unwrap_or_default()),
             MethodName::Surrogate => Method::Surrogate(self.surrogate.clone().unwrap_or_default()),
+            MethodName::Proportional => Method::Proportional(self.proportional.clone().unwrap_or_default().method()),
         }
     }
 
@@ -168,62 +167,55 @@ impl Calibrate {
     fn stop_at(&self) -> Option<f64> {
         let published = match self.method() {
             Method::Annealing(settings) => settings.published_misfit(),
-            Method::Genetic(_) | Method::Differential(_) | Method::CmaEs(_) | Method::Surrogate(_) => None,
+            Method::Genetic(_)
+            | Method::Differential(_)
+            | Method::CmaEs(_)
+            | Method::Surrogate(_)
+            | Method::Proportional(_) => None,
         };
         self.stop_at.or(published)
     }
 
-    /// All that decides the result, in the units of factors and responses.
-    pub(super) fn params(&self, context: &Context) -> Result<Params, StageError> {
+    /// How deviations are combined: as set, or as the method's preset has it.
+    pub(super) fn form(&self) -> Form {
+        let published = match self.method() {
+            Method::Annealing(settings) => settings.published_form(),
+            Method::Genetic(_)
+            | Method::Differential(_)
+            | Method::CmaEs(_)
+            | Method::Surrogate(_)
+            | Method::Proportional(_) => None,
+        };
+        self.misfit.or(published).unwrap_or_default()
+    }
+
+    /// All that decides the result, in the units of factors and responses. `measured` are the curves named by the stage,
+    /// none before they are known: then the sets lack the targets that they make.
+    pub(super) fn params(&self, context: &Context, measured: &[Arc<Artifact>]) -> Result<Params, StageError> {
         let factor = |name: &String| {
             let factor = context.factors.get(name).ok_or_else(|| StageError::new(format!("no [factor.{name}]")))?;
             let [low, high] = self.range(context, name).ok_or_else(|| no_range(name))?;
-            let fallback = self.held(context, name);
-            Ok(FactorParam { name: name.clone(), unit: factor.unit.clone(), low, high, fallback })
+            let (fallback, log) = (self.material_value(context, name), self.is_log(context, name));
+            Ok(FactorParam { name: name.clone(), unit: factor.unit.clone(), low, high, log, fallback })
         };
         let factors = self.factors.iter().map(factor).collect::<Result<_, StageError>>()?;
-        let none = [BTreeMap::new()];
-        let listed = if self.targets.is_empty() { &none } else { self.targets.as_slice() };
-        let sets = listed.iter().map(|set| self.set(context, set)).collect::<Result<_, _>>();
         Ok(Params {
             factors,
-            sets: sets.map_err(StageError::new)?,
-            form: self.misfit,
+            sets: self.sets(context, measured)?,
+            held_units: self.held_units(context),
+            form: self.form(),
             denominator: self.denominator,
             constraints: self.constraints.clone(),
             method: self.method(),
             limits: Limits { evaluations: self.evaluations, misfit: self.stop_at(), polish: self.polish },
+            tolerance: self.tolerance.unwrap_or(TOLERANCE),
+            full: (!self.coarse.is_empty()).then(|| self.full_runs.unwrap_or(FULL_RUNS)),
+            start: self.start.clone(),
             preference: self.preference.clone(),
-            solutions: self.solutions,
+            solutions: self.solutions.unwrap_or(SOLUTIONS),
+            simulators: self.simulators().len(),
             history: Vec::new(),
         })
-    }
-
-    /// The targets of one set.
-    fn set(&self, context: &Context, listed: &BTreeMap<String, Wanted>) -> Result<Vec<TargetParam>, String> {
-        let mut targets = Vec::new();
-        for (response, wanted) in listed {
-            let unit = context.responses.get(response).map_or("", |r| r.unit.as_str());
-            targets.push(TargetParam {
-                response: response.clone(),
-                unit: unit.to_owned(),
-                value: wanted.value_in(unit).map_err(|e| format!("target of `{response}`: {e}"))?,
-                weight: self.weights.get(response).copied().unwrap_or(1.0),
-                strain: None,
-            });
-        }
-        if let Some(curve) = &self.curve {
-            for (strain, stress) in curve.strain.iter().zip(&curve.stress) {
-                targets.push(TargetParam {
-                    response: format!("{ORDINATE}{strain}"),
-                    unit: "MPa".to_owned(),
-                    value: stress.value_in("MPa").map_err(|e| format!("stress at strain {strain}: {e}"))?,
-                    weight: 1.0 / curve.strain.len() as f64,
-                    strain: Some(*strain),
-                });
-            }
-        }
-        Ok(targets)
     }
 
     /// Range of a factor: the stage's own, the factor's, or between its levels.
@@ -236,149 +228,24 @@ impl Calibrate {
         self.ranges.get(name).copied().or(factor.range).or(ends)
     }
 
+    /// Whether a factor is searched by logarithms: as the stage says, else as the factor does.
+    fn is_log(&self, context: &Context, name: &str) -> bool {
+        let own = context.factors.get(name).is_some_and(|factor| factor.scale == Scale::Log);
+        self.scales.get(name).map_or(own, |scale| *scale == Scale::Log)
+    }
+
+    fn held_units(&self, context: &Context) -> BTreeMap<String, String> {
+        let held = self.held.iter().flat_map(BTreeMap::keys);
+        held.filter_map(|name| Some((name.clone(), context.factors.get(name)?.unit.clone()))).collect()
+    }
+
     /// The value that the stage's material has for a factor, in the factor's unit.
-    fn held(&self, context: &Context, name: &str) -> Option<f64> {
+    fn material_value(&self, context: &Context, name: &str) -> Option<f64> {
         let factor = context.factors.get(name)?;
         let values = context.materials.get(self.material.as_ref()?)?.resolve_alone();
         let parameter = factor.sets.iter().find_map(|path| values.get(path))?;
         let unit = Unit::parse(&factor.unit).ok()?;
         Some(unit.of_si(parameter.value))
-    }
-
-    /// Every fault of the settings.
-    pub(super) fn faults(&self, context: &Context) -> Vec<Complaint> {
-        let mut found = self.unknown_names(context);
-        found.extend(self.ineffective());
-        if self.surfaces.is_none() && self.simulator.is_none() {
-            let complaint = Complaint::new("", "neither `surfaces` nor `simulator` is given");
-            found.push(complaint.hint("name a stage of kind rsm, or one of kind simulate or command"));
-        }
-        if self.targets.is_empty() && self.curve.is_none() {
-            let complaint = Complaint::new("", "no targets are given");
-            found.push(complaint.hint("targets = [{ UCS = \"30 MPa\", E = \"30 GPa\", nu = 0.2 }]"));
-        }
-        if let Some(curve) = self.curve.as_ref().filter(|curve| curve.strain.len() != curve.stress.len()) {
-            let (strains, stresses) = (curve.strain.len(), curve.stress.len());
-            found.push(Complaint::new("curve", format!("{strains} strains but {stresses} stresses")));
-        }
-        if self.specimens == Some(0) {
-            found.push(Complaint::new("specimens", "there must be at least one specimen"));
-        }
-        if !found.is_empty() {
-            return found;
-        }
-        for (i, set) in self.targets.iter().enumerate() {
-            if let Err(message) = self.set(context, set) {
-                found.push(Complaint::new("targets", format!("set {}: {message}", i + 1)));
-            }
-        }
-        if found.is_empty() {
-            match self.params(context) {
-                Ok(params) => {
-                    let complaint = |fault: &Error| Complaint::new(self.key_of(fault), fault.to_string());
-                    found.extend(params.faults().iter().map(complaint));
-                }
-                Err(error) => found.push(Complaint { hint: error.hint, ..Complaint::new("", error.message) }),
-            }
-        }
-        found
-    }
-
-    /// The key that a fault of the problem is about; empty where the workflow's factors decide.
-    fn key_of(&self, fault: &Error) -> &'static str {
-        match fault {
-            Error::Nothing { what: "factor" } | Error::Twice { .. } => "factors",
-            Error::EmptyRange { factor, .. } if self.ranges.contains_key(factor) => "ranges",
-            Error::NoLogarithm { factor, .. } if self.ranges.contains_key(factor) => "ranges",
-            Error::EmptyBand { .. } => "targets",
-            Error::NotLogarithmic { .. } | Error::Contradiction { .. } | Error::UnknownFactor { .. } => "constraints",
-            Error::ZeroTarget { .. } if self.curve.is_none() => "targets",
-            Error::Weight { response, .. } if self.weights.contains_key(response) => "weights",
-            Error::Outside { .. } => "preference",
-            Error::Nothing { .. }
-            | Error::EmptyRange { .. }
-            | Error::NoLogarithm { .. }
-            | Error::NotFinite { .. }
-            | Error::ZeroTarget { .. }
-            | Error::Weight { .. }
-            | Error::Setting { .. }
-            | Error::ForeignHistory { .. }
-            | Error::CurveTooShort { .. } => "",
-        }
-    }
-
-    /// Names that the workflow does not declare, or that are none of the calibrated factors.
-    fn unknown_names(&self, context: &Context) -> Vec<Complaint> {
-        let mut found = Vec::new();
-        let mut unknown = |path: String, what: &str, name: &String, known: Vec<&String>| {
-            if !known.contains(&name) {
-                let known: Vec<&str> = known.into_iter().map(String::as_str).collect();
-                let complaint = Complaint::new(&path, format!("unknown {what} `{name}`"));
-                found.push(complaint.hint(format!("known are {}", known.join(", "))));
-            }
-        };
-        for name in &self.factors {
-            unknown("factors".to_owned(), "factor", name, context.factors.keys().collect());
-        }
-        for name in self.targets.iter().flat_map(BTreeMap::keys) {
-            unknown("targets".to_owned(), "response", name, context.responses.keys().collect());
-        }
-        for name in self.weights.keys() {
-            unknown("weights".to_owned(), "response", name, context.responses.keys().collect());
-        }
-        for (key, names) in [
-            ("ranges", self.ranges.keys().collect::<Vec<_>>()),
-            ("preference", self.preference.keys().collect()),
-            ("constraints", self.constraints.iter().flat_map(|c| c.terms.keys()).collect()),
-        ] {
-            for name in names {
-                unknown(key.to_owned(), "calibrated factor", name, self.factors.iter().collect());
-            }
-        }
-        if let Some(material) = &self.material {
-            unknown("material".to_owned(), "material", material, context.materials.keys().collect());
-        }
-        found
-    }
-
-    /// Settings that do nothing with the rest as it is.
-    fn ineffective(&self) -> Vec<Complaint> {
-        let method = self.method_name();
-        let name = json_name(method);
-        let tables = [
-            ("genetic", self.genetic.is_some(), MethodName::Genetic),
-            ("annealing", self.annealing.is_some(), MethodName::Annealing),
-            ("differential", self.differential.is_some(), MethodName::Differential),
-            ("cma_es", self.cma_es.is_some(), MethodName::CmaEs),
-            ("surrogate", self.surrogate.is_some(), MethodName::Surrogate),
-        ];
-        let others = tables.into_iter().filter(|(_, given, own)| *given && *own != method);
-        let others = others.map(|(key, ..)| (key, format!("`{key}` has no effect with method `{name}`")));
-        let simulated = self.simulator.is_some();
-        let rules = [
-            ("learn_from", !self.learn_from.is_empty() && method != MethodName::Surrogate, "only the surrogate learns"),
-            ("learn_from", !self.learn_from.is_empty() && !simulated, "runs are learned from only with a simulator"),
-            ("material", self.material.is_some() && self.learn_from.is_empty(), "it is used with `learn_from` only"),
-            ("specimens", self.specimens.is_some() && !simulated, "it is used with a simulator only"),
-            ("curve", self.curve.is_some() && !simulated, "surfaces give no curve; name a simulator"),
-            ("curve", self.curve.is_some() && self.surfaces.is_some(), "surfaces give no curve; leave them out"),
-            ("polish", self.polish && simulated, "descents need a model without scatter; it is for surfaces only"),
-            (
-                "surfaces",
-                self.surfaces.is_some() && simulated && method != MethodName::Surrogate,
-                "with a simulator only the surrogate uses surfaces",
-            ),
-        ];
-        let rules = rules.into_iter().filter(|rule| rule.1).map(|(key, _, why)| (key, why.to_owned()));
-        others.chain(rules).map(|(key, message)| Complaint::new(key, message)).collect()
-    }
-}
-
-/// The method's name as a workflow writes it.
-fn json_name(method: MethodName) -> String {
-    match serde_json::to_value(method) {
-        Ok(serde_json::Value::String(name)) => name,
-        other => panic!("BUG: a method's name is a text, not {other:?}"),
     }
 }
 

@@ -4,21 +4,24 @@ use super::config::Constraint;
 use super::read;
 use crate::artifact::Artifact;
 use crate::stage::StageError;
-use optim::constraint::{Domain, Factor, Linear};
+use optim::constraint::{Domain, Factor, Linear, Scale};
 use optim::misfit::{Denominator, Form, Misfit, Target};
-use optim::search::{Knowledge, Limits, Method};
+use optim::search::{Knowledge, Limits, Method, Run};
 use optim::{Error, Problem};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A parameter to find.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct FactorParam {
     pub name: String,
     pub unit: String,
     pub low: f64,
     pub high: f64,
+    /// Whether it is searched by logarithms.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub log: bool,
     /// Its value in runs that do not vary it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fallback: Option<f64>,
@@ -27,71 +30,139 @@ pub(super) struct FactorParam {
 /// How the name of a curve's ordinate begins; the strain follows.
 pub(super) const ORDINATE: &str = "stress at ";
 
-/// A wanted response.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// A wanted response; an end that is not given is open.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TargetParam {
     pub response: String,
     pub unit: String,
-    pub value: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high: Option<f64>,
     pub weight: f64,
+    /// Relative deviation up to which it counts as met; the calibration's when not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
     /// The strain at which the curve gives it; none for a response by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strain: Option<f64>,
 }
 
-/// What was told of one simulation.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+impl TargetParam {
+    /// As the optimiser sees it.
+    pub(super) fn target(&self) -> Target {
+        let ends = [self.low.unwrap_or(f64::NEG_INFINITY), self.high.unwrap_or(f64::INFINITY)];
+        Target { tolerance: self.tolerance, ..Target::band(&self.response, ends, self.weight) }
+    }
+}
+
+/// One target set.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SetParam {
+    pub targets: Vec<TargetParam>,
+    /// Factors that are not calibrated, in their units.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub held: BTreeMap<String, f64>,
+    /// First guess of its own, in the factors' units.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Vec<f64>>,
+    /// Seed of the optimiser in place of the task's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+}
+
+/// What was told of one evaluation: where, and what came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Told {
     pub point: Vec<f64>,
-    /// Which of the set's run inputs it is; none when the task itself failed.
-    pub run: Option<usize>,
+    /// The responses in the order of the targets; none when it failed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub responses: Option<Vec<f64>>,
+    /// Why it failed.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub failure: String,
 }
 
+impl Told {
+    /// As the optimiser sees it.
+    pub(super) fn run(&self) -> Run {
+        Run { point: self.point.clone(), responses: self.responses.clone() }
+    }
+}
+
+/// The evaluations of one set.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct History {
+    /// Those on coarse twins, where there are some.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub coarse: Vec<Told>,
+    /// Those of the simulators themselves.
+    pub runs: Vec<Told>,
+}
+
 /// Parameters of the work `calibrate`.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Params {
     pub factors: Vec<FactorParam>,
-    pub sets: Vec<Vec<TargetParam>>,
+    pub sets: Vec<SetParam>,
+    /// Units of the factors that sets hold.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub held_units: BTreeMap<String, String>,
     pub form: Form,
     pub denominator: Denominator,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<Constraint>,
     pub method: Method,
     pub limits: Limits,
+    /// Relative deviation up to which a target counts as met.
+    pub tolerance: f64,
+    /// Most full runs where coarse ones are searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub full: Option<usize>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub start: BTreeMap<String, f64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub preference: BTreeMap<String, f64>,
     pub solutions: usize,
-    /// Simulations of each set; empty on surfaces.
+    /// Simulations that make one evaluation.
+    pub simulators: usize,
+    /// Evaluations of each set; empty on surfaces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub history: Vec<Vec<Told>>,
+    pub history: Vec<History>,
 }
 
 impl Params {
     fn domain(&self) -> Result<Domain, Vec<Error>> {
-        let factor = |f: &FactorParam| Factor::linear(&f.name, f.low, f.high);
+        let scale = |log| if log { Scale::Log } else { Scale::Linear };
+        let factor = |f: &FactorParam| Factor { name: f.name.clone(), low: f.low, high: f.high, scale: scale(f.log) };
         let linear = |c: &Constraint| Linear { terms: c.terms.clone(), at_most: c.at_most };
         let walls: Vec<Linear> = self.constraints.iter().map(linear).collect();
         Domain::new(self.factors.iter().map(factor).collect(), &walls)
     }
 
     fn misfit(&self, set: usize) -> Result<Misfit, Vec<Error>> {
-        let target = |t: &TargetParam| Target::exactly(&t.response, t.value, t.weight);
-        Misfit::new(self.sets[set].iter().map(target).collect(), self.form, self.denominator)
+        let targets = self.sets[set].targets.iter().map(TargetParam::target).collect();
+        Misfit::new(targets, self.form, self.denominator)
     }
 
     /// The preferred point in natural units, the middle of the range where nothing is said; none without a preference.
     pub(super) fn preferred(&self) -> Option<Vec<f64>> {
-        let middle = |f: &FactorParam| self.preference.get(&f.name).copied().unwrap_or(0.5 * (f.low + f.high));
-        (!self.preference.is_empty()).then(|| self.factors.iter().map(middle).collect())
+        self.filled(&self.preference)
+    }
+
+    /// A point in natural units, the middle of the range of factors that are not named; none when none is.
+    fn filled(&self, named: &BTreeMap<String, f64>) -> Option<Vec<f64>> {
+        let middle = |f: &FactorParam| if f.log { (f.low * f.high).sqrt() } else { 0.5 * (f.low + f.high) };
+        let value = |f: &FactorParam| named.get(&f.name).copied().unwrap_or_else(|| middle(f));
+        (!named.is_empty()).then(|| self.factors.iter().map(value).collect())
     }
 
     /// Every fault of the problem.
     pub(super) fn faults(&self) -> Vec<Error> {
         let domain = self.domain();
-        let outside = domain.as_ref().ok().and_then(|domain| domain.check(&self.preferred()?).err());
-        let mut found: Vec<Error> = outside.into_iter().collect();
+        let outside = |point: Option<Vec<f64>>| domain.as_ref().ok().and_then(|domain| domain.check(&point?).err());
+        let mut found: Vec<Error> =
+            [self.preferred(), self.filled(&self.start)].into_iter().filter_map(outside).collect();
         found.extend(domain.err().unwrap_or_default());
         for set in 0..self.sets.len() {
             for fault in self.misfit(set).err().unwrap_or_default() {
@@ -114,7 +185,10 @@ impl Params {
     pub(super) fn problem(&self, set: usize) -> Result<Problem, StageError> {
         let all =
             |faults: Vec<Error>| StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
-        Ok(Problem { domain: self.domain().map_err(all)?, misfit: self.misfit(set).map_err(all)?, start: None })
+        let domain = self.domain().map_err(all)?;
+        let start = self.sets[set].start.clone().or_else(|| self.filled(&self.start));
+        let start = start.map(|point| domain.repair(&domain.unit(&point)));
+        Ok(Problem { domain, misfit: self.misfit(set).map_err(all)?, start })
     }
 
     /// What the surrogate knows beforehand.
@@ -124,17 +198,18 @@ impl Params {
         surfaces: Option<&Artifact>,
         earlier: &[Arc<Artifact>],
     ) -> Result<Knowledge, StageError> {
-        let trend = surfaces.map(|artifact| read::surfaces(artifact, &self.factors, &self.sets[set])).transpose()?;
+        let SetParam { targets, held, .. } = &self.sets[set];
+        let trend = surfaces.map(|artifact| read::surfaces(artifact, &self.factors, held, targets)).transpose()?;
         let mut runs = Vec::new();
         for artifact in earlier {
-            runs.extend(read::runs(artifact, &self.factors, &self.sets[set])?);
+            runs.extend(read::runs(artifact, &self.factors, targets)?);
         }
         Ok(Knowledge { earlier: runs, trend })
     }
 
-    /// The responses of one run in the order of a set's targets, or why there are none.
-    pub(super) fn read(&self, set: usize, run: &Artifact) -> Result<Result<Vec<f64>, String>, StageError> {
-        read::run(run, &self.sets[set])
+    /// The seed of the search of a set.
+    pub(super) fn seed(&self, set: usize, usual: u64) -> u64 {
+        self.sets[set].seed.unwrap_or(usual)
     }
 }
 
@@ -163,8 +238,11 @@ fn method_faults(method: &Method) -> Vec<Error> {
             within("initial_f", f, f > 0.0 && f <= 2.0, "a number between 0 and 2 is needed");
             let cr = s.initial_cr.unwrap_or(0.5);
             within("initial_cr", cr, part(cr), "a part between 0 and 1 is needed");
+            let spread = s.spread.unwrap_or(0.25);
+            within("spread", spread, spread > 0.0 && spread <= 1.0, "a part of the range is needed");
         }
         Method::CmaEs(s) => within("step", s.step, s.step > 0.0 && s.step <= 1.0, "a part of the range is needed"),
+        Method::Proportional(s) => within("runs", s.runs as f64, s.runs > 0, "at least one run is needed"),
         Method::Surrogate(s) => {
             within("width", s.width, s.width > 0.0 && s.width <= 0.5, "at most half a range is needed");
             within("tolerance", s.tolerance, s.tolerance >= 0.0, "it cannot be negative");

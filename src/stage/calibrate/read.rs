@@ -1,6 +1,6 @@
 //! Responses for the optimiser: from surfaces, from single runs, from tables of runs.
 
-use super::params::{FactorParam, TargetParam};
+use super::params::{FactorParam, SetParam, TargetParam};
 use crate::artifact::results::Results;
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, Table};
@@ -12,45 +12,75 @@ use optim::misfit::ordinates;
 use optim::search::Run as Trial;
 use optim::surrogate::Trend;
 use stats::model::Model;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// One surface per target: the model, and where its axes stand among the factors.
-type Surface = (Model, Vec<usize>);
+type Surface = (Model, Vec<Axis>);
+
+/// Where a surface takes the value of an axis from.
+#[derive(Clone, Copy, Debug)]
+enum Axis {
+    /// The factor at this index.
+    Calibrated(usize),
+    /// A factor that is held at a value.
+    Held(f64),
+}
+
+/// The values of a surface's axes at a point.
+fn on_axes(axes: &[Axis], point: &[f64]) -> Vec<f64> {
+    let value = |axis: &Axis| match *axis {
+        Axis::Calibrated(index) => point[index],
+        Axis::Held(value) => value,
+    };
+    axes.iter().map(value).collect()
+}
 
 /// The fitted surfaces of the targets, as a function of the factors.
 pub(super) fn surfaces(
     artifact: &Artifact,
     factors: &[FactorParam],
+    held: &Held,
     targets: &[TargetParam],
 ) -> Result<Trend, StageError> {
-    let chosen = chosen(artifact, factors, targets)?;
+    let chosen = chosen(artifact, factors, held, targets)?;
     Ok(Arc::new(move |point: &[f64]| {
-        let value = |(model, places): &Surface| model.value(&places.iter().map(|&i| point[i]).collect::<Vec<_>>());
+        let value = |(model, axes): &Surface| model.value(&on_axes(axes, point));
         Some(chosen.iter().map(value).collect())
     }))
 }
 
+/// Factors that are held, and their values.
+type Held = BTreeMap<String, f64>;
+
 /// What the surfaces expect at a point, each with the 95 % interval of its mean response; NaN for the ends where the
 /// fit has no residual to tell from.
-pub(super) fn expected(
+pub(super) fn outlook(
     artifact: &Artifact,
     factors: &[FactorParam],
-    targets: &[TargetParam],
-    point: &[f64],
-) -> Result<Vec<Interval>, StageError> {
-    let one = |(model, places): &Surface| {
-        let told = model.predict(&places.iter().map(|&i| point[i]).collect::<Vec<_>>(), COVERAGE);
-        let (low, high) = told.confidence.unwrap_or((f64::NAN, f64::NAN));
-        Interval { mean: told.value, low, high }
-    };
-    Ok(chosen(artifact, factors, targets)?.iter().map(one).collect())
+    set: &SetParam,
+) -> Result<impl Fn(&[f64]) -> Option<Vec<Interval>> + use<>, StageError> {
+    let chosen = chosen(artifact, factors, &set.held, &set.targets)?;
+    Ok(move |point: &[f64]| {
+        let one = |(model, axes): &Surface| {
+            let told = model.predict(&on_axes(axes, point), COVERAGE);
+            let (low, high) = told.confidence.unwrap_or((f64::NAN, f64::NAN));
+            Interval { mean: told.value, low, high }
+        };
+        Some(chosen.iter().map(one).collect())
+    })
 }
 
 /// Coverage of the intervals.
 const COVERAGE: f64 = 0.95;
 
 /// The surface of every target.
-fn chosen(artifact: &Artifact, factors: &[FactorParam], targets: &[TargetParam]) -> Result<Vec<Surface>, StageError> {
+fn chosen(
+    artifact: &Artifact,
+    factors: &[FactorParam],
+    held: &Held,
+    targets: &[TargetParam],
+) -> Result<Vec<Surface>, StageError> {
     let known = models(artifact)?;
     let mut chosen: Vec<Surface> = Vec::new();
     for target in targets {
@@ -60,7 +90,7 @@ fn chosen(artifact: &Artifact, factors: &[FactorParam], targets: &[TargetParam])
             StageError::new(format!("no surface of `{}` was fitted", target.response))
                 .hint(format!("there are surfaces of {}", names.join(", ")))
         })?;
-        chosen.push((model.clone(), places(model, &target.response, factors)?));
+        chosen.push((model.clone(), axes(model, &target.response, factors, held)?));
     }
     Ok(chosen)
 }
@@ -68,18 +98,25 @@ fn chosen(artifact: &Artifact, factors: &[FactorParam], targets: &[TargetParam])
 /// How far a range may stand beyond a surface's domain by rounding, in parts of the domain.
 const ROUNDING: f64 = 1e-9;
 
-/// Where the axes of a surface stand among the factors, whose ranges must lie in its domain.
-fn places(model: &Model, response: &str, factors: &[FactorParam]) -> Result<Vec<usize>, StageError> {
-    let mut places = Vec::new();
+/// Where the axes of a surface come from; ranges and held values must lie in its domain.
+fn axes(model: &Model, response: &str, factors: &[FactorParam], held: &Held) -> Result<Vec<Axis>, StageError> {
+    let mut found = Vec::new();
     for axis in &model.axes {
-        let place = factors.iter().position(|f| f.name == axis.name).ok_or_else(|| {
-            StageError::new(format!("the surface of `{response}` needs factor `{}`", axis.name))
-                .hint("add it to `factors`")
-        })?;
-        let FactorParam { name, low, high, unit, .. } = &factors[place];
+        let index = factors.iter().position(|f| f.name == axis.name);
+        let (taken, [low, high], unit) = match (index, held.get(&axis.name)) {
+            (Some(index), _) => {
+                let FactorParam { low, high, unit, .. } = &factors[index];
+                (Axis::Calibrated(index), [*low, *high], unit.as_str())
+            }
+            (None, Some(&value)) => (Axis::Held(value), [value, value], ""),
+            (None, None) => {
+                let message = format!("the surface of `{response}` needs factor `{}`", axis.name);
+                return Err(StageError::new(message).hint("add it to `factors`, or give it a value in `held`"));
+            }
+        };
         let slack = ROUNDING * (axis.high - axis.low);
-        if *low < axis.low - slack || *high > axis.high + slack {
-            let (from, to) = (axis.low, axis.high);
+        if low < axis.low - slack || high > axis.high + slack {
+            let (name, from, to) = (&axis.name, axis.low, axis.high);
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
             let message = format!(
                 "the range {low} … {high}{unit} of `{name}` leaves the domain {from} … {to}{unit} of the surface of \
@@ -87,9 +124,9 @@ fn places(model: &Model, response: &str, factors: &[FactorParam]) -> Result<Vec<
             );
             return Err(StageError::new(message).hint("narrow it: `ranges`, or run a wider design"));
         }
-        places.push(place);
+        found.push(taken);
     }
-    Ok(places)
+    Ok(found)
 }
 
 fn converted(value: f64, from: &str, to: &str, what: &str) -> Result<f64, StageError> {
@@ -98,42 +135,79 @@ fn converted(value: f64, from: &str, to: &str, what: &str) -> Result<f64, StageE
     Ok(conversion.of(value))
 }
 
-/// The responses of one run in the order of the targets, or why it has none.
-pub(super) fn run(artifact: &Artifact, targets: &[TargetParam]) -> Result<Result<Vec<f64>, String>, StageError> {
-    let (failure, found) = Run::outcome(artifact)?;
-    if !failure.is_empty() {
-        return Ok(Err(failure.to_owned()));
+/// One simulator's run at a point.
+pub(super) struct Part<'a> {
+    /// The simulator.
+    pub stage: &'a str,
+    /// What it gave.
+    pub run: &'a Artifact,
+}
+
+/// The responses of one evaluation in the order of the targets, or why it has none. Each is taken from the simulator that
+/// `from` names, or from the first that gives it.
+pub(super) fn evaluation(
+    parts: &[Part<'_>],
+    from: &BTreeMap<String, String>,
+    targets: &[TargetParam],
+) -> Result<Result<Vec<f64>, String>, StageError> {
+    let mut found = Vec::new();
+    for part in parts {
+        let (failure, responses) = Run::outcome(part.run)?;
+        if !failure.is_empty() {
+            let whose = if parts.len() > 1 { format!("{}: ", part.stage) } else { String::new() };
+            return Ok(Err(format!("{whose}{failure}")));
+        }
+        found.push((part, responses));
     }
     let mut values = Vec::with_capacity(targets.len());
     for target in targets {
-        if let Some(strain) = target.strain {
-            match stress_at(artifact, strain)? {
-                Ok(stress) => values.push(converted(stress, "Pa", &target.unit, &target.response)?),
-                Err(reason) => return Ok(Err(reason)),
+        let wanted = |stage: &str| from.get(&target.response).is_none_or(|own| own == stage);
+        let mut givers = found.iter().filter(|(part, _)| wanted(part.stage));
+        let value = match target.strain {
+            Some(strain) => match givers.find(|(part, _)| part.run.table("curve").is_some()) {
+                Some((part, _)) => stress_at(part.run, strain)?.map(|stress| (stress, "Pa")),
+                None => return Err(StageError::new("no simulator stores a stress–strain curve")),
+            },
+            None => {
+                let mut all = givers.flat_map(|(_, responses)| responses);
+                let own = all.find(|(name, ..)| *name == target.response);
+                let &(_, value, unit) = own.ok_or_else(|| no_response(&target.response, &found))?;
+                Ok((value, unit))
             }
-            continue;
+        };
+        match value {
+            Ok((value, _)) if !value.is_finite() => return Ok(Err(format!("`{}` is not a number", target.response))),
+            Ok((value, unit)) => values.push(converted(value, unit, &target.unit, &target.response)?),
+            Err(reason) => return Ok(Err(reason)),
         }
-        let entry = found.iter().find(|(name, ..)| *name == target.response);
-        let (_, value, unit) = entry.ok_or_else(|| {
-            let names: Vec<&str> = found.iter().map(|(name, ..)| *name).collect();
-            StageError::new(format!("the simulator gives no response `{}`", target.response))
-                .hint(format!("it gives {}", names.join(", ")))
-        })?;
-        if !value.is_finite() {
-            return Ok(Err(format!("`{}` is not a number", target.response)));
-        }
-        values.push(converted(*value, unit, &target.unit, &target.response)?);
     }
     Ok(Ok(values))
 }
 
-/// Stress of a run's curve at a strain, in Pa; the inner error when the curve ends before.
+type Given<'a> = (&'a Part<'a>, Vec<(&'a str, f64, &'a str)>);
+
+fn no_response(response: &str, found: &[Given<'_>]) -> StageError {
+    let gives = |(part, responses): &Given| {
+        let names: Vec<&str> = responses.iter().map(|(name, ..)| *name).collect();
+        format!("{} gives {}", part.stage, names.join(", "))
+    };
+    let given: Vec<String> = found.iter().map(gives).collect();
+    StageError::new(format!("no simulator gives a response `{response}`")).hint(given.join("; "))
+}
+
+/// Stress of a run's curve at a strain, in Pa; the inner error when there is no curve to read. Before its first point the
+/// curve rises from zero, and beyond its last the stress is that of the last: the test ended on the falling branch.
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
     let curve = Run::from_artifact(artifact)?.curve.ok_or_else(missing)?;
-    Ok(ordinates(&curve.axial_strain, &curve.stress, &[strain])
-        .map(|values| values[0])
-        .map_err(|fault| fault.to_string()))
+    let (mut strains, mut stresses) = (curve.axial_strain, curve.stress);
+    let Some(&last) = strains.last() else { return Ok(Err("the stress–strain curve is empty".to_owned())) };
+    if strains[0] > 0.0 {
+        strains.insert(0, 0.0);
+        stresses.insert(0, 0.0);
+    }
+    let at = strain.min(last);
+    Ok(ordinates(&strains, &stresses, &[at]).map(|values| values[0]).map_err(|fault| fault.to_string()))
 }
 
 /// The runs of a table, in the order of factors and targets; what a run lacks is NaN.
@@ -175,9 +249,4 @@ fn response_values(table: &Table, target: &TargetParam) -> Result<Vec<f64>, Stag
         Some(column) => Ok(column.numbers(&target.unit)?),
         None => Ok(vec![f64::NAN; table.rows()]),
     }
-}
-
-/// The failure text of a run's artifact, empty when all went well.
-pub(super) fn failure(artifact: &Artifact) -> String {
-    Run::outcome(artifact).map_or_else(|_| String::new(), |(failure, _)| failure.to_owned())
 }

@@ -1,19 +1,23 @@
 //! The work `calibrate`: from parameters, surfaces and finished simulations to the artifact `solution`.
 
-use super::params::{Params, Told};
+use super::effort::Effort;
+use super::params::{History, Params, Told};
+use super::twin::{self, Twin, full_limits, full_method};
 use super::{read, record};
 use crate::artifact::Artifact;
 use crate::stage::{Failure, Job, Progress, StageError};
+use optim::determination::{Outlook, extents};
 use optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
 use optim::solution_set::{SolutionSet, explore};
+use optim::surrogate::Model;
 use optim::surrogate::models::Models;
-use optim::surrogate::{Model, Trend};
-use optim::{Interval, Problem, Stop, Trial};
-use std::sync::Arc;
+use optim::{Interval, Problem, Recommendation, Stop, Trial};
 
 /// One line of the history.
 pub(super) struct Line {
     pub evaluation: usize,
+    /// Whether it was on the coarse twins.
+    pub coarse: bool,
     pub point: Vec<f64>,
     /// NaN where it failed.
     pub responses: Vec<f64>,
@@ -29,40 +33,49 @@ pub(super) struct Solved {
     pub problem: Problem,
     pub stop: Stop,
     pub evaluations: usize,
+    /// Evaluations on the coarse twins.
+    pub coarse: usize,
     pub failed: usize,
     /// The solution, in natural units.
     pub point: Vec<f64>,
     pub expected: Vec<Interval>,
+    /// What the run at the solution gave, for methods that recommend one of their runs.
+    pub observed: Option<Vec<f64>>,
+    /// Standard deviation of a single run; NaN where nothing is known of it.
+    pub scatter: Vec<f64>,
     pub misfit: f64,
     pub set: Option<SolutionSet>,
+    /// What each factor takes over all equally good solutions, natural units; none where no model tells.
+    pub extents: Option<Vec<[f64; 2]>>,
+    /// Why intervals are unknown, where they are.
+    pub unknown: String,
     pub history: Vec<Line>,
+    pub effort: Effort,
 }
 
 pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let named = |name: &str| job.inputs.iter().filter(|(n, _)| n == name).map(|(_, a)| a.clone()).collect::<Vec<_>>();
-    let (surfaces, earlier, mut runs) = (named("surfaces"), named("learn_from"), named("run"));
-    let seed = job.seed.unwrap_or_default();
+    let (surfaces, earlier) = (named("surfaces"), named("learn_from"));
+    let usual = job.seed.unwrap_or_default();
     let mut solved = Vec::new();
     for set in 0..params.sets.len() {
         if job.stopped() {
             return Err(Failure::Stopped);
         }
         let knowledge = params.knowledge(set, surfaces.first().map(|a| &**a), &earlier)?;
-        let problem = params.problem(set)?;
+        let (problem, seed) = (params.problem(set)?, params.seed(set, usual));
         solved.push(match params.history.get(set) {
             None => {
                 let mut found = on_surfaces(job, &params, problem, &knowledge, seed)?;
                 if let Some(surfaces) = surfaces.first() {
-                    found.expected = read::expected(surfaces, &params.factors, &params.sets[set], &found.point)?;
+                    let outlook = read::outlook(surfaces, &params.factors, &params.sets[set])?;
+                    found.expected = outlook(&found.point).unwrap_or_default();
+                    found.determine(&outlook);
                 }
                 found
             }
-            Some(told) => {
-                let count = told.iter().filter_map(|t| t.run).count();
-                let own: Vec<Arc<Artifact>> = runs.drain(..count).collect();
-                simulated(&params, set, problem, &knowledge, (told, &own), seed)?
-            }
+            Some(history) => simulated(&params, problem, &knowledge, history, seed)?,
         });
         let note = format!("set {} of {}", set + 1, params.sets.len());
         (job.say)(Progress { fraction: Some((set + 1) as f64 / params.sets.len() as f64), ..Progress::note(note) });
@@ -98,7 +111,7 @@ fn on_surfaces(
                 best = misfit;
                 let (point, responses) = (point.clone(), responses.clone());
                 let (evaluation, recommended, failure) = (count, best, String::new());
-                history.push(Line { evaluation, point, responses, misfit, best, recommended, failure });
+                history.push(Line { evaluation, coarse: false, point, responses, misfit, best, recommended, failure });
             }
         }
         search.tell(&answers);
@@ -112,88 +125,189 @@ fn on_surfaces(
     let point = problem.domain.natural(&chosen.unwrap_or(found.point));
     let responses = surfaces(&point).unwrap_or_default();
     let exact = |&y: &f64| Interval { mean: y, low: f64::NAN, high: f64::NAN };
-    let (expected, misfit) = (responses.iter().map(exact).collect(), problem.misfit.of(&responses));
+    let (expected, misfit): (Vec<Interval>, f64) =
+        (responses.iter().map(exact).collect(), problem.misfit.of(&responses));
     let State { evaluations, failed, .. } = state;
-    Ok(Solved { problem, stop, evaluations, failed, point, expected, misfit, set, history })
+    let effort = Effort::of(&problem, &history, &[]);
+    let (coarse, observed, scatter) = (0, None, vec![f64::NAN; expected.len()]);
+    let (extents, unknown) = (None, String::new());
+    Ok(Solved {
+        problem,
+        stop,
+        evaluations,
+        coarse,
+        failed,
+        point,
+        expected,
+        observed,
+        scatter,
+        misfit,
+        set,
+        extents,
+        unknown,
+        history,
+        effort,
+    })
 }
 
 /// Misfit up to which the solution nearest the preference is as good as the best point found.
 const REFINED: f64 = 1e-5;
 
+/// A finished search: why it ended, where it stands, and after every batch what it recommended.
+struct Replayed {
+    stop: Stop,
+    state: State,
+    recommended: Vec<Option<Recommendation>>,
+}
+
+/// Replays a finished search.
+fn replayed(search: &mut Search, told: &[Told]) -> Result<Replayed, StageError> {
+    let runs: Vec<Run> = told.iter().map(Told::run).collect();
+    let mut recommended = Vec::new();
+    let step = replay(search, &runs, |search| {
+        let State { evaluations, recommended: own, .. } = search.state();
+        recommended.resize(evaluations, own);
+    });
+    let Next::Stop(stop, state) = step.map_err(|fault| StageError::new(fault.to_string()))? else {
+        return Err(StageError::new("the simulations of this calibration are not complete"));
+    };
+    if state.best.is_none() {
+        let first = told.iter().find(|told| !told.failure.is_empty()).map_or("", |told| told.failure.as_str());
+        return Err(StageError::new(format!("all {} simulations failed; the first: {first}", runs.len()))
+            .hint("look at the ranges of the factors, and at one run with `flow show`"));
+    }
+    // The last batch can be cut short by the budget.
+    recommended.resize(runs.len(), state.recommended.clone());
+    Ok(Replayed { stop, state, recommended })
+}
+
 /// Replays the finished simulations of one set.
 fn simulated(
     params: &Params,
-    set: usize,
     problem: Problem,
     knowledge: &Knowledge,
-    (told, artifacts): (&[Told], &[Arc<Artifact>]),
+    History { coarse, runs }: &History,
     seed: u64,
 ) -> Result<Solved, Failure> {
-    let mut runs = Vec::new();
-    let mut failures = Vec::new();
-    for told in told {
-        let (responses, failure) = match told.run {
-            Some(i) => match params.read(set, &artifacts[i])? {
-                Ok(values) => (Some(values), read::failure(&artifacts[i])),
-                Err(reason) => (None, reason),
-            },
-            None => (None, told.failure.clone()),
-        };
-        runs.push(Run { point: told.point.clone(), responses });
-        failures.push(failure);
-    }
-    let mut recommended = Vec::new();
-    let mut search = Search::new(&problem, &params.method, &params.limits, seed, knowledge);
-    let step = replay(&mut search, &runs, |search| {
-        let State { evaluations, recommended: own, .. } = search.state();
-        recommended.resize(evaluations, own.map_or(f64::NAN, |own| own.misfit));
-    });
-    let Next::Stop(stop, state) = step.map_err(|fault| StageError::new(fault.to_string()))? else {
-        return Err(StageError::new("the simulations of this calibration are not complete").into());
+    let mut lines = Vec::new();
+    let (method, limits, knowledge) = match params.full {
+        None => (params.method.clone(), params.limits.clone(), knowledge.clone()),
+        Some(count) => {
+            let mut search = Search::new(&problem, &params.method, &params.limits, seed, knowledge);
+            let searched = replayed(&mut search, coarse)?;
+            lines = history(&problem, coarse, &searched.recommended, true);
+            let trend = Some(Twin::of(&problem, coarse)?.trend());
+            let knowledge = Knowledge { earlier: Vec::new(), trend };
+            (full_method(&params.method, count), full_limits(&params.limits, count), knowledge)
+        }
     };
-    if stop == Stop::AllFailed || state.best.is_none() {
-        let first = failures.first().cloned().unwrap_or_default();
-        return Err(StageError::new(format!("all {} simulations failed; the first: {first}", runs.len()))
-            .hint("look at the ranges of the factors, and at one run with `flow show`")
-            .into());
+    let mut search = Search::new(&problem, &method, &limits, seed, &knowledge);
+    let Replayed { stop, state, recommended } = replayed(&mut search, runs)?;
+    let own = history(&problem, runs, &recommended, false);
+    let effort = Effort::of(&problem, &own, &recommended);
+    lines.extend(own);
+    let State { evaluations, failed, recommended, best } = state;
+    let mut recommended = recommended.ok_or_else(|| StageError::new("no run gave responses"))?;
+    let models = models(&method, &problem, &knowledge, runs);
+    let mut observed = None;
+    if !matches!(method, Method::Surrogate(_)) {
+        observed = best.map(|best| best.responses);
+        if let Some(models) = &models {
+            recommended = models.at(recommended.point);
+        }
     }
-    // The last batch can be cut short by the budget.
-    recommended.resize(runs.len(), state.recommended.as_ref().map_or(f64::NAN, |own| own.misfit));
-    let history = lines(&problem, &runs, &failures, &recommended);
-    let State { evaluations, failed, recommended, .. } = state;
-    let recommended = recommended.ok_or_else(|| StageError::new("no run gave responses"))?;
-    let models = fitted(params, &problem, knowledge, &runs);
+    let unknown = if models.is_some() { String::new() } else { too_few(&problem, runs) };
+    let expected = match models {
+        Some(_) => recommended.responses,
+        // One run says nothing of its own scatter.
+        None => {
+            recommended.responses.iter().map(|y| Interval { mean: y.mean, low: f64::NAN, high: f64::NAN }).collect()
+        }
+    };
     let preference = params.preferred().map(|point| problem.domain.unit(&point));
-    let explored = models.and_then(|models| {
-        let model = |x: &[f64]| Some(models.expected(&problem.domain.unit(x)));
-        explore(&problem, &model, &recommended.point, preference.as_deref(), params.solutions, seed)
-    });
-    let point = problem.domain.natural(&recommended.point);
-    let (expected, misfit) = (recommended.responses, recommended.misfit);
-    Ok(Solved { problem, stop, evaluations, failed, point, expected, misfit, set: explored, history })
+    let model = |x: &[f64]| models.as_ref().map(|models| models.expected_at(x));
+    let set = explore(&problem, &model, &recommended.point, preference.as_deref(), params.solutions, seed);
+    let scatter = match &models {
+        Some(models) => models.deviations(&recommended.point),
+        None => vec![f64::NAN; expected.len()],
+    };
+    let failed = failed + coarse.iter().filter(|told| told.responses.is_none()).count();
+    let (coarse, point, misfit) = (coarse.len(), problem.domain.natural(&recommended.point), recommended.misfit);
+    let history = lines;
+    let domain = problem.domain.clone();
+    let mut solved = Solved {
+        problem,
+        stop,
+        evaluations,
+        coarse,
+        failed,
+        point,
+        expected,
+        observed,
+        scatter,
+        misfit,
+        set,
+        extents: None,
+        unknown,
+        history,
+        effort,
+    };
+    let outlook = |x: &[f64]| {
+        let models = models.as_ref()?;
+        Some(models.at(domain.unit(x)).responses)
+    };
+    solved.determine(&outlook);
+    Ok(solved)
 }
 
-/// The surrogate's models over all runs, for the solution set; none for the methods that have no models.
-fn fitted(params: &Params, problem: &Problem, knowledge: &Knowledge, runs: &[Run]) -> Option<Models> {
-    let Method::Surrogate(settings) = &params.method else { return None };
-    let trial = |run: &Run| {
-        let responses = run.responses.clone().unwrap_or_default();
+/// Runs beyond one for each factor that a model takes before it says anything of intervals.
+const SPARE: usize = 3;
+
+/// Models over all runs of a search, which tell what to expect and how sure that is: the surrogate's own, or such models
+/// over the runs of another method; none where there are too few.
+fn models(method: &Method, problem: &Problem, knowledge: &Knowledge, runs: &[Told]) -> Option<Models> {
+    let Method::Surrogate(settings) = method else {
+        let good = runs.iter().filter(|told| told.responses.is_some()).count();
+        return if good < problem.domain.len() + SPARE { None } else { twin::fitted(problem, runs) };
+    };
+    let trial = |run: Run| {
+        let responses = run.responses.unwrap_or_default();
         Trial { point: problem.domain.unit(&run.point), misfit: f64::NAN, responses }
     };
-    let all: Vec<Trial> = knowledge.earlier.iter().chain(runs).map(trial).collect();
-    let trend: Option<&Trend> = knowledge.trend.as_ref();
-    Models::fit(&all, problem, settings.model == Model::GaussianProcess, trend)
+    let all: Vec<Trial> = knowledge.earlier.iter().cloned().chain(runs.iter().map(Told::run)).map(trial).collect();
+    Models::fit(&all, problem, settings.model == Model::GaussianProcess, knowledge.trend.as_ref())
 }
 
-fn lines(problem: &Problem, runs: &[Run], failures: &[String], recommended: &[f64]) -> Vec<Line> {
+fn too_few(problem: &Problem, runs: &[Told]) -> String {
+    let good = runs.iter().filter(|told| told.responses.is_some()).count();
+    let needed = problem.domain.len() + SPARE;
+    format!("{good} runs gave responses, and an interval needs at least {needed}")
+}
+
+impl Solved {
+    /// Finds what each factor takes over all equally good solutions.
+    fn determine(&mut self, outlook: &Outlook) {
+        let Some(set) = &self.set else { return };
+        let at = self.problem.domain.unit(&self.point);
+        let found = extents(&self.problem, outlook, &at, &set.sample);
+        let natural = |found: Vec<[f64; 2]>| {
+            let end = |k: usize| self.problem.domain.natural(&found.iter().map(|ends| ends[k]).collect::<Vec<_>>());
+            end(0).into_iter().zip(end(1)).map(|(low, high)| [low, high]).collect()
+        };
+        self.extents = found.map(natural);
+    }
+}
+
+fn history(problem: &Problem, runs: &[Told], recommended: &[Option<Recommendation>], coarse: bool) -> Vec<Line> {
     let mut best = f64::INFINITY;
-    let line = |(i, (run, failure)): (usize, (&Run, &String))| {
+    let line = |(i, run): (usize, &Told)| {
         let misfit = run.responses.as_ref().map_or(f64::NAN, |y| problem.misfit.of(y));
         best = best.min(misfit);
         let missing = vec![f64::NAN; problem.misfit.targets().len()];
         let responses = run.responses.clone().unwrap_or(missing);
-        let (point, failure) = (run.point.clone(), failure.clone());
-        Line { evaluation: i + 1, point, responses, misfit, best, recommended: recommended[i], failure }
+        let (point, failure) = (run.point.clone(), run.failure.clone());
+        let recommended = recommended[i].as_ref().map_or(f64::NAN, |own| own.misfit);
+        Line { evaluation: i + 1, coarse, point, responses, misfit, best, recommended, failure }
     };
-    runs.iter().zip(failures).enumerate().map(line).collect()
+    runs.iter().enumerate().map(line).collect()
 }

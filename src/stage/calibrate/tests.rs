@@ -1,23 +1,31 @@
 //! Calibration through the stage, with a simulator and a library that live in memory.
 
+mod several;
+
 use super::*;
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Artifact, ContentHash};
-use crate::stage::{Factor, FileInput, Input, Job, Library, Progress, Response};
+use crate::stage::{Factor, FileInput, Input, Job, Library, Memory, Outcome, Point, Progress, Response};
 use math::random::Stream;
 use std::cell::RefCell;
+use std::sync::Arc;
 
 /// Runs tasks on first sight; `patience` tasks, then it says that nothing is known of others.
 struct Laboratory {
     objects: RefCell<Vec<Arc<Artifact>>>,
     done: RefCell<Vec<(Task, Outcome)>>,
     patience: usize,
-    model: fn(&Point, u64) -> Result<[f64; 2], String>,
+    model: Model,
+    /// What the stage that asks is given to remember with, if anything.
+    memory: Option<Memory>,
 }
 
+/// What a simulator gives at a point on a specimen: name, value and unit of each response.
+type Model = fn(&str, &Point, u64) -> Result<Vec<(&'static str, f64, &'static str)>, String>;
+
 impl Laboratory {
-    fn new(patience: usize, model: fn(&Point, u64) -> Result<[f64; 2], String>) -> Self {
-        Self { objects: RefCell::default(), done: RefCell::default(), patience, model }
+    fn new(patience: usize, model: Model) -> Self {
+        Self { objects: RefCell::default(), done: RefCell::default(), patience, model, memory: None }
     }
 
     fn put(&self, artifact: Artifact) -> ContentHash {
@@ -29,8 +37,9 @@ impl Laboratory {
     fn run(&self, task: &Task) -> Outcome {
         let point: Point = serde_json::from_value(task.params["point"].clone()).unwrap();
         let number = task.params["number"].as_u64().unwrap();
-        let (responses, failure) = match (self.model)(&point, number) {
-            Ok([strength, modulus]) => (vec![("UCS", strength, "Pa"), ("E", modulus, "Pa")], String::new()),
+        let lab = task.params["lab"].as_str().unwrap();
+        let (responses, failure) = match (self.model)(lab, &point, number) {
+            Ok(responses) => (responses, String::new()),
             Err(failure) if failure == "crash" => return Outcome::Failed(failure),
             Err(failure) => (Vec::new(), failure),
         };
@@ -50,6 +59,8 @@ impl Library for Laboratory {
     }
 
     fn outcome(&self, task: &Task) -> Option<Outcome> {
+        // The row is for people: equal tasks are one, whichever row asks.
+        let task = &Task { row: None, ..task.clone() };
         if let Some((_, outcome)) = self.done.borrow().iter().find(|(known, _)| known == task) {
             return Some(outcome.clone());
         }
@@ -59,6 +70,10 @@ impl Library for Laboratory {
         let outcome = self.run(task);
         self.done.borrow_mut().push((task.clone(), outcome.clone()));
         Some(outcome)
+    }
+
+    fn memory(&self) -> Option<&Memory> {
+        self.memory.as_ref()
     }
 
     fn file(&self, _name: &str, path: &str) -> Result<FileInput, StageError> {
@@ -84,18 +99,30 @@ fn context() -> Context {
 }
 
 fn known<'a>(context: &'a Context, laboratory: &'a Laboratory) -> Known<'a> {
-    let sample = |point: &Point, number: u64| Ok(Task::new("run", json!({ "point": point, "number": number })));
-    let content = ContentHash([0; 32]);
-    let replicate = Box::new(|_| None);
-    let input = Input {
-        key: "simulator",
-        stage: "lab",
-        content,
-        vary: Box::new(|_, _| Ok(None)),
-        replicate,
-        sample: Box::new(sample),
+    with_inputs(context, laboratory, &[("simulator", "lab", None)])
+}
+
+/// Inputs by key and stage, each with its artifact where it has one.
+fn with_inputs<'a>(
+    context: &'a Context,
+    laboratory: &'a Laboratory,
+    inputs: &[(&'static str, &'static str, Option<Artifact>)],
+) -> Known<'a> {
+    let input = |(key, stage, artifact): &(&'static str, &'static str, Option<Artifact>)| {
+        let stage = *stage;
+        let sample = move |point: &Point, number: u64| {
+            Ok(Task::new("run", json!({ "lab": stage, "point": point, "number": number })))
+        };
+        Input {
+            key,
+            stage,
+            content: artifact.clone().map_or(ContentHash([0; 32]), |artifact| laboratory.put(artifact)),
+            vary: Box::new(|_, _| Ok(None)),
+            replicate: Box::new(|_| None),
+            sample: Box::new(sample),
+        }
     };
-    Known { name: "calibrate", context, inputs: vec![input], library: laboratory }
+    Known { name: "calibrate", context, inputs: inputs.iter().map(input).collect(), library: laboratory }
 }
 
 fn stage(text: &str) -> Calibrate {
@@ -111,10 +138,11 @@ const COLD: &str = r#"
 "#;
 
 /// UCS = 2 σc, E = 1.5 Ec, each with 3 % scatter of its specimen.
-fn scattering(point: &Point, number: u64) -> Result<[f64; 2], String> {
+fn scattering(_: &str, point: &Point, number: u64) -> Result<Vec<(&'static str, f64, &'static str)>, String> {
     let mut random = Stream::new(number, "lab", (point["mu"] * 1e6) as u64);
     let mut scatter = || 1.0 + 0.03 * random.normal();
-    Ok([2e6 * point["sigma_c"] * scatter(), 1.5e9 * point["Ec"] * scatter()])
+    let (strength, modulus) = (2e6 * point["sigma_c"] * scatter(), 1.5e9 * point["Ec"] * scatter());
+    Ok(vec![("UCS", strength, "Pa"), ("E", modulus, "Pa")])
 }
 
 /// What the work makes of a finishing task.
@@ -166,10 +194,17 @@ fn simulations_in_the_loop_find_the_parameters_and_their_interval() {
 /// Killed after any number of simulations, a calibration asks on as if nothing had happened.
 #[test]
 fn an_interrupted_calibration_goes_on_where_it_stood() {
+    for memory in [None, Some(Memory::default())] {
+        goes_on(memory);
+    }
+}
+
+/// The same steps whether the stage remembers or walks its whole history each time.
+fn goes_on(memory: Option<Memory>) {
     let (context, stage) = (context(), stage(COLD));
     let whole = Laboratory::new(usize::MAX, scattering);
     let Step::Finish(end) = stage.next(&known(&context, &whole)).unwrap() else { panic!("it can go on") };
-    let mut broken = Laboratory::new(0, scattering);
+    let mut broken = Laboratory { memory, ..Laboratory::new(0, scattering) };
     loop {
         let step = stage.next(&known(&context, &broken)).unwrap();
         match step {
@@ -177,7 +212,9 @@ fn an_interrupted_calibration_goes_on_where_it_stood() {
                 assert!(!tasks.is_empty());
                 let told = broken.simulations();
                 assert!(told > 0 || note == "0/0 evaluations, misfit best –/–, recommended –/–", "{note}");
-                assert!(tasks.iter().all(|task| whole.done.borrow().iter().any(|(known, _)| known == task)));
+                assert!(tasks.iter().all(|task| {
+                    whole.done.borrow().iter().any(|(known, _)| *known == Task { row: None, ..task.clone() })
+                }));
                 broken.patience += 7;
             }
             Step::Finish(task) => {
@@ -191,17 +228,17 @@ fn an_interrupted_calibration_goes_on_where_it_stood() {
 
 #[test]
 fn failed_simulations_are_recorded_and_when_all_fail_it_says_so() {
-    let some = |point: &Point, number: u64| match number % 6 {
+    let some: Model = |lab, point, number| match number % 6 {
         2 => Err("no peak".to_owned()),
         4 => Err("crash".to_owned()),
-        _ => scattering(point, number),
+        _ => scattering(lab, point, number),
     };
     let (context, laboratory) = (context(), Laboratory::new(usize::MAX, some));
     let Step::Finish(task) = stage(COLD).next(&known(&context, &laboratory)).unwrap() else { panic!("it can go on") };
     let artifact = finished(&laboratory, &task).unwrap();
     let failed = artifact.table("solution").unwrap().shown("failed").unwrap().0;
     assert_eq!(failed, [8.0, 8.0]);
-    let all = Laboratory::new(usize::MAX, |_, _| Err("no peak".to_owned()));
+    let all = Laboratory::new(usize::MAX, |_, _, _| Err("no peak".to_owned()));
     let Step::Finish(task) = stage(COLD).next(&known(&context, &all)).unwrap() else { panic!("it can go on") };
     assert_eq!(finished(&all, &task).unwrap_err(), "all 24 simulations failed; the first: no peak");
 }

@@ -1,0 +1,186 @@
+//! Where proportional corrections begin: the slope K of the response on the factor, known from an earlier analysis.
+//!
+//! A table of slopes has a column for each held factor that K depends on and one for K, as a regression by groups gives it.
+//! K at the held values of a set is interpolated: linearly along every held factor where the table is a full grid of
+//! their values, and clamped to the grid's edge outside. The first value of the factor is then target / K, or
+//! target / (K c) where the slope is that on c times the factor, with c from `regressor`.
+
+use super::params::SetParam;
+use crate::artifact::{Artifact, Table};
+use crate::stage::StageError;
+use optim::proportional;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Settings of the proportional corrections.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Slope {
+    /// Runs of a set: the first, and those corrected by the one before; 2 when not given.
+    pub runs: Option<usize>,
+    /// The slope itself, response over factor in their units.
+    pub slope: Option<f64>,
+    /// The stage whose table holds slopes by held factors.
+    pub slopes: Option<String>,
+    /// That table; `runs` when not given.
+    pub table: Option<String>,
+    /// The column of slopes; `slope` when not given.
+    pub column: Option<String>,
+}
+
+impl Slope {
+    /// The optimiser's settings.
+    pub(super) fn method(&self) -> proportional::Settings {
+        let usual = proportional::Settings::default();
+        proportional::Settings { runs: self.runs.unwrap_or(usual.runs) }
+    }
+
+    /// What is wrong with the settings themselves.
+    pub(super) fn faults(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        if self.slope.is_some() && self.slopes.is_some() {
+            found.push("either `slope` or `slopes`, not both".to_owned());
+        }
+        if self.slope.is_some_and(|slope| !(slope.is_finite() && slope != 0.0)) {
+            found.push("`slope` must be a finite number other than 0".to_owned());
+        }
+        for (key, given) in [("table", self.table.is_some()), ("column", self.column.is_some())] {
+            if given && self.slopes.is_none() {
+                found.push(format!("`{key}` has no effect without `slopes`"));
+            }
+        }
+        found
+    }
+
+    /// The first value of the factor of a set; none when no slope is known.
+    pub(super) fn first(&self, slopes: Option<&Artifact>, set: &SetParam) -> Result<Option<f64>, StageError> {
+        let Some(target) = set.targets.first().and_then(|target| target.low.or(target.high)) else { return Ok(None) };
+        let slope = match (self.slope, slopes) {
+            (Some(slope), _) => slope,
+            (None, Some(artifact)) => self.interpolated(artifact, &set.held)?,
+            (None, None) => return Ok(None),
+        };
+        let first = target / slope;
+        if first.is_finite() {
+            Ok(Some(first))
+        } else {
+            Err(StageError::new(format!("the slope {slope} leads to no first value")))
+        }
+    }
+
+    fn interpolated(&self, artifact: &Artifact, held: &BTreeMap<String, f64>) -> Result<f64, StageError> {
+        let name = self.table.as_deref().unwrap_or("runs");
+        let table = artifact.table(name).ok_or_else(|| {
+            StageError::new(format!("`slopes`: there is no table `{name}`")).hint("name it with `proportional.table`")
+        })?;
+        let column = self.column.as_deref().unwrap_or("slope");
+        let slopes = numbers(table, column)?;
+        let axes: Vec<(Vec<f64>, f64)> = held
+            .iter()
+            .filter(|(name, _)| table.column(name).is_some())
+            .map(|(name, &at)| Ok((numbers(table, name)?, at)))
+            .collect::<Result<_, StageError>>()?;
+        if axes.is_empty() && slopes.len() != 1 {
+            let held: Vec<&str> = held.keys().map(String::as_str).collect();
+            let hint = format!("the columns are {}; held are {}", columns(table), held.join(", "));
+            return Err(StageError::new(format!("table `{name}` holds slopes by no held factor")).hint(hint));
+        }
+        on_grid(&axes, &slopes).ok_or_else(|| {
+            let message = format!("the slopes of table `{name}` are no full grid around the held values");
+            StageError::new(message).hint("give every combination of the held factors one slope")
+        })
+    }
+}
+
+fn columns(table: &Table) -> String {
+    table.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ")
+}
+
+fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, StageError> {
+    table.shown(name).map(|(values, _)| values).map_err(|_| {
+        StageError::new(format!("`slopes`: there is no column of numbers `{name}`"))
+            .hint(format!("the columns are {}", columns(table)))
+    })
+}
+
+/// The value at a point among rows that hold a full grid of their coordinates: each axis is the coordinate of every row
+/// and where it is asked for. None where a corner of the point's cell has no row, or several that differ.
+fn on_grid(axes: &[(Vec<f64>, f64)], values: &[f64]) -> Option<f64> {
+    let cells: Vec<(f64, f64, f64)> = axes.iter().map(|(rows, at)| cell(rows, *at)).collect::<Option<_>>()?;
+    let mut sum = 0.0;
+    for corner in 0..1_usize << cells.len() {
+        let upper = |k: usize| corner >> k & 1 == 1;
+        let share = |k: usize| if upper(k) { cells[k].2 } else { 1.0 - cells[k].2 };
+        let weight: f64 = (0..cells.len()).map(share).product();
+        if weight == 0.0 {
+            continue;
+        }
+        let at = |k: usize| if upper(k) { cells[k].1 } else { cells[k].0 };
+        let stands = |row: &usize| axes.iter().enumerate().all(|(k, (rows, _))| rows[*row] == at(k));
+        let mut found = (0..values.len()).filter(stands).map(|row| values[row]).filter(|value| value.is_finite());
+        let value = found.next()?;
+        if found.any(|other| other != value) {
+            return None;
+        }
+        sum += weight * value;
+    }
+    Some(sum)
+}
+
+/// The neighbouring coordinates of a place, and how far it stands from the first to the second.
+fn cell(rows: &[f64], at: f64) -> Option<(f64, f64, f64)> {
+    let below = rows.iter().copied().filter(|row| *row <= at).reduce(f64::max);
+    let above = rows.iter().copied().filter(|row| *row >= at).reduce(f64::min);
+    let (low, high) = (below.or(above)?, above.or(below)?);
+    Some((low, high, if high > low { (at - low) / (high - low) } else { 0.0 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artifact::{ArtifactKind, Group, Node};
+
+    fn sweep() -> Artifact {
+        let table = Table::default()
+            .reals_column("R_min", "mm", "", vec![0.1, 0.1, 0.2, 0.2])
+            .reals_column("ratio", "", "", vec![1.0, 2.0, 1.0, 2.0])
+            .reals_column("slope", "", "", vec![0.6, 0.8, 0.7, 1.1]);
+        Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table)))
+    }
+
+    fn at(r_min: f64, ratio: f64) -> Result<Option<f64>, StageError> {
+        let target = serde_json::json!({ "response": "s", "unit": "MPa", "low": 9.0, "high": 9.0, "weight": 1.0 });
+        let held = [("R_min".to_owned(), r_min), ("ratio".to_owned(), ratio)].into();
+        let targets = vec![serde_json::from_value(target).unwrap()];
+        Slope::default().first(Some(&sweep()), &SetParam { targets, held, start: None, seed: None })
+    }
+
+    /// Bilinear within the grid, clamped outside it.
+    #[test]
+    fn slopes_are_interpolated_at_the_held_values() {
+        for ((r_min, ratio), slope) in [
+            ((0.1, 2.0), 0.8),
+            ((0.15, 1.0), 0.65),
+            ((0.15, 1.5), 0.8),
+            ((0.125, 1.25), 0.75 * (0.75 * 0.6 + 0.25 * 0.8) + 0.25 * (0.75 * 0.7 + 0.25 * 1.1)),
+            ((0.3, 2.5), 1.1),
+        ] {
+            let first = at(r_min, ratio).unwrap().unwrap();
+            assert!((first - 9.0 / slope).abs() < 1e-9, "{r_min}, {ratio}: {first}");
+        }
+    }
+
+    #[test]
+    fn a_slope_itself_needs_no_table_and_a_missing_column_is_named() {
+        let target = serde_json::json!({ "response": "s", "unit": "MPa", "low": 9.0, "high": 9.0, "weight": 1.0 });
+        let targets = vec![serde_json::from_value(target).unwrap()];
+        let set = SetParam { targets, held: BTreeMap::new(), start: None, seed: None };
+        let own = Slope { slope: Some(0.3), ..Slope::default() };
+        assert_eq!(own.first(None, &set).unwrap(), Some(30.0));
+        assert_eq!(Slope::default().first(None, &set).unwrap(), None);
+        let other = Slope { column: Some("K".into()), ..Slope::default() };
+        let error = other.first(Some(&sweep()), &set).unwrap_err();
+        assert_eq!(error.hint.as_deref(), Some("the columns are R_min, ratio, slope"));
+    }
+}

@@ -1,0 +1,46 @@
+//! What a stage remembers between two of its steps in one campaign.
+//!
+//! A stage that asks for outcomes is asked again after every batch, and what it says next is a function of the whole
+//! history. A memory spares it from going through that history each time. It may be lost at any moment, and a stage must
+//! say the same with and without it: it holds nothing that could not be worked out again.
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::fmt;
+
+/// A value of the stage's own type, or nothing.
+#[derive(Default)]
+pub struct Memory(RefCell<Option<Box<dyn Any>>>);
+
+impl Memory {
+    /// Takes out what was put in, if it is of this type.
+    pub fn take<T: 'static>(&self) -> Option<T> {
+        self.0.borrow_mut().take()?.downcast().ok().map(|value| *value)
+    }
+
+    /// Puts a value in, in place of any other.
+    pub fn put<T: 'static>(&self, value: T) {
+        *self.0.borrow_mut() = Some(Box::new(value));
+    }
+}
+
+impl fmt::Debug for Memory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.borrow().is_some() { "Memory(something)" } else { "Memory(nothing)" })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_comes_out_once_and_only_as_what_it_is() {
+        let memory = Memory::default();
+        assert_eq!(memory.take::<u8>(), None);
+        memory.put(7_u8);
+        assert_eq!((memory.take::<u8>(), memory.take::<u8>()), (Some(7), None));
+        memory.put(7_u8);
+        assert_eq!((memory.take::<u16>(), memory.take::<u8>()), (None, None));
+    }
+}
