@@ -463,7 +463,8 @@ fn what_an_input_lacks_is_named() {
         other => panic!("{other:?}"),
     };
     let residuals = "show = 'residuals'\nof = 'a'\nresponse = 'UCS'";
-    assert_eq!(said(residuals, anova()), "the artifact `anova` holds no table `residuals` (it holds anova)");
+    let empty = Artifact::of(Anova::KIND, Group::new());
+    assert_eq!(said(residuals, empty), "anova.anova: wanted table, found nothing ()");
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec', 'null']";
     assert_eq!(said(contour, surfaces()), "the surface of `UCS` does not depend on `null` (it depends on Ec, mu)");
 }
