@@ -11,6 +11,8 @@ crate::artifact! {
         pub coded: Table, "";
         /// what the design can tell
         pub report: DesignReport, "";
+        /// rows that were left out, with the rules that they break
+        pub left_out: Option<Table>, "";
     }
 }
 

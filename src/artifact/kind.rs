@@ -15,7 +15,7 @@ pub struct ArtifactKind {
 
 impl ArtifactKind {
     /// A specimen: discs in a vessel, with aggregate as rigid clumps.
-    pub const SPECIMEN: Self = Self::new("specimen", 1).main("quality");
+    pub const SPECIMEN: Self = Self::new("specimen", 2).main("quality");
     /// A design of experiments.
     pub const DESIGN: Self = Self::new("design", 1).main("design");
     /// One run of a simulator.

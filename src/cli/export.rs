@@ -141,7 +141,7 @@ fn choose(workflow: &Workflow, report: &Report, asked: &[(String, Option<usize>)
 }
 
 fn load(artifact: &Artifact) -> Result<Specimen, String> {
-    specimen::load(artifact).map_err(|e| e.to_string())
+    specimen::load(artifact).and_then(specimen::Loaded::plane).map_err(|e| e.to_string())
 }
 
 /// What a run was made of, from its task text.

@@ -26,6 +26,8 @@ struct Shipped {
 /// The first is copied when none is named.
 const SHIPPED: &[Shipped] = &[
     Shipped { name: "start", text: include_str!("../../workflows/start.toml"), files: &[] },
+    Shipped { name: "rock", text: include_str!("../../workflows/rock.toml"), files: &[] },
+    Shipped { name: "concrete", text: include_str!("../../workflows/concrete.toml"), files: &[] },
     Shipped { name: "c30", text: include_str!("../../workflows/c30.toml"), files: SU2021 },
     Shipped { name: "calibrate", text: include_str!("../../workflows/calibrate.toml"), files: &[] },
     Shipped { name: "su2021-published", text: include_str!("../../workflows/su2021-published.toml"), files: SU2021 },

@@ -7,7 +7,7 @@ use super::remarks::remarks;
 use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
-use crate::run::{Past, Report, Settings, Silent, StageStatus, TaskState, Watch, record, run};
+use crate::run::{Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, record, run};
 use crate::store::Store;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -74,8 +74,9 @@ impl Run {
         let recorded = did.then(|| record(&workflow, &self.campaign.sets, &report, started, &store));
         let number = recorded.transpose().map_err(|e| system(&e))?;
         let seconds = started.elapsed().unwrap_or_default().as_secs_f64();
+        let missed = unmet(&workflow, &report, &store);
         if self.json {
-            out!("{}", document(&workflow.name, &report, seconds));
+            out!("{}", document(&workflow.name, &report, &missed, seconds));
         } else if !self.campaign.common.quiet {
             out!("{}", summary(&report, seconds, number));
         }
@@ -83,7 +84,11 @@ impl Run {
         if !self.campaign.common.quiet {
             remarks(&self.campaign, &report, &store).iter().for_each(|line| eprintln!("{line}"));
         }
-        let exit = unmet(&workflow, &report, &store, exit(&report));
+        missed.iter().for_each(|(stage, why)| eprintln!("unmet: {stage}: {why}"));
+        let exit = match exit(&report) {
+            Exit::Done if !missed.is_empty() => Exit::Failed,
+            exit => exit,
+        };
         // The process ends now, and the system takes all of its memory back faster than it is given back piece by piece.
         std::mem::forget((workflow, store, report));
         Ok(exit)
@@ -173,25 +178,18 @@ fn exit(report: &Report) -> Exit {
     }
 }
 
-/// Says what finished stages do not give though the workflow asks it of them; a campaign that is done has failed then.
-fn unmet(workflow: &Workflow, report: &Report, store: &Store, exit: Exit) -> Exit {
-    let mut exit = exit;
-    for stage in &report.stages {
-        let (StageStatus::Done(content), Some(index)) = (&stage.status, workflow.position(&stage.name)) else {
-            continue;
-        };
-        let why = store.get(content).ok().and_then(|artifact| workflow.stages[index].stage.unmet(&artifact));
-        if let Some(why) = why {
-            eprintln!("unmet: {}: {why}", stage.name);
-            if matches!(exit, Exit::Done) {
-                exit = Exit::Failed;
-            }
-        }
-    }
-    exit
+/// What finished stages do not give though the workflow asks it of them, by stage.
+fn unmet(workflow: &Workflow, report: &Report, store: &Store) -> Vec<(String, String)> {
+    let why = |stage: &StageReport| {
+        let StageStatus::Done(content) = &stage.status else { return None };
+        let index = workflow.position(&stage.name)?;
+        let why = workflow.stages[index].stage.unmet(&*store.get(content).ok()?)?;
+        Some((stage.name.clone(), why))
+    };
+    report.stages.iter().filter_map(why).collect()
 }
 
-fn document(workflow: &str, report: &Report, seconds: f64) -> Value {
+fn document(workflow: &str, report: &Report, missed: &[(String, String)], seconds: f64) -> Value {
     let count = report.count();
     let stages: Vec<Value> = report
         .stages
@@ -201,9 +199,10 @@ fn document(workflow: &str, report: &Report, seconds: f64) -> Value {
                 StageStatus::Done(content) => json!(content.to_string()),
                 StageStatus::Open | StageStatus::Failed(_) | StageStatus::Skipped(_) => Value::Null,
             };
+            let unmet = missed.iter().find(|(name, _)| *name == stage.name).map(|(_, why)| why);
             json!({
                 "name": stage.name, "kind": stage.kind, "state": stage.status.word(),
-                "tasks": stage.tasks.total, "ran": stage.tasks.ran, "object": object,
+                "tasks": stage.tasks.total, "ran": stage.tasks.ran, "object": object, "unmet": unmet,
             })
         })
         .collect();

@@ -17,7 +17,7 @@
 use super::error::{Fault, Faults};
 use super::genesis::clump::union_moments;
 use super::particle::{Clump, Particle};
-use super::space::{Space, Spin, Tuple, Vector};
+use super::space::{Space, Spin, Tuple, Vector, flat};
 
 /// Gauss–Legendre, eight points on −1 … 1: the positive abscissae, their weights (Abramowitz & Stegun, table 25.4).
 static GAUSS: [[f64; 2]; 4] = [
@@ -66,10 +66,6 @@ impl<S: Space> Clump<S> {
         let inertia = inertia.map(|row| row.map(|x| density * x));
         Ok(Self { pebbles: pebbles.to_vec(), centre: Vector::<S>::build(|k| centre[k]), velocity, spin, mass, inertia })
     }
-}
-
-fn flat<S: Space>(x: Vector<S>) -> [f64; 3] {
-    std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })
 }
 
 /// Area, centre, second moments of a union of discs.

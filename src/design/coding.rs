@@ -2,10 +2,12 @@
 //!
 //! A factor has a *natural* scale (gigapascal, ratio …) and a *coded* one on which its lowest level is −1 and its
 //! highest +1: `coded = (natural − centre) / half`, with `centre = (low + high) / 2` and `half = (high − low) / 2` (Box
-//! & Wilson 1951, doi:10.1111/j.2517-6161.1951.tb00067.x). Values that are a declared level up to rounding are given
+//! & Wilson 1951, doi:10.1111/j.2517-6161.1951.tb00067.x). On a logarithmic scale the same holds of ln natural, so that equal
+//! steps are equal ratios and the centre is √(low high); that is for ranges over decades. Values that are a declared level up to rounding are given
 //! that level's very bits, so that a row of one design equals the same row of another.
 
 use super::error::Fault;
+use math::elementary::{exp, ln};
 use math::occurrence::occurrences;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +29,38 @@ pub enum Domain {
     },
 }
 
+/// How a range is divided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scale {
+    /// By equal differences.
+    #[default]
+    Linear,
+    /// By equal ratios.
+    Log,
+}
+
+impl Scale {
+    /// The coordinate in which the range is divided evenly.
+    fn of(self, natural: f64) -> f64 {
+        match self {
+            Self::Linear => natural,
+            Self::Log => ln(natural),
+        }
+    }
+
+    fn natural(self, coordinate: f64) -> f64 {
+        match self {
+            Self::Linear => coordinate,
+            Self::Log => exp(coordinate),
+        }
+    }
+
+    fn is_linear(&self) -> bool {
+        *self == Self::Linear
+    }
+}
+
 /// A factor of a design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
@@ -36,17 +70,26 @@ pub struct Factor {
     pub unit: String,
     /// The values it may take, in `unit`.
     pub domain: Domain,
+    /// How its range is divided.
+    #[serde(default, skip_serializing_if = "Scale::is_linear")]
+    pub scale: Scale,
 }
 
 impl Factor {
     /// A factor with discrete levels.
     pub fn levels(name: &str, unit: &str, levels: &[f64]) -> Self {
-        Self { name: name.into(), unit: unit.into(), domain: Domain::Levels(levels.to_vec()) }
+        Self { name: name.into(), unit: unit.into(), domain: Domain::Levels(levels.to_vec()), scale: Scale::Linear }
     }
 
     /// A factor with a continuous range.
     pub fn range(name: &str, unit: &str, low: f64, high: f64) -> Self {
-        Self { name: name.into(), unit: unit.into(), domain: Domain::Range { low, high } }
+        Self { name: name.into(), unit: unit.into(), domain: Domain::Range { low, high }, scale: Scale::Linear }
+    }
+
+    /// The same factor on a logarithmic scale.
+    #[must_use]
+    pub fn log(self) -> Self {
+        Self { scale: Scale::Log, ..self }
     }
 
     /// Lowest value (coded −1).
@@ -67,12 +110,20 @@ impl Factor {
 
     /// Middle of the range (coded 0).
     pub fn centre(&self) -> f64 {
-        0.5 * (self.low() + self.high())
+        match self.scale {
+            Scale::Linear => self.middle(),
+            Scale::Log => (self.low() * self.high()).sqrt(),
+        }
     }
 
-    /// Half of the range (one coded unit).
+    /// Middle of the range in the coordinate of the scale.
+    fn middle(&self) -> f64 {
+        0.5 * (self.scale.of(self.low()) + self.scale.of(self.high()))
+    }
+
+    /// Half of the range in the coordinate of the scale (one coded unit).
     pub fn half(&self) -> f64 {
-        0.5 * (self.high() - self.low())
+        0.5 * (self.scale.of(self.high()) - self.scale.of(self.low()))
     }
 
     /// Number of levels; a range counts its two ends.
@@ -98,14 +149,15 @@ impl Factor {
 
     /// Its coding, for many values at once.
     pub fn coding(&self) -> Coding {
-        Coding { centre: self.centre(), half: self.half() }
+        Coding { centre: self.middle(), half: self.half(), scale: self.scale }
     }
 
     /// Natural value of a coded one: exactly the declared level or end of the range where it is one up to rounding,
     /// else rounded to twelve digits, so that a table reads 3.025 and not 3.0250000000000004.
     pub fn natural(&self, coded: f64) -> f64 {
-        let value = self.centre() + self.half() * coded;
-        let near = |known: &f64| (value - known).abs() <= SNAP * self.half().max(known.abs());
+        let value = self.scale.natural(self.middle() + self.half() * coded);
+        let size = if self.scale == Scale::Linear { self.half() } else { 0.0 };
+        let near = |known: &f64| (value - known).abs() <= SNAP * size.max(known.abs());
         let known = match &self.domain {
             Domain::Levels(levels) => levels.iter().copied().find(near),
             Domain::Range { low, high } => [*low, *high].into_iter().find(near),
@@ -148,6 +200,9 @@ impl Factor {
                 }
             }
         }
+        if self.scale == Scale::Log && self.low() <= 0.0 {
+            faults.push(Fault::NoLogarithm { factor: factor(), low: self.low() });
+        }
         faults
     }
 }
@@ -157,12 +212,13 @@ impl Factor {
 pub struct Coding {
     centre: f64,
     half: f64,
+    scale: Scale,
 }
 
 impl Coding {
     /// Coded value of a natural one.
     pub fn coded(&self, natural: f64) -> f64 {
-        let coded = (natural - self.centre) / self.half;
+        let coded = (self.scale.of(natural) - self.centre) / self.half;
         let whole = coded.round();
         if (coded - whole).abs() < SNAP { whole + 0.0 } else { coded }
     }
@@ -234,6 +290,18 @@ mod tests {
         assert_eq!([f.coded(1.0), f.coded(2.5), f.coded(4.0), f.coded(1.75)], [-1.0, 0.0, 1.0, -0.5]);
         assert_eq!(f.natural(0.0).to_bits(), 2.5_f64.to_bits());
         assert_eq!(Factor::range("kn_ks", "", 1.0, 4.0).natural(0.35), 3.025);
+    }
+
+    #[test]
+    fn a_logarithmic_scale_divides_by_ratios() {
+        let f = Factor::range("kn", "N/m", 1e5, 1e9).log();
+        assert_eq!([-1.0, -0.5, 0.0, 0.5, 1.0].map(|coded| f.natural(coded)), [1e5, 1e6, 1e7, 1e8, 1e9]);
+        assert_eq!([1e5, 1e6, 1e7, 1e9].map(|natural| f.coded(natural)), [-1.0, -0.5, 0.0, 1.0]);
+        let levels = Factor::levels("kn", "N/m", &[1.0, 10.0, 100.0]).log();
+        assert_eq!((levels.coded(10.0), levels.centre()), (0.0, 10.0));
+        assert!(check_surface(&[levels], "box-behnken").is_empty());
+        let none = check(&[Factor::range("kn", "N/m", 0.0, 1e9).log()]);
+        assert!(none[0].to_string().contains("logarithmic scale"), "{none:?}");
     }
 
     #[test]

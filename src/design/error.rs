@@ -59,6 +59,14 @@ pub enum Fault {
         /// What was found.
         value: f64,
     },
+    /// A logarithmic scale of values that have no logarithm.
+    #[error("factor `{factor}` has a logarithmic scale and begins at {low}; give values above 0")]
+    NoLogarithm {
+        /// The factor.
+        factor: String,
+        /// Its lowest value.
+        low: f64,
+    },
     /// A range whose limits are equal or the wrong way round.
     #[error("factor `{factor}` has an empty range, {low} to {high}; the lower limit must be below the upper one")]
     EmptyRange {

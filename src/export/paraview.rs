@@ -2,7 +2,7 @@
 //!
 //! | file | cells | fields |
 //! |---|---|---|
-//! | `NAME.particles.vtu` | discs as points | `radius`, `group` (0 mortar, 1 aggregate), `clump` (-1 none); of a run `displacement` |
+//! | `NAME.particles.vtu` | discs as points | `radius`, `group` (number among those of the specimen; the aggregate's is the last), `clump` (-1 none); of a run `displacement` |
 //! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 between discs, 1 of a disc and aggregate, 2 within aggregate), `gap` |
 //! | `NAME.clumps.vtu` | polygons of aggregate | `polygon`, `clump` (-1 when no disc lies in it), `mass` |
 //! | `NAME.forces.vtu` | contacts of a run as lines, where it kept forces | `normal_force` (compression positive), `shear_force`, `bonded`, `chain` (1 from the mean force on) |
@@ -69,7 +69,7 @@ fn bodies(specimen: &Specimen) -> Vec<Field> {
     let clump: Vec<i64> = specimen.clump_of_balls().iter().map(|c| c.map_or(-1, |c| c as i64)).collect();
     vec![
         Field::Reals("radius", specimen.radii.clone()),
-        Field::Ints("group", clump.iter().map(|&c| i64::from(c >= 0)).collect()),
+        Field::Ints("group", specimen.groups.iter().map(|group| i64::from(group.0)).collect()),
         Field::Ints("clump", clump),
     ]
 }

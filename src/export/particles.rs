@@ -22,9 +22,6 @@ use std::collections::BTreeMap;
 /// Parameters of a run by their paths in its task, as they stand there.
 pub type Parameters = BTreeMap<String, String>;
 
-/// Groups of a specimen that no run names.
-const GROUPS: [&str; 2] = ["discs", "aggregate"];
-
 /// What the files say of groups: their names, and for a run the values of their contacts.
 struct Named {
     groups: Vec<String>,
@@ -32,10 +29,10 @@ struct Named {
 }
 
 impl Named {
-    fn of(parameters: Option<&Parameters>) -> Result<Self, String> {
+    fn of(specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Self, String> {
         let material = parameters.map(material).transpose()?;
         let own = material.as_ref().map(|material| material.groups.clone());
-        Ok(Self { groups: own.unwrap_or_else(|| GROUPS.map(str::to_owned).to_vec()), material })
+        Ok(Self { groups: own.unwrap_or_else(|| specimen.group_names.clone()), material })
     }
 
     fn group(&self, number: usize) -> String {
@@ -73,7 +70,7 @@ fn material(parameters: &Parameters) -> Result<Material, String> {
 
 /// The files; without parameters, those of the specimen alone.
 pub fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
-    let named = Named::of(parameters)?;
+    let named = Named::of(specimen, parameters)?;
     let margin = named.material.as_ref().map_or(0.0, |material| material.gap) * specimen.mean_radius();
     let contacts = contacts(specimen, margin);
     let mut tables = vec![("particles", particles(specimen, &named)), ("clumps", clumps(specimen))];
@@ -92,13 +89,16 @@ fn numbered(about: &str, count: usize) -> Table {
 
 fn particles(specimen: &Specimen, named: &Named) -> Table {
     let clump = specimen.clump_of_balls();
-    let group = |clump: &Option<usize>| named.group(usize::from(clump.is_some()));
     let density = |clump: &Option<usize>| if clump.is_some() { f64::NAN } else { specimen.density };
     numbered("number of the disc", clump.len())
         .reals_column("x", "m", "centre, across the load, from the middle of the specimen", axis(&specimen.centres, 0))
         .reals_column("y", "m", "centre, along the load, from the middle of the specimen", axis(&specimen.centres, 1))
         .reals_column("radius", "m", "radius", specimen.radii.clone())
-        .texts_column("group", "group of the disc", clump.iter().map(group).collect())
+        .texts_column(
+            "group",
+            "group of the disc",
+            specimen.groups.iter().map(|group| named.group(usize::from(group.0))).collect(),
+        )
         .ints_column("clump", "its clump, -1 for none", clump.iter().map(|c| c.map_or(-1, |c| c as i64)).collect())
         .reals_column(
             "density",
@@ -124,7 +124,7 @@ fn clumps(specimen: &Specimen) -> Table {
             "inertia",
             "kg*m",
             "about the centre of mass, per metre of thickness",
-            clumps.iter().map(|clump| clump.inertia).collect(),
+            clumps.iter().map(|clump| clump.inertia[2][2]).collect(),
         )
 }
 

@@ -73,6 +73,11 @@ pub fn t_for_tail(tail: f64, df: f64) -> f64 {
     t
 }
 
+/// P(Z ≤ z) for the standard normal distribution.
+pub fn normal_lower(z: f64) -> f64 {
+    0.5 * erfc(-z / SQRT_2)
+}
+
 /// The `z` with P(Z ≤ z) = `p` for the standard normal distribution; ∓∞ at 0 and 1.
 ///
 /// A crude start, then Halley steps on the complementary error function, which has its digits in the tail.
@@ -89,7 +94,7 @@ pub fn normal_quantile(p: f64) -> f64 {
     let w = (-2.0 * ln(p)).sqrt();
     let mut z = -(w - (2.30753 + 0.27061 * w) / (1.0 + w * (0.99229 + 0.04481 * w)));
     for _ in 0..4 {
-        let excess = 0.5 * erfc(-z / SQRT_2) - p;
+        let excess = normal_lower(z) - p;
         let step = excess * (2.0 * PI).sqrt() * exp(0.5 * z * z);
         z -= step / (1.0 + 0.5 * z * step);
     }

@@ -6,8 +6,10 @@ use super::node::{Entry, Node, Step, Table, Value};
 use super::read::read;
 use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
+use crate::artifact::{Accepts, ArtifactKind};
+use crate::stage::simulate::Simulate;
 use crate::stage::vary::Template;
-use crate::stage::{Context, KINDS, Port, Stage};
+use crate::stage::{Context, KINDS, Kind, Port, Stage};
 use std::collections::BTreeMap;
 
 /// A stage that was read.
@@ -28,9 +30,10 @@ pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &mut Co
     }
     let materials = root.get("material").cloned();
     let table = check.tables(root, "stage")?;
-    let stages = configure(check, table, context);
+    let mut stages = configure(check, table, context);
     context.sketches = stages.iter().map(|stage| (stage.name.clone(), stage.stage.sketch())).collect();
     examine(check, table, &stages, materials.as_ref(), context);
+    given_materials(&mut stages, context);
     same_but_for_case(check, table);
     let inputs = connect(check, table, &stages);
     let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| inputs.iter().map(|(_, i)| *i).collect()).collect();
@@ -65,6 +68,17 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &mut Context) ->
         stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
     }
     stages
+}
+
+/// A stage whose material is no `[material.NAME]` takes it from the stage of that name.
+fn given_materials(stages: &mut [Configured], context: &Context) {
+    let kinds = Accepts::Only(&[ArtifactKind::RUN, ArtifactKind::SOLUTION]);
+    for stage in stages.iter_mut().filter(|stage| stage.kind == Simulate::NAME) {
+        let material = stage.stage.sketch().material.filter(|name| !context.materials.contains_key(name));
+        if let Some(name) = material.filter(|name| context.sketches.contains_key(name)) {
+            stage.ports.push(Port { key: "material", stages: vec![name], accepts: kinds });
+        }
+    }
 }
 
 /// Lets every stage look at its settings, now that it can see what the others say of themselves.

@@ -6,6 +6,7 @@ use super::table::Sheet;
 use super::time::{duration, moment};
 use super::warning::warnings;
 use crate::artifact::{Artifact, ArtifactKind, Table};
+use crate::stage::calibrate::parameters_in_words;
 use crate::stage::figure::Figure as Picture;
 use crate::stage::table::Table as PrintedTable;
 use crate::stage::{Kind, artifact_kind};
@@ -115,6 +116,7 @@ fn own(paper: &Paper, index: usize, members: &[usize]) -> Markup {
     let closed: Vec<_> = rest.iter().filter(|(name, _)| !is_open(name)).collect();
     html! {
         @for (name, table) in rest.iter().filter(|(name, _)| is_open(name)) { (sheet(name, table)) }
+        @for line in parameters_in_words(artifact) { p.note { "Parameters " (line) } }
         @if !closed.is_empty() {
             details.more {
                 summary { "More of its numbers" span.soft { " " (names(&closed)) } }

@@ -104,6 +104,10 @@ solution = "calibrate"
 simulator = "formula"
 replicates = 2
 
+[stage.effort]
+kind = "effort"
+of = "calibrate"
+
 [stage.agreement]
 kind = "agreement"
 of = "formula"
@@ -136,6 +140,7 @@ regression 5bbcfc4bea7d
 rsm 592833ad92f1
 calibrate e38b40d330ef
 verify 38b0cc910644
+effort cf49a99b0418
 agreement bd06fe72410e
 table 464517716712
 figure e5375085b080
@@ -145,6 +150,7 @@ calibrate 3
 command 1
 data 1
 design 2
+effort 1
 figure 8
 fit 2
 formula 1

@@ -34,7 +34,6 @@ mod curve;
 mod effort;
 mod faults;
 mod goal;
-mod names;
 mod outlook;
 mod params;
 mod read;
@@ -45,14 +44,15 @@ mod solve;
 #[cfg(test)]
 mod tests;
 mod twin;
+mod words;
 
 pub use config::{Calibrate, Constraint, MethodName, Unmet};
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
-pub use names::Names;
 pub use slope::Slope;
+pub use words::parameters_in_words;
 
-use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use course::Course;
 use params::Params;
@@ -90,6 +90,10 @@ impl Stage for Calibrate {
             Port { key: "curve", stages: curve, accepts: results },
             Port { key: "proportional", stages: one(&slopes), accepts: Accepts::Tables },
         ]
+    }
+
+    fn sketch(&self) -> Sketch {
+        Sketch { material: self.material.clone(), simulator: self.simulators().into_iter().next(), ..Sketch::default() }
     }
 
     fn gives(&self) -> ArtifactKind {

@@ -44,6 +44,10 @@ pub struct Sketch {
     pub groups: Vec<String>,
     /// The factors that its rows vary; none for a kind that is no design.
     pub factors: Option<Vec<String>>,
+    /// The name under its key `material`: a `[material.NAME]`, or a stage that gives one.
+    pub material: Option<String>,
+    /// The stage whose runs it asks for.
+    pub simulator: Option<String>,
     /// Whether factors may set its numbers: it makes specimens, or runs tests.
     pub varies: bool,
 }

@@ -6,12 +6,16 @@
 //! Box–Behnken designs its range, or up to three levels. Rows come from the workflow (`rows`) or a CSV file beside it
 //! (`file`) with `method = "given"`.
 //!
+//! `valid` holds rules that the rows must obey, checked with units before anything runs: a row that breaks one is named with the rule and
+//! the design refused, or, with `invalid_rows = "leave-out"`, the row is left out and listed in the table `left_out`.
+//!
 //! The result has the tables `design` (run, standard order, point type, factors in their units), `coded` and `report`.
 
 mod config;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod valid;
 
 pub use config::Design;
 
@@ -23,6 +27,7 @@ use design::report::power::Question;
 use design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use valid::{Broken, InvalidRows, Rule};
 
 /// Parameters of the task: all that decides the table.
 #[derive(Serialize, Deserialize)]
@@ -33,6 +38,10 @@ struct Params {
     layout: Layout,
     #[serde(default, skip_serializing_if = "is_default")]
     power: Question,
+    #[serde(default, skip_serializing_if = "is_default")]
+    valid: Vec<String>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    invalid_rows: InvalidRows,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -56,10 +65,14 @@ impl Stage for Design {
         }
         match self.method() {
             // rows of a file are checked when it is read
-            Ok(Method::Given(_)) if self.file.is_some() => found,
+            Ok(Method::Given(_)) if self.file.is_some() => self.rule_complaints(),
             Ok(method) => {
                 let faults = check(&method, &self.factors(context), self.layout());
-                faults.iter().map(complaint).collect()
+                if faults.is_empty() {
+                    self.broken_rules(&method, context)
+                } else {
+                    faults.iter().map(complaint).collect()
+                }
             }
             Err(complaint) => vec![complaint],
         }
@@ -74,7 +87,8 @@ impl Stage for Design {
         let layout = self.layout();
         let draws = design.draws() || layout.order == Order::Random;
         let factors = self.factors(known.context);
-        let params = Params { design, factors, layout, power: self.power };
+        let (valid, invalid_rows) = (self.valid.clone(), self.invalid_rows);
+        let params = Params { design, factors, layout, power: self.power, valid, invalid_rows };
         let mut task = Task::new("design", json!(params));
         if draws {
             task = task.seed(known.context.seed);
@@ -109,6 +123,7 @@ fn complaint(fault: &Fault) -> Complaint {
         | Fault::DuplicateLevel { .. }
         | Fault::NotFinite { .. }
         | Fault::EmptyRange { .. }
+        | Fault::NoLogarithm { .. }
         | Fault::WrongLevels { .. }
         | Fault::UnevenLevels { .. } => "factors",
     };
@@ -127,8 +142,80 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
     }
     let table = build(&params.design, &params.factors, params.layout, job.seed.unwrap_or(0))
         .map_err(|error| StageError::new(error.to_string()))?;
-    let report = report(&table, params.power);
-    Ok(tables::artifact(&table, &report))
+    let broken = valid::broken(&params.valid, &table).map_err(StageError::new)?;
+    if !broken.is_empty() && params.invalid_rows == InvalidRows::Refuse {
+        let rows: Vec<String> = broken.iter().map(|broken| valid::told(broken, &table)).collect();
+        return Err(StageError::new(rows.join("; ")).hint(LEAVE_OUT).into());
+    }
+    let left = valid::without(&table, &broken);
+    if left.runs() == 0 {
+        return Err(StageError::new("every row of the design breaks a rule").into());
+    }
+    let report = report(if broken.is_empty() { &table } else { &left }, params.power);
+    Ok(if broken.is_empty() {
+        tables::artifact(&table, &report)
+    } else {
+        tables::shortened(&left, &report, &table, &broken)
+    })
+}
+
+/// What to do about rows that break a rule.
+const LEAVE_OUT: &str = "change the factors, or say `invalid_rows = \"leave-out\"`";
+
+/// So many rows that break a rule are told one by one.
+const MOST_TOLD: usize = 10;
+
+impl Design {
+    /// Rules that cannot be read or name what is no factor of the design.
+    fn rule_complaints(&self) -> Vec<Complaint> {
+        let mut found = Vec::new();
+        for text in &self.valid {
+            match Rule::parse(text) {
+                Err(why) => found.push(Complaint::new("valid", why)),
+                Ok(rule) => {
+                    for name in rule.names().into_iter().filter(|name| !self.factors.contains(name)) {
+                        let message = format!("`{text}`: `{name}` is not a factor of the design");
+                        found.push(
+                            Complaint::new("valid", message)
+                                .hint(format!("its factors are {}", self.factors.join(", "))),
+                        );
+                    }
+                }
+            }
+        }
+        if self.valid.is_empty() && self.invalid_rows != InvalidRows::Refuse {
+            found.push(
+                Complaint::new("invalid_rows", "`invalid_rows` has no effect without rules").hint("give `valid`"),
+            );
+        }
+        found
+    }
+
+    /// Rows that break a rule, where the design is refused for them.
+    fn broken_rules(&self, method: &Method, context: &Context) -> Vec<Complaint> {
+        let mut found = self.rule_complaints();
+        if !found.is_empty() || self.valid.is_empty() {
+            return found;
+        }
+        // What cannot be built is told when it runs.
+        let Ok(table) = build(method, &self.factors(context), self.layout(), context.seed) else { return found };
+        match valid::broken(&self.valid, &table) {
+            Err(why) => found.push(Complaint::new("valid", why)),
+            Ok(broken) if self.invalid_rows == InvalidRows::Refuse => {
+                let told = |broken: &Broken| Complaint::new("valid", valid::told(broken, &table)).hint(LEAVE_OUT);
+                found.extend(broken.iter().take(MOST_TOLD).map(told));
+                if broken.len() > MOST_TOLD {
+                    let message = format!("{} more rows of {} break a rule", broken.len() - MOST_TOLD, table.runs());
+                    found.push(Complaint::new("valid", message));
+                }
+            }
+            Ok(broken) if valid::without(&table, &broken).runs() == 0 => {
+                found.push(Complaint::new("valid", "every row of the design breaks a rule"));
+            }
+            Ok(_) => {}
+        }
+        found
+    }
 }
 
 /// The columns of a file that are the factors, converted to the factors' units unless they are numbers of levels.

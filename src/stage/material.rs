@@ -11,10 +11,12 @@
 //! neither asked for nor part of a task.
 
 mod assemble;
+mod given;
 mod read;
 
 pub use assemble::{Bonding, Need, measures};
-pub use dem::parameter::Parameter as Microparameter;
+pub use dem::parameter::{Parameter as Microparameter, Quantity};
+pub use given::{GivenMaterial, given};
 pub use read::MaterialTable;
 
 use super::Parameter;

@@ -43,6 +43,7 @@ pub mod command;
 mod context;
 pub mod data;
 pub mod design;
+pub mod effort;
 pub mod figure;
 pub mod fitted;
 pub mod formula;
@@ -305,6 +306,7 @@ kinds! {
     command::Command,
     data::Data,
     design::Design,
+    effort::Effort,
     figure::Figure,
     formula::Formula,
     range::Range,

@@ -2,6 +2,7 @@
 //! links of all pages.
 
 use crate::space::{Space, told};
+use flow::stage::material::{Microparameter, Quantity};
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
@@ -37,6 +38,79 @@ fn commands() -> Vec<Vec<String>> {
         }
     }
     found
+}
+
+const TABLE: (&str, &str) = (
+    "<!-- microparameters: written by `cargo test --test cli -- --ignored write_the_microparameters` -->\n",
+    "<!-- end -->\n",
+);
+
+/// The README with the table of microparameters as the laws declare them.
+fn with_microparameters() -> String {
+    let cell = |parameter: &Microparameter| {
+        let one = parameter.declaration();
+        let laws: Vec<String> = one.laws.iter().map(ToString::to_string).collect();
+        let unit = match (one.quantity.unit(), one.quantity) {
+            (_, Quantity::Deviation) => "Pa, or a share of the mean",
+            ("", _) => "–",
+            (unit, _) => unit,
+        };
+        let default = if one.default.is_nan() { String::new() } else { one.default.to_string() };
+        let (key, symbol, range, meaning) = (one.key, one.symbol, one.range.words(), one.meaning);
+        format!("| `{key}` | ${symbol}$ | {unit} | {range} | {default} | {} | {meaning} |\n", laws.join(", "))
+    };
+    let head = "| key | symbol | unit | range | default | laws | meaning |\n|---|---|---|---|---|---|---|\n";
+    let rows: String = Microparameter::ALL.iter().map(cell).collect();
+    let (before, rest) = README.split_once(TABLE.0).unwrap();
+    let (_, after) = rest.split_once(TABLE.1).unwrap();
+    format!("{before}{}{head}{rows}{}{after}", TABLE.0, TABLE.1)
+}
+
+#[test]
+fn the_microparameters_are_those_that_the_laws_declare() {
+    assert!(with_microparameters() == README, "write the table anew, see the remark above it");
+}
+
+#[test]
+#[ignore = "writes the table of the README"]
+fn write_the_microparameters() {
+    std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md"), with_microparameters()).unwrap();
+}
+
+/// The workflow in the README's section on materials can be read.
+#[test]
+fn the_example_of_a_material_has_no_fault() {
+    let (_, rest) = README.split_once("### Materials and factors").unwrap();
+    let (_, rest) = rest.split_once("```toml\n").unwrap();
+    let (example, _) = rest.split_once("```").unwrap();
+    let stages = r#"
+[workflow]
+seed = 1
+[stage.specimen]
+kind = "specimen"
+width = "50 mm"
+height = "100 mm"
+porosity = 0.12
+mean_radius = "2 mm"
+radius_ratio = 2
+density = "2000 kg/m^3"
+[stage.plan]
+kind = "design"
+method = "sobol"
+runs = 4
+factors = ["sigma_c", "s", "ratio", "mu"]
+valid = ["sigma_c/s <= 200 MPa", "ratio < 6.2", "mu in 0.1..0.9"]
+[stage.runs]
+kind = "simulate"
+specimen = "specimen"
+material = "granite"
+design = "plan"
+test = "uniaxial"
+platen_speed = "0.1 m/s"
+"#;
+    let space = Space::new();
+    space.write("w.toml", &format!("{example}{stages}"));
+    space.stdout(&["check", "w.toml"]);
 }
 
 #[test]

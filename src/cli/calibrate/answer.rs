@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// The parameters, what they are predicted to give, and how much that says.
 pub(super) fn text(asked: &Asked, solution: &Artifact) -> String {
-    let mut text = format!("{}\n\n", shown(&parameters(asked, solution)));
+    let mut text = format!("{}\n\n", shown(&parameters(solution)));
     if let Some(prediction) = solution.table("prediction") {
         let columns = ["response", "unit", "target", "expected", "low", "high", "deviation_percent"];
         let mut columns: Vec<Column> = columns.iter().filter_map(|name| prediction.column(name).cloned()).collect();
@@ -28,29 +28,12 @@ pub(super) fn text(asked: &Asked, solution: &Artifact) -> String {
 /// A deviation below this, in percent, is rounding and shown as none.
 const NOTHING: f64 = 1e-6;
 
-/// One row per parameter: its value, and where it lies in the other solutions.
-fn parameters(asked: &Asked, solution: &Artifact) -> Table {
-    let best = table(solution, "solution");
-    let others = table(solution, "solution_set");
-    let factors: Vec<&str> = best
-        .columns
-        .iter()
-        .map(|column| column.name.as_str())
-        .filter(|name| asked.workflow.context.factors.contains_key(*name))
-        .collect();
-    let ends = |name: &str| {
-        let values = others.shown(name).unwrap_or_default().0;
-        values.iter().fold([f64::NAN; 2], |[low, high], &value| [value.min(low), value.max(high)])
-    };
-    let one = |name: &str| best.shown(name).ok().and_then(|(values, _)| values.first().copied()).unwrap_or(f64::NAN);
-    let unit = |name: &str| best.column(name).map_or_else(String::new, |column| column.unit.clone());
-    let values = |pick: &dyn Fn(&str) -> f64| factors.iter().map(|name| pick(name)).collect::<Vec<f64>>();
-    Table { about: String::new(), columns: Vec::new() }
-        .texts_column("parameter", "", factors.iter().map(|name| (*name).to_owned()).collect())
-        .reals_column("value", "", "", values(&one))
-        .texts_column("unit", "", factors.iter().map(|name| unit(name)).collect())
-        .reals_column("others from", "", "", values(&|name| ends(name)[0]))
-        .reals_column("to", "", "", values(&|name| ends(name)[1]))
+/// One row per parameter: its value, what it is while no response differs, and whether the targets determine it.
+fn parameters(solution: &Artifact) -> Table {
+    let known = table(solution, "parameters");
+    let columns = ["factor", "value", "unit", "low", "high", "known"];
+    let columns = columns.iter().filter_map(|name| known.column(name).cloned()).collect();
+    Table { about: String::new(), columns }
 }
 
 /// A result without the table is shown as one with nothing in it.
@@ -127,6 +110,7 @@ pub(super) fn document(asked: &Asked, solution: &Artifact, verified: &[Arc<Artif
         "stage": asked.stage,
         "units": units,
         "solution": rows("solution").get(0),
+        "parameters": rows("parameters"),
         "prediction": rows("prediction"),
         "solution_set": rows("solution_set"),
         "verification": verified.iter().map(|found| rows_json(&table(found, "summary"))).collect::<Vec<_>>(),

@@ -10,7 +10,7 @@ use crate::law::Constants;
 use crate::neighbour::morton_order;
 use crate::particle::Clump;
 use crate::simd::{Quad, Same, Table, Width};
-use crate::space::{Space, Spin, Tuple, Vector};
+use crate::space::{Space, Spin, Tuple, Vector, flat};
 use std::collections::BTreeMap;
 
 /// A body of its own, in `bodies`.
@@ -238,18 +238,16 @@ fn numbering<S: Space>(model: &Model<S>) -> (Vec<u32>, Vec<u32>) {
             clump_of[id] = k as u32;
         }
     }
-    let coordinates =
-        |x: &Vector<S>| -> [f64; 3] { std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 }) };
-    let mut centres: Vec<[f64; 3]> = model.clumps.iter().map(|c| coordinates(&c.centre)).collect();
+    let mut centres: Vec<[f64; 3]> = model.clumps.iter().map(|c| flat::<S>(c.centre)).collect();
     let singles: Vec<u32> = (0..clump_of.len() as u32).filter(|&id| clump_of[id as usize] == NO_CLUMP).collect();
-    centres.extend(singles.iter().map(|&id| coordinates(&model.particles[id as usize].position)));
+    centres.extend(singles.iter().map(|&id| flat::<S>(model.particles[id as usize].position)));
     let mut caller = Vec::with_capacity(clump_of.len());
     for body in morton_order(&centres, S::DIMENSION) {
         match model.clumps.get(body as usize) {
             None => caller.push(singles[body as usize - model.clumps.len()]),
             Some(clump) => {
                 let pebbles: Vec<[f64; 3]> =
-                    clump.pebbles.iter().map(|&id| coordinates(&model.particles[id].position)).collect();
+                    clump.pebbles.iter().map(|&id| flat::<S>(model.particles[id].position)).collect();
                 let order = morton_order(&pebbles, S::DIMENSION);
                 caller.extend(order.iter().map(|&k| clump.pebbles[k as usize] as u32));
             }

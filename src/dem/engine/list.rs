@@ -10,7 +10,7 @@ use crate::body::position;
 use crate::contact::{Key, LawKind, Rank, Reader, Section, Writer};
 use crate::law::{KN, Memory, REFERENCE, bonded, fresh};
 use crate::neighbour::pairs;
-use crate::space::{Space, Tuple, Vector};
+use crate::space::{Space, Tuple, Vector, flat};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Ends of contacts by what they have in common, each list in order.
@@ -151,7 +151,7 @@ impl<S: Space> Engine<S> {
     /// Everything nearer than the margin.
     fn candidates(&self) -> Found {
         let n = self.caller.len();
-        let places: Vec<[f64; 3]> = (0..n).map(|p| coordinates::<S>(&position::<S>(&self.records, p))).collect();
+        let places: Vec<[f64; 3]> = (0..n).map(|p| flat::<S>(position::<S>(&self.records, p))).collect();
         let mut found = Found::new();
         let mut put = |key: Key| {
             let second = if key.at_wall { key.j } else { u32::from(key.image) };
@@ -179,7 +179,7 @@ impl<S: Space> Engine<S> {
         let n = places.len();
         let positions: Vec<Vector<S>> = (0..n).map(|p| position::<S>(&self.records, p)).collect();
         let images = cell.images_near(&positions, 2.0 * largest + self.margin);
-        places.extend(images.iter().map(|(_, _, y)| coordinates::<S>(y)));
+        places.extend(images.iter().map(|(_, _, y)| flat::<S>(*y)));
         let origins: Vec<usize> = (0..n).chain(images.iter().map(|&(p, ..)| p)).collect();
         let radii: Vec<f64> = origins.iter().map(|&p| self.radii[p]).collect();
         let bodies: Vec<u32> = origins.iter().map(|&p| self.bodies[p]).collect();
@@ -256,9 +256,4 @@ impl<S: Space> Engine<S> {
         let bodies = self.walls.iter().map(|w| w.face.point.minus(w.origin).norm()).fold(balls, f64::max);
         self.cell.as_ref().map_or(bodies, |cell| bodies + 0.5 * cell.travelled())
     }
-}
-
-/// Three coordinates, the third 0 in the plane.
-pub(super) fn coordinates<S: Space>(x: &Vector<S>) -> [f64; 3] {
-    std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })
 }

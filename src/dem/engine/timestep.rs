@@ -10,7 +10,7 @@
 use super::{Engine, Masses};
 use crate::body::position;
 use crate::law::{KN, REFERENCE, Rows};
-use crate::space::{Space, Tuple};
+use crate::space::{Space, Tuple, flat};
 
 /// Stiffness of one body along and about the axes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -155,9 +155,4 @@ impl<S: Space> Engine<S> {
 fn shortest_period(masses: &[[f64; 2]], stiffness: &[[f64; 2]]) -> f64 {
     let ratios = masses.iter().zip(stiffness).flat_map(|(m, k)| [(m[0], k[0]), (m[1], k[1])]);
     ratios.filter(|&(m, k)| m > 0.0 && k > 0.0).map(|(m, k)| m / k).fold(f64::INFINITY, f64::min).sqrt()
-}
-
-/// Three coordinates, the third 0 in the plane.
-fn flat<S: Space>(x: crate::space::Vector<S>) -> [f64; 3] {
-    std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })
 }

@@ -1,13 +1,12 @@
 //! Checks of a model: all faults at once.
 
 use super::Model;
-use super::list::coordinates;
 use crate::boundary::{Motion, MovingCell, Wall};
 use crate::error::{Fault, Faults};
 use crate::interaction::{Bond, BondStiffness, ContactTable, Interaction, Stiffness};
 use crate::neighbour::pairs;
 use crate::particle::Group;
-use crate::space::{Space, Tuple, Vector};
+use crate::space::{Space, Tuple, Vector, flat};
 use std::collections::BTreeMap;
 
 pub(super) const POSITIVE: &str = "a number above 0";
@@ -321,7 +320,7 @@ fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
             places.push(place);
         }
     }
-    let flat: Vec<[f64; 3]> = places.iter().map(coordinates::<S>).collect();
+    let flat: Vec<[f64; 3]> = places.iter().map(|&x| flat::<S>(x)).collect();
     let radii: Vec<f64> = origins.iter().map(|&p| model.particles[p].radius).collect();
     let bodies: Vec<u32> = origins.iter().map(|&p| body[p]).collect();
     let n = model.particles.len();

@@ -19,6 +19,7 @@
 
 use super::polygon::{AreaMoments, Polygon};
 use super::region::{Point, norm};
+use crate::space::{D2, Space, Vector};
 use math::elementary::{acos, atan2, sin_cos};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -33,19 +34,26 @@ pub enum ClumpMass {
     Polygon,
 }
 
-/// A rigid clump in the plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Clump {
+/// A rigid clump.
+#[derive(Clone, Debug)]
+pub struct Clump<S: Space = D2> {
     /// Index of its polygon.
     pub polygon: usize,
     /// Indices of the balls that became its pebbles, increasing.
     pub pebbles: Vec<usize>,
-    /// Mass (kg per metre of thickness).
+    /// Mass (kg; per metre of thickness in the plane).
     pub mass: f64,
-    /// Moment of inertia about the centre of mass (kg m² per metre of thickness).
-    pub inertia: f64,
+    /// Inertia about the centre of mass (kg m²); in the plane only `[2][2]`, per metre of thickness.
+    pub inertia: [[f64; 3]; 3],
     /// Centre of mass (m).
-    pub centre: Point,
+    pub centre: Vector<S>,
+}
+
+/// The inertia of a plane body of this moment.
+pub fn plane_inertia(moment: f64) -> [[f64; 3]; 3] {
+    let mut inertia = [[0.0; 3]; 3];
+    inertia[2][2] = moment;
+    inertia
 }
 
 /// The clumps that `polygons` cut out of the balls. A polygon with no ball centre in it makes no clump.
@@ -67,7 +75,7 @@ pub fn cut(polygons: &[Polygon], centres: &[Point], radii: &[f64], density: f64,
             polygon: index,
             pebbles,
             mass: density * moments.area,
-            inertia: density * moments.polar,
+            inertia: plane_inertia(density * moments.polar),
             centre: moments.centroid,
         });
     }
@@ -246,6 +254,6 @@ mod tests {
             1.0,
             ClumpMass::Polygon,
         );
-        close(whole[0].inertia, 1.0 / 6.0);
+        close(whole[0].inertia[2][2], 1.0 / 6.0);
     }
 }

@@ -1,19 +1,26 @@
-//! Specimen genesis: from a gradation and radii to a bonded, stress-free specimen.
+//! Specimen genesis, in the plane and in the solid: from sizes and radii to a stress-free specimen.
 //!
-//! * [`gradation`]: how many particles of aggregate of each size
-//! * [`polygon`]: random convex outlines; [`placement`]: their places without overlap
 //! * [`region`]: the outline of the specimen and the walls of its vessel
-//! * [`cloud`], [`relax`], [`packing`]: radii, rest state, dense packing; [`fabric`]: its contacts and stress
-//! * [`clump`]: balls inside a polygon as pebbles of a rigid body
-//! * [`specimen`]: all of it put together, with a report
+//! * [`sizes`]: radii and their number; [`cloud`]: the loose start; [`heap`]: what touches; [`relax`]: rest state
+//! * [`packing`]: to a porosity, to a stress ([`compress`]) or as a [`lattice`]; [`fabric`]: its contacts and stress
+//! * [`groups`]: minerals by their share
+//! * [`gradation`]: how many particles of aggregate of each size; [`polygon`]: random convex outlines; [`placement`]: their
+//!   places without overlap; [`clump`]: balls inside a polygon as pebbles of a rigid body (plane only)
+//! * [`specimen`]: all of it put together; [`quality`]: the report on it
 
 pub mod cloud;
 pub mod clump;
+pub mod compress;
 pub mod fabric;
 pub mod gradation;
+pub mod groups;
+pub mod heap;
+pub mod lattice;
 pub mod packing;
 pub mod placement;
 pub mod polygon;
+pub mod quality;
 pub mod region;
 pub mod relax;
+pub mod sizes;
 pub mod specimen;

@@ -10,6 +10,7 @@
 use super::gradation::SizeClass;
 use super::polygon::{Polygon, PolygonRecipe};
 use super::region::{Point, Region, norm};
+use crate::D2;
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -85,7 +86,7 @@ pub fn place(
                     size,
                     placed: placed.len(),
                     wanted: sizes.len(),
-                    area_fraction: area / region.area(),
+                    area_fraction: area / region.volume(),
                     attempts: placement.attempts,
                     gap: placement.gap,
                     wall_gap: placement.wall_gap,
@@ -127,7 +128,7 @@ fn try_once(
     let [width, height] = region.extent();
     let centre = [width * (stream.uniform() - 0.5), height * (stream.uniform() - 0.5)];
     let polygon = shape.moved(centre);
-    if polygon.vertices.iter().any(|&vertex| region.depth(vertex) < placement.wall_gap) {
+    if polygon.vertices.iter().any(|&vertex| region.depth::<D2>(vertex) < placement.wall_gap) {
         return None;
     }
     let reach = shape.reach();
@@ -168,7 +169,7 @@ mod tests {
         assert!((areas.iter().sum::<f64>() / circles - 1.0).abs() < 1e-12);
         assert!(areas.windows(2).all(|pair| pair[0] >= pair[1] * (1.0 - 1e-9)));
         for (k, a) in polygons.iter().enumerate() {
-            assert!(a.vertices.iter().all(|&v| SPECIMEN.depth(v) >= PLACEMENT.wall_gap));
+            assert!(a.vertices.iter().all(|&v| SPECIMEN.depth::<D2>(v) >= PLACEMENT.wall_gap));
             assert!(polygons[..k].iter().all(|b| a.distance(b) >= PLACEMENT.gap));
         }
     }

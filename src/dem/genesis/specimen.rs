@@ -1,29 +1,31 @@
-//! A specimen: packing and aggregate put together, with the report on its quality.
+//! A specimen: packing, groups and aggregate put together.
 //!
-//! The aggregate is placed first, the whole region is packed with mortar balls regardless of it, and the balls whose
-//! centres lie in a polygon become the pebbles of its clump. So the grain of the aggregate's surface is that of the
-//! mortar, and no ball is squeezed against a smooth face. N of eq. (4) counts balls before clumps.
+//! The aggregate (plane only) is placed first, the whole region is packed with balls regardless of it, and the balls whose
+//! centres lie in a polygon become the pebbles of its clump. So the grain of the aggregate's surface is that of the mortar,
+//! and no ball is squeezed against a smooth face. N of eq. (4) counts balls before clumps.
 //!
 //! The specimen is **stress-free**: whatever is built on it takes the gaps of the packing as reference gaps, so that
 //! the overlaps of the packing (their mean stress is in the report) carry no load. No load is locked in, and nothing
 //! has to relax when the vessel is taken away.
 //!
-//! Seeds: aggregate and packing have streams of their own, so another polygon recipe keeps the packing.
+//! Seeds: aggregate, packing and groups have streams of their own, so another polygon recipe keeps the packing.
 
-use super::cloud::ball_area;
 use super::clump::{Clump, ClumpMass, cut};
-use super::fabric::Fabric;
-use super::gradation::{Gradation, GradationError};
-use super::packing::{Packed, Packing, PackingError};
+use super::gradation::{Gradation, GradationError, SizeClass};
+use super::groups::{GroupError, Share, assign, group_faults};
+use super::heap::Heap;
+use super::packing::{Packing, PackingError};
 use super::placement::{DoesNotFit, Placement, place};
 use super::polygon::{Polygon, PolygonError, PolygonRecipe};
-use super::region::{Point, Region};
-use super::relax::Heap;
+use super::quality::{Circles, Quality};
+use super::region::Region;
 use crate::Watch;
+use crate::particle::Group;
+use crate::space::{D2, Space, Vector, flat};
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
-/// Aggregate of a specimen.
+/// Aggregate of a plane specimen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Aggregate {
     /// Sizes.
@@ -38,104 +40,44 @@ pub struct Aggregate {
     pub density: f64,
     /// What mass and inertia are computed from.
     pub mass: ClumpMass,
+    /// Name of its particles' group.
+    pub group: String,
 }
 
 /// All that decides a specimen besides its seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
-    /// Outline.
+    /// Outline; it decides whether the specimen is plane or solid.
     pub region: Region,
-    /// Packing of the mortar balls.
+    /// Packing of the balls.
     pub packing: Packing,
-    /// Density of the mortar balls (kg/m³).
+    /// Density of the balls (kg/m³).
     pub density: f64,
+    /// Groups of the balls that are no aggregate, by their share of the volume.
+    pub groups: Vec<Share>,
     /// Aggregate, if any.
     pub aggregate: Option<Aggregate>,
 }
 
-/// A plane specimen, stress-free as it stands.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Specimen {
+/// A specimen, stress-free as it stands.
+#[derive(Clone, Debug)]
+pub struct Specimen<S: Space = D2> {
     /// Outline; the origin is its centre.
     pub region: Region,
     /// Centres of the balls (m).
-    pub centres: Vec<Point>,
+    pub centres: Vec<Vector<S>>,
     /// Radii (m).
     pub radii: Vec<f64>,
-    /// Density of the mortar balls (kg/m³).
+    /// Group of every ball, pebbles included.
+    pub groups: Vec<Group>,
+    /// Names of the groups, by their numbers; that of the aggregate last, where there is any.
+    pub group_names: Vec<String>,
+    /// Density of the balls that are no pebbles (kg/m³).
     pub density: f64,
     /// Outlines of the aggregate, largest first.
     pub polygons: Vec<Polygon>,
     /// Rigid clumps.
-    pub clumps: Vec<Clump>,
-}
-
-/// The numbers by which a specimen is judged.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Quality {
-    /// Balls, pebbles included.
-    pub balls: usize,
-    /// Mean radius (m).
-    pub mean_radius: f64,
-    /// Smallest and largest radius (m).
-    pub radius_range: [f64; 2],
-    /// Mean radius over the one asked for, which gives way to N and the porosity.
-    pub radius_factor: f64,
-    /// 1 − Σ π R² / area, overlaps counted twice.
-    pub porosity: f64,
-    /// Contacts, overlaps, stress of the packing.
-    pub fabric: Fabric,
-    /// Rounds of enlarging floaters.
-    pub floater_rounds: usize,
-    /// Largest factor on a floater's radius.
-    pub floater_growth: f64,
-    /// Mean unbalanced force over mean contact force of the packing.
-    pub unbalanced: f64,
-    /// Narrowest extent over the mean diameter.
-    pub particles_across: f64,
-    /// Contacts between mortar balls, between mortar and clumps, between clumps.
-    pub contacts: [usize; 3],
-    /// Area of the aggregate's size circles over the region's.
-    pub circle_fraction: f64,
-    /// Area of the polygons over the region's.
-    pub polygon_fraction: f64,
-    /// Area of the pebbles (overlaps counted twice) over Σ π R².
-    pub pebble_fraction: f64,
-    /// Polygons placed.
-    pub polygons: usize,
-    /// Polygons too small to hold a ball centre.
-    pub empty_polygons: usize,
-}
-
-/// A specimen that can be made but should be read with care.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum SpecimenWarning {
-    /// Coarse.
-    #[error(
-        "only {0:.1} particles across the specimen; below 10 results are meaningless, 30 are advised for strengths: reduce the mean radius"
-    )]
-    FewAcross(f64),
-    /// Few balls.
-    #[error("only {0} balls; peak stress is stable from about 2000 on: reduce the mean radius")]
-    FewBalls(usize),
-    /// Aggregate lost.
-    #[error(
-        "{empty} of {polygons} polygons hold no ball and are left out: reduce the mean radius or drop the smallest class"
-    )]
-    EmptyPolygons {
-        /// Polygons without a ball centre.
-        empty: usize,
-        /// All polygons.
-        polygons: usize,
-    },
-    /// Floaters left.
-    #[error("{floaters} balls have fewer than 3 contacts after {rounds} rounds of enlarging them")]
-    Floaters {
-        /// Balls left floating.
-        floaters: usize,
-        /// Rounds spent.
-        rounds: usize,
-    },
+    pub clumps: Vec<Clump<S>>,
 }
 
 /// Why a specimen cannot be made.
@@ -153,6 +95,9 @@ pub enum SpecimenError {
     /// Placement.
     #[error(transparent)]
     Placement(#[from] DoesNotFit),
+    /// Groups.
+    #[error(transparent)]
+    Groups(#[from] GroupError),
     /// A number outside its range.
     #[error("specimen: {name} is {found}; it must be {expected}")]
     Value {
@@ -163,29 +108,55 @@ pub enum SpecimenError {
         /// What it must be.
         expected: &'static str,
     },
+    /// Polygons in a solid.
+    #[error(
+        "specimen: aggregate is made of polygons and needs a plane outline (a rectangle or a disc), not a solid one"
+    )]
+    SolidAggregate,
+    /// Aggregate that rounds to nothing.
+    #[error(
+        "aggregate: every size class rounds to no particle at all (the fullest would hold {fullest:.2}); raise the content, take \
+         smaller sizes or a larger specimen, or leave the aggregate out"
+    )]
+    NoAggregate {
+        /// Largest expected number of particles in a class.
+        fullest: f64,
+    },
+    /// Aggregate larger than the specimen.
+    #[error(
+        "aggregate: particles of {size:.3e} m with {gap:.3e} m to the walls do not fit into a specimen {narrowest:.3e} m across"
+    )]
+    LargeAggregate {
+        /// Largest diameter (m).
+        size: f64,
+        /// Least distance to the walls (m).
+        gap: f64,
+        /// Smallest extent of the specimen (m).
+        narrowest: f64,
+    },
+    /// More polygons than can be placed.
+    #[error("aggregate: {0:.3e} particles are too many; at most {MOST_POLYGONS:e} are placed: take larger sizes")]
+    ManyAggregate(f64),
 }
+
+/// Most polygons that are placed.
+pub const MOST_POLYGONS: f64 = 1e5;
 
 impl Recipe {
     /// All that can be found wrong without making the specimen.
     pub fn faults(&self) -> Vec<SpecimenError> {
-        let mut faults: Vec<SpecimenError> = self.packing.faults(&self.region).into_iter().map(Into::into).collect();
-        let mut need = |ok: bool, name, found, expected| {
-            if !ok {
-                faults.push(SpecimenError::Value { name, found, expected });
-            }
+        let packing = match self.region.dimension() {
+            2 => self.packing.faults::<D2>(&self.region),
+            _ => self.packing.faults::<crate::D3>(&self.region),
         };
-        need(self.density > 0.0, "density", self.density, "positive");
-        if let Some(aggregate) = &self.aggregate {
-            let placement = &aggregate.placement;
-            need(aggregate.density > 0.0, "aggregate density", aggregate.density, "positive");
-            need(placement.gap >= 0.0, "aggregate gap", placement.gap, "a length of at least 0");
-            need(placement.wall_gap >= 0.0, "aggregate wall gap", placement.wall_gap, "a length of at least 0");
-            need(placement.attempts > 0, "attempts", 0.0, "at least 1");
-            faults.extend(aggregate.polygons.faults().into_iter().map(SpecimenError::from));
-            if let Err(bad) = aggregate.gradation.classes(&aggregate.classes, self.region.area()) {
-                faults.extend(bad.into_iter().map(SpecimenError::from));
-            }
+        let mut faults: Vec<SpecimenError> = packing.into_iter().map(Into::into).collect();
+        if !(self.density > 0.0) {
+            faults.push(SpecimenError::Value { name: "density", found: self.density, expected: "positive" });
         }
+        let aggregate = self.aggregate.as_ref();
+        let name = aggregate.map(|aggregate| aggregate.group.as_str());
+        faults.extend(group_faults(&self.groups, name).into_iter().map(SpecimenError::from));
+        faults.extend(aggregate.into_iter().flat_map(|aggregate| aggregate.faults(&self.region)));
         faults
     }
 
@@ -194,40 +165,111 @@ impl Recipe {
     ///
     /// # Errors
     /// All faults of the recipe, or the one reason why aggregate or packing came to nothing.
-    pub fn make(&self, seed: u64, watch: &dyn Fn() -> Watch) -> Result<(Specimen, Quality), Vec<SpecimenError>> {
+    pub fn make<S: Space>(
+        &self,
+        seed: u64,
+        watch: &dyn Fn() -> Watch,
+    ) -> Result<(Specimen<S>, Quality), Vec<SpecimenError>> {
         let faults = self.faults();
         if !faults.is_empty() {
             return Err(faults);
         }
         let (polygons, circles) = self.place_aggregate(seed)?;
-        let packed = self
-            .packing
-            .pack(&self.region, &mut Stream::new(seed, "packing", 0), watch)
-            .map_err(|error| vec![error.into()])?;
+        let stream = &mut Stream::new(seed, "packing", 0);
+        let packed = self.packing.pack::<S>(&self.region, stream, watch).map_err(|error| vec![error.into()])?;
         let clumps = self.aggregate.as_ref().map_or_else(Vec::new, |aggregate| {
-            cut(&polygons, &packed.heap.centres, &packed.heap.radii, aggregate.density, aggregate.mass)
+            let centres: Vec<[f64; 2]> = packed.heap.centres.iter().map(|&x| plane::<S>(x)).collect();
+            let clumps = cut(&polygons, &centres, &packed.heap.radii, aggregate.density, aggregate.mass);
+            clumps.into_iter().map(solid).collect()
         });
-        let quality = Quality::of(&packed, &polygons, &clumps, circles);
+        let mut groups = assign::<S>(&self.groups, &packed.heap.radii, &mut Stream::new(seed, "groups", 0));
+        let pebbles = clumps.iter().flat_map(|clump: &Clump<S>| &clump.pebbles);
+        pebbles.for_each(|&pebble| groups[pebble] = Group(self.groups.len() as u8));
+        let names = self.groups.iter().map(|group| &group.name).chain(self.aggregate.iter().map(|a| &a.group));
+        let group_names = names.cloned().collect();
+        let quality = Quality::of(&packed, &polygons, &clumps, &circles);
         let Heap { region, centres, radii } = packed.heap;
-        Ok((Specimen { region, centres, radii, density: self.density, polygons, clumps }, quality))
+        let density = self.density;
+        Ok((Specimen { region, centres, radii, groups, group_names, density, polygons, clumps }, quality))
     }
 
-    /// The polygons and the total area of their size circles (m²).
-    fn place_aggregate(&self, seed: u64) -> Result<(Vec<Polygon>, f64), Vec<SpecimenError>> {
-        let Some(aggregate) = &self.aggregate else { return Ok((Vec::new(), 0.0)) };
-        let as_list = |faults: Vec<GradationError>| faults.into_iter().map(SpecimenError::from).collect::<Vec<_>>();
-        let classes = aggregate.gradation.classes(&aggregate.classes, self.region.area()).map_err(as_list)?;
+    /// The polygons, and the circles of their sizes.
+    fn place_aggregate(&self, seed: u64) -> Result<(Vec<Polygon>, Circles), Vec<SpecimenError>> {
+        let Some(aggregate) = &self.aggregate else { return Ok((Vec::new(), Circles::default())) };
+        let classes = aggregate.size_classes(&self.region)?;
         let stream = &mut Stream::new(seed, "aggregate", 0);
         let polygons = place(&classes, &aggregate.polygons, &aggregate.placement, &self.region, stream)
             .map_err(|error| vec![error.into()])?;
         let circle = |d: f64| std::f64::consts::FRAC_PI_4 * d * d;
-        let circles = classes.iter().map(|class| class.count as f64 * circle(class.middle())).sum();
-        Ok((polygons, circles))
+        let area = classes.iter().map(|class| class.count as f64 * circle(class.middle())).sum();
+        Ok((polygons, Circles { area, empty_classes: classes.iter().filter(|class| class.count == 0).count() }))
     }
 }
 
-impl Specimen {
-    /// The clump of every ball, none for mortar.
+impl Aggregate {
+    fn size_classes(&self, region: &Region) -> Result<Vec<SizeClass>, Vec<SpecimenError>> {
+        let classes = self.gradation.classes(&self.classes, region.volume());
+        classes.map_err(|faults| faults.into_iter().map(SpecimenError::from).collect())
+    }
+
+    fn faults(&self, region: &Region) -> Vec<SpecimenError> {
+        if region.dimension() != 2 {
+            return vec![SpecimenError::SolidAggregate];
+        }
+        let mut faults = Vec::new();
+        let mut need = |ok: bool, name, found, expected| {
+            if !ok {
+                faults.push(SpecimenError::Value { name, found, expected });
+            }
+        };
+        let placement = &self.placement;
+        need(self.density > 0.0, "aggregate density", self.density, "positive");
+        need(placement.gap >= 0.0, "aggregate gap", placement.gap, "a length of at least 0");
+        need(placement.wall_gap >= 0.0, "aggregate wall gap", placement.wall_gap, "a length of at least 0");
+        need(placement.attempts > 0, "attempts", 0.0, "at least 1");
+        faults.extend(self.polygons.faults().into_iter().map(SpecimenError::from));
+        match self.size_classes(region) {
+            Err(bad) => faults.extend(bad),
+            Ok(classes) => faults.extend(self.number_fault(&classes, region)),
+        }
+        faults
+    }
+
+    /// Particles that are none, too many, or too large for the region. Of a class, the middle size is the one that is
+    /// placed (the smallest, where sizes are drawn).
+    fn number_fault(&self, classes: &[SizeClass], region: &Region) -> Option<SpecimenError> {
+        let count: f64 = classes.iter().map(|class| class.count as f64).sum();
+        if count == 0.0 {
+            let share = |class: &SizeClass| self.gradation.passing(class.high) - self.gradation.passing(class.low);
+            let circle = |d: f64| std::f64::consts::FRAC_PI_4 * d * d;
+            let expected = classes.iter().map(|class| share(class) * region.volume() / circle(class.middle()));
+            return Some(SpecimenError::NoAggregate { fullest: expected.fold(0.0, f64::max) });
+        }
+        if count > MOST_POLYGONS {
+            return Some(SpecimenError::ManyAggregate(count));
+        }
+        let (gap, narrowest) = (self.placement.wall_gap, region.narrowest());
+        let size = classes.iter().filter(|class| class.count > 0).map(SizeClass::middle).fold(0.0, f64::max);
+        (size + 2.0 * gap > narrowest).then_some(SpecimenError::LargeAggregate { size, gap, narrowest })
+    }
+}
+
+/// The first two coordinates.
+fn plane<S: Space>(x: Vector<S>) -> [f64; 2] {
+    let [x, y, _] = flat::<S>(x);
+    [x, y]
+}
+
+/// A plane clump in this space.
+fn solid<S: Space>(clump: Clump) -> Clump<S> {
+    use crate::space::Tuple;
+    let Clump { polygon, pebbles, mass, inertia, centre } = clump;
+    let centre = Vector::<S>::build(|k| if k < 2 { centre[k] } else { 0.0 });
+    Clump { polygon, pebbles, mass, inertia, centre }
+}
+
+impl<S: Space> Specimen<S> {
+    /// The clump of every ball, none for the others.
     pub fn clump_of_balls(&self) -> Vec<Option<usize>> {
         clump_of_balls(self.radii.len(), &self.clumps)
     }
@@ -238,55 +280,8 @@ impl Specimen {
     }
 }
 
-impl Quality {
-    fn of(packed: &Packed, polygons: &[Polygon], clumps: &[Clump], circles: f64) -> Self {
-        let Heap { region, radii, .. } = &packed.heap;
-        let (area, all) = (region.area(), ball_area(radii));
-        let mean_radius = radii.iter().sum::<f64>() / radii.len() as f64;
-        let bounds = |(low, high): (f64, f64), &r: &f64| (low.min(r), high.max(r));
-        let (smallest, largest) = radii.iter().fold((f64::INFINITY, 0.0), bounds);
-        let pebbles: Vec<f64> = clumps.iter().flat_map(|clump| &clump.pebbles).map(|&i| radii[i]).collect();
-        Self {
-            balls: radii.len(),
-            mean_radius,
-            radius_range: [smallest, largest],
-            radius_factor: packed.radius_factor,
-            porosity: 1.0 - all / area,
-            fabric: Fabric::of(&packed.heap),
-            floater_rounds: packed.floater_rounds,
-            floater_growth: packed.floater_growth,
-            unbalanced: packed.unbalanced,
-            particles_across: region.narrowest() / (2.0 * mean_radius),
-            contacts: contacts_by_kind(&packed.heap, clumps),
-            circle_fraction: circles / area,
-            polygon_fraction: polygons.iter().fold(0.0, |sum, p| sum + p.moments().area) / area,
-            pebble_fraction: ball_area(&pebbles) / all,
-            polygons: polygons.len(),
-            empty_polygons: polygons.len() - clumps.len(),
-        }
-    }
-
-    /// What should be known before results on the specimen are believed.
-    pub fn warnings(&self) -> Vec<SpecimenWarning> {
-        let mut warnings = Vec::new();
-        if self.particles_across < 10.0 {
-            warnings.push(SpecimenWarning::FewAcross(self.particles_across));
-        }
-        if self.balls < 2000 {
-            warnings.push(SpecimenWarning::FewBalls(self.balls));
-        }
-        if self.empty_polygons > 0 {
-            warnings.push(SpecimenWarning::EmptyPolygons { empty: self.empty_polygons, polygons: self.polygons });
-        }
-        if self.fabric.floaters > 0 {
-            let (floaters, rounds) = (self.fabric.floaters, self.floater_rounds);
-            warnings.push(SpecimenWarning::Floaters { floaters, rounds });
-        }
-        warnings
-    }
-}
-
-fn clump_of_balls(balls: usize, clumps: &[Clump]) -> Vec<Option<usize>> {
+/// The clump of every one of `balls`.
+pub(super) fn clump_of_balls<S: Space>(balls: usize, clumps: &[Clump<S>]) -> Vec<Option<usize>> {
     let mut of = vec![None; balls];
     for (index, clump) in clumps.iter().enumerate() {
         for &pebble in &clump.pebbles {
@@ -296,83 +291,5 @@ fn clump_of_balls(balls: usize, clumps: &[Clump]) -> Vec<Option<usize>> {
     of
 }
 
-/// Contacts mortar–mortar, mortar–clump, clump–clump; those inside a clump are none.
-fn contacts_by_kind(heap: &Heap, clumps: &[Clump]) -> [usize; 3] {
-    let of = clump_of_balls(heap.radii.len(), clumps);
-    let mut counts = [0; 3];
-    for (i, j) in heap.pairs(0.0) {
-        match (of[i], of[j]) {
-            (None, None) => counts[0] += 1,
-            (Some(a), Some(b)) if a != b => counts[2] += 1,
-            (Some(_), Some(_)) => {}
-            _ => counts[1] += 1,
-        }
-    }
-    counts
-}
-
 #[cfg(test)]
-mod tests {
-    use super::super::placement::ClassSize;
-    use super::super::polygon::{AngleLaw, SizeRule};
-    use super::*;
-
-    fn recipe() -> Recipe {
-        Recipe {
-            region: Region::Rectangle { width: 0.1, height: 0.2 },
-            packing: Packing { porosity: 0.12, mean_radius: 1.6e-3, ratio: 2.5, floaters: 0.0 },
-            density: 2000.0,
-            aggregate: Some(Aggregate {
-                gradation: Gradation::Walraven { content: 0.75, max_size: 0.015 },
-                classes: vec![0.005, 0.007, 0.009, 0.011, 0.013, 0.015],
-                polygons: PolygonRecipe {
-                    min_vertices: 4,
-                    max_vertices: 6,
-                    size: SizeRule::EqualArea,
-                    angles: AngleLaw::Jittered,
-                    least_fill: 0.05,
-                },
-                placement: Placement { gap: 0.5e-3, wall_gap: 1e-3, attempts: 10_000, class_size: ClassSize::Middle },
-                density: 2650.0,
-                mass: ClumpMass::Union,
-            }),
-        }
-    }
-
-    #[test]
-    fn a_specimen_reports_its_own_numbers() {
-        let (specimen, quality) = recipe().make(1, &|| Watch::Continue).unwrap();
-        assert_eq!(quality.balls, 2188);
-        assert!((quality.porosity - 0.12).abs() < 1e-12);
-        assert!((quality.circle_fraction - 0.2887).abs() < 1e-4, "{}", quality.circle_fraction);
-        assert!((quality.polygon_fraction - 0.2887).abs() < 1e-4);
-        assert!((quality.pebble_fraction - 0.2887).abs() < 0.03, "{}", quality.pebble_fraction);
-        let pairs: usize = quality.contacts.iter().sum();
-        assert!(quality.contacts.iter().all(|&n| n > 0) && 2 * pairs < (quality.fabric.coordination * 2188.0) as usize);
-        let mass: f64 = specimen.clumps.iter().map(|clump| clump.mass).sum();
-        assert!(mass > 0.8 * 0.2887 * 0.02 * 2650.0 && mass < 0.2887 * 0.02 * 2650.0 * 1.05, "{mass}");
-        assert!(quality.warnings().iter().all(|w| matches!(w, SpecimenWarning::EmptyPolygons { .. })));
-    }
-
-    #[test]
-    fn the_aggregate_does_not_change_the_packing() {
-        let plain = Recipe { aggregate: None, ..recipe() };
-        let ((with, _), (without, quality)) =
-            (recipe().make(3, &|| Watch::Continue).unwrap(), plain.make(3, &|| Watch::Continue).unwrap());
-        assert_eq!(with.centres, without.centres);
-        assert!(without.clumps.is_empty() && quality.polygon_fraction == 0.0 && quality.pebble_fraction == 0.0);
-        assert_eq!(quality.contacts[1..], [0, 0]);
-    }
-
-    #[test]
-    fn faults_of_all_parts_come_together() {
-        let mut bad = recipe();
-        bad.density = -1.0;
-        bad.packing.porosity = 2.0;
-        if let Some(aggregate) = &mut bad.aggregate {
-            aggregate.polygons.min_vertices = 1;
-            aggregate.gradation = Gradation::Walraven { content: 2.0, max_size: 0.015 };
-        }
-        assert_eq!(bad.make(1, &|| Watch::Continue).unwrap_err().len(), 4);
-    }
-}
+mod tests;

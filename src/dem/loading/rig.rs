@@ -6,7 +6,7 @@
 use super::material::Material;
 use crate::genesis::region::Point;
 use crate::genesis::specimen::Specimen;
-use crate::{Clump, D2, Engine, Faults, Group, Masses, Model, Particle, Settings, Wall};
+use crate::{Clump, D2, Engine, Faults, Masses, Model, Particle, Settings, Wall};
 use serde::{Deserialize, Serialize};
 
 /// What the machine adds to the physics: damping, masses, share of the critical time step.
@@ -38,9 +38,7 @@ pub fn mount(
     machine: &Machine,
     seed: u64,
 ) -> Result<Engine<D2>, Faults> {
-    let of = specimen.clump_of_balls();
-    let group = |i: usize| Group(u8::from(of[i].is_some()));
-    let ball = |i: usize| Particle::ball(specimen.centres[i], specimen.radii[i], specimen.density, group(i));
+    let ball = |i: usize| Particle::ball(specimen.centres[i], specimen.radii[i], specimen.density, specimen.groups[i]);
     let [width, height] = specimen.region.extent();
     let model = Model {
         particles: (0..specimen.radii.len()).map(ball).collect(),
@@ -62,15 +60,13 @@ pub fn mount(
 }
 
 fn clump(clump: &crate::genesis::clump::Clump) -> Clump<D2> {
-    let mut inertia = [[0.0; 3]; 3];
-    inertia[2][2] = clump.inertia;
     Clump {
         pebbles: clump.pebbles.clone(),
         centre: clump.centre,
         velocity: [0.0; 2],
         spin: [0.0],
         mass: clump.mass,
-        inertia,
+        inertia: clump.inertia,
     }
 }
 

@@ -3,11 +3,12 @@
 use super::drive::{Loading, TestError, TestFailure, TestKind, TestRecord};
 use super::material::{Contact, Material};
 use super::uniaxial::{between_platens, platens};
+use crate::genesis::groups::Share;
 use crate::genesis::packing::Packing;
 use crate::genesis::region::Region;
 use crate::genesis::specimen::{Recipe, Specimen};
 use crate::measure::{self, stress};
-use crate::{D2, Faults, Watch};
+use crate::{D2, Faults, Group, Watch};
 
 fn material(modulus: f64, ratio: f64, strength: f64) -> Material {
     let contact = Contact::bonded("rock", modulus, ratio, [strength; 2], 0.5);
@@ -28,12 +29,15 @@ fn hexagon(columns: usize, rows: usize) -> Specimen {
     }
     let radii = vec![1.0; centres.len()];
     let region = Region::Rectangle { width, height };
-    Specimen { region, centres, radii, density: 2000.0, polygons: Vec::new(), clumps: Vec::new() }
+    let (groups, group_names) = (vec![Group(0); radii.len()], vec!["mortar".to_owned()]);
+    let (polygons, clumps) = (Vec::new(), Vec::new());
+    Specimen { region, centres, radii, groups, group_names, density: 2000.0, polygons, clumps }
 }
 
 fn random(region: Region, mean_radius: f64) -> Specimen {
-    let packing = Packing { porosity: 0.12, mean_radius, ratio: 2.5, floaters: 0.0 };
-    Recipe { region, packing, density: 2000.0, aggregate: None }.make(1, &|| Watch::Continue).unwrap().0
+    let packing = Packing::uniform(0.12, mean_radius, 2.5);
+    let groups = vec![Share { name: "mortar".to_owned(), share: 1.0 }];
+    Recipe { region, packing, density: 2000.0, groups, aggregate: None }.make(1, &|| Watch::Continue).unwrap().0
 }
 
 fn small() -> Specimen {

@@ -2,7 +2,7 @@
 
 use crate::contact::{Contact, Other};
 use crate::engine::Engine;
-use crate::space::{Space, Tuple};
+use crate::space::{Space, Tuple, Vector};
 
 /// Contacts and bonds per body (a clump is one body).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,17 +42,43 @@ pub fn coordination<S: Space>(engine: &Engine<S>) -> Coordination {
 
 /// Fabric tensor: mean of n_a n_b over the active contacts between bodies, row by row; zero where nothing touches.
 pub fn fabric<S: Space>(engine: &Engine<S>) -> [[f64; 3]; 3] {
-    let mut sum = [[0.0; 3]; 3];
-    let mut count = 0.0;
-    for contact in engine.contacts().filter(|c| c.active && matches!(c.other, Other::Particle(_))) {
+    let between = |c: &Contact<S>| c.active && matches!(c.other, Other::Particle(_));
+    mean_dyad::<S>(engine.contacts().filter(between).map(|contact| contact.normal))
+}
+
+/// Mean of n_a n_b, row by row; zero for none.
+pub(crate) fn mean_dyad<S: Space>(normals: impl Iterator<Item = Vector<S>>) -> [[f64; 3]; 3] {
+    let (mut dyads, mut count) = (Dyads::<S>::default(), 0.0);
+    for normal in normals {
         count += 1.0;
-        for a in 0..S::DIMENSION {
-            for b in 0..S::DIMENSION {
-                sum[a][b] += contact.normal.at(a) * contact.normal.at(b);
+        dyads.add(normal, normal);
+    }
+    if count > 0.0 { dyads.sum.map(|row| row.map(|x| x / count)) } else { dyads.sum }
+}
+
+/// A sum of dyads a_i b_j.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dyads<S: Space> {
+    /// Row by row; the third row and column are 0 in the plane.
+    pub(crate) sum: [[f64; 3]; 3],
+    space: std::marker::PhantomData<S>,
+}
+
+impl<S: Space> Default for Dyads<S> {
+    fn default() -> Self {
+        Self { sum: [[0.0; 3]; 3], space: std::marker::PhantomData }
+    }
+}
+
+impl<S: Space> Dyads<S> {
+    /// Adds one.
+    pub(crate) fn add(&mut self, a: Vector<S>, b: Vector<S>) {
+        for i in 0..S::DIMENSION {
+            for j in 0..S::DIMENSION {
+                self.sum[i][j] += a.at(i) * b.at(j);
             }
         }
     }
-    if count > 0.0 { sum.map(|row| row.map(|x| x / count)) } else { sum }
 }
 
 /// The force between two particles that touch or are bonded.

@@ -12,5 +12,6 @@ pub use cracks::{Crack, Mode};
 pub(crate) use energy::stored;
 pub use energy::{Energy, energy};
 pub use fabric::{Coordination, Link, coordination, fabric, links};
+pub(crate) use fabric::{Dyads, mean_dyad};
 pub use strain::{displacement_gradient, velocity_gradient};
 pub use stress::{Region, cell_stress, stress};

@@ -3,6 +3,7 @@
 //!
 //! A contact counts when its point is in the region. V is the whole region, voids included.
 
+use super::fabric::Dyads;
 use crate::contact::Other;
 use crate::engine::Engine;
 use crate::space::{Space, Tuple, Vector};
@@ -58,24 +59,17 @@ pub fn stress<S: Space>(engine: &Engine<S>, region: &Region<S>) -> [[f64; 3]; 3]
 
 /// −Σ f_a (x_c − X)_b over the contacts whose point is wanted, N·m.
 fn virial<S: Space>(engine: &Engine<S>, wanted: impl Fn(Vector<S>) -> bool) -> [[f64; 3]; 3] {
-    let mut sum = [[0.0; 3]; 3];
+    let mut dyads = Dyads::<S>::default();
     let centre = |particle: usize| match engine.clump_of(particle) {
         Some(clump) => engine.clump_centre(clump),
         None => engine.position(particle),
     };
-    let mut add = |force: Vector<S>, arm: Vector<S>| {
-        for a in 0..S::DIMENSION {
-            for b in 0..S::DIMENSION {
-                sum[a][b] -= force.at(a) * arm.at(b);
-            }
-        }
-    };
     for contact in engine.contacts().filter(|c| c.active && wanted(c.point)) {
         let force = contact.force();
-        add(force, contact.point.minus(centre(contact.particle)));
+        dyads.add(force.times(-1.0), contact.point.minus(centre(contact.particle)));
         if let Other::Particle(second) = contact.other {
-            add(force.times(-1.0), contact.point.minus(centre(second).plus(contact.shift)));
+            dyads.add(force, contact.point.minus(centre(second).plus(contact.shift)));
         }
     }
-    sum
+    dyads.sum
 }

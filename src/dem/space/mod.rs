@@ -237,3 +237,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
 pub type Vector<S> = <S as Space>::Vector<f64>;
 /// Spin or moment of numbers.
 pub type Spin<S> = <S as Space>::Spin<f64>;
+
+/// Three coordinates, the third 0 in the plane.
+pub(crate) fn flat<S: Space>(x: Vector<S>) -> [f64; 3] {
+    std::array::from_fn(|k| if k < S::DIMENSION { x.at(k) } else { 0.0 })
+}

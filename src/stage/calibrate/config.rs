@@ -2,10 +2,10 @@
 
 use super::curve::Curve;
 use super::goal::Goal;
-use super::names::Names;
 use super::params::{FactorParam, Params};
 use super::slope::Slope;
 use crate::artifact::Artifact;
+use crate::stage::figure::Names;
 use crate::stage::{Context, Scale, StageError};
 use crate::unit::Unit;
 use optim::misfit::{Denominator, Form};

@@ -6,11 +6,11 @@
 //! misfit `sum` is the mean relative error of the curve.
 
 use super::goal::Wanted;
-use super::names::Names;
 use super::params::{ORDINATE, TargetParam};
 use crate::artifact::results::Results;
 use crate::artifact::{Artifact, Table};
 use crate::stage::StageError;
+use crate::stage::figure::Names;
 use optim::misfit::{Form, ordinates};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn the_rising_branch_is_divided_evenly_and_read_in_si() {
-        let curve = Curve { of: Names::one("measured"), points: Some(4), ..Curve::default() };
+        let curve = Curve { of: Names::One("measured".into()), points: Some(4), ..Curve::default() };
         let found = points(&curve.targets(Some(&measured()), Form::Sum).unwrap());
         let wanted = [(0.0005, 0.2, 0.25), (0.001, 0.4, 0.25), (0.0015, 0.5, 0.25), (0.002, 0.6, 0.25)];
         let near = |(a, b): (&(f64, f64, f64), &(f64, f64, f64))| {
@@ -210,8 +210,12 @@ mod tests {
 
     #[test]
     fn given_strains_and_weights_by_stress_are_taken() {
-        let curve =
-            Curve { of: Names::one("measured"), at: vec![0.001, 0.002], weights: Weights::Stress, ..Curve::default() };
+        let curve = Curve {
+            of: Names::One("measured".into()),
+            at: vec![0.001, 0.002],
+            weights: Weights::Stress,
+            ..Curve::default()
+        };
         let found = points(&curve.targets(Some(&measured()), Form::Sum).unwrap());
         assert!((found[0].2 - 0.4).abs() < 1e-12 && (found[1].2 - 0.6).abs() < 1e-12, "{found:?}");
         let beyond = Curve { at: vec![0.005], ..curve };
@@ -221,9 +225,9 @@ mod tests {
     #[test]
     fn faults_say_what_is_missing() {
         assert_eq!(Curve::default().faults(), ["no curve is given: name a data stage with `of`"]);
-        let curve = Curve { of: Names::one("m"), strain: vec![0.1], ..Curve::default() };
+        let curve = Curve { of: Names::One("m".into()), strain: vec![0.1], ..Curve::default() };
         assert_eq!(curve.faults(), ["1 strains but 0 stresses", "either `of` or `strain` and `stress`, not both"]);
-        let named = Curve { of: Names::one("m"), columns: Some(["e".into(), "s".into()]), ..Curve::default() };
+        let named = Curve { of: Names::One("m".into()), columns: Some(["e".into(), "s".into()]), ..Curve::default() };
         let error = named.targets(Some(&measured()), Form::Sum).unwrap_err();
         assert_eq!(error.hint.as_deref(), Some("the columns are strain, stress; name them with `columns`"));
     }

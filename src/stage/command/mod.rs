@@ -136,7 +136,7 @@ impl Stage for Command {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { varies: true, ..Sketch::default() }
+        Sketch { material: self.material.clone(), varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -1,5 +1,6 @@
 //! The table of a `design` stage: `method`, the options of every method, and which of them go together.
 
+use super::valid::InvalidRows;
 use crate::stage::{Complaint, Context};
 use design::box_behnken::BoxBehnken;
 use design::central_composite::{Alpha, CentralComposite, Corners, Extent};
@@ -11,7 +12,7 @@ use design::orthogonal::Orthogonal;
 use design::plackett_burman::PlackettBurman;
 use design::report::power::Question;
 use design::sobol::Sobol;
-use design::{Domain, Factor, Layout, Method, Order};
+use design::{Domain, Factor, Layout, Method, Order, Scale};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +54,12 @@ pub struct Design {
     /// How often the whole design is run, each time on its own packing.
     #[serde(default = "once")]
     pub replicates: usize,
+    /// Rules that every row must obey, with units: "Ec/sigma_c <= 830", "kn_ks >= 1", "mu in 0.2..1".
+    #[serde(default)]
+    pub valid: Vec<String>,
+    /// What becomes of rows that break a rule.
+    #[serde(default)]
+    pub invalid_rows: InvalidRows,
     /// The effect, noise and level that the report computes the power for.
     #[serde(default)]
     pub power: Question,
@@ -276,7 +283,8 @@ impl Design {
                 let levels = || Domain::Levels(factor.levels.clone());
                 let range = factor.range.map(|[low, high]| Domain::Range { low, high });
                 let ends = || {
-                    let ends = Factor { name: name.clone(), unit: String::new(), domain: levels() };
+                    let ends =
+                        Factor { name: name.clone(), unit: String::new(), domain: levels(), scale: Scale::Linear };
                     // a single level is no range; the design says what is wrong with it
                     if factor.levels.len() < 2 {
                         levels()
@@ -299,7 +307,11 @@ impl Design {
                     Name::Given => range.unwrap_or_else(levels),
                     _ => range.unwrap_or_else(ends),
                 };
-                Factor { name: name.clone(), unit: factor.unit.clone(), domain }
+                let scale = match factor.scale {
+                    crate::stage::Scale::Linear => Scale::Linear,
+                    crate::stage::Scale::Log => Scale::Log,
+                };
+                Factor { name: name.clone(), unit: factor.unit.clone(), domain, scale }
             })
             .collect()
     }

@@ -1,12 +1,34 @@
 //! The artifact of a design.
 
+use super::valid::Broken;
 use crate::artifact::design::{Design, DesignReport, DesignRows};
 use crate::artifact::{Artifact, Table};
 use design::{DesignTable, Report};
 
+/// As [`artifact`], with the rows of the `whole` table that were left out and the rules that they break.
+pub(super) fn shortened(table: &DesignTable, report: &Report, whole: &DesignTable, broken: &[Broken]) -> Artifact {
+    let mut left = Table { about: "rows left out, with the rules that they break".to_owned(), columns: Vec::new() }
+        .ints_column(
+            "standard_order",
+            "place in the order of the construction",
+            counted(broken.iter().map(|b| whole.standard_order[b.row])),
+        )
+        .texts_column("rule", "", broken.iter().map(|b| b.rule.clone()).collect())
+        .reals_column("left_side", "", "of the rule, in SI units", broken.iter().map(|b| b.value).collect());
+    for (j, factor) in whole.factors.iter().enumerate() {
+        left =
+            left.reals_column(&factor.name, &factor.unit, "", broken.iter().map(|b| whole.natural[b.row][j]).collect());
+    }
+    Design { left_out: Some(left), ..stored(table, report) }.to_artifact()
+}
+
 /// The storable form.
 pub(super) fn artifact(table: &DesignTable, report: &Report) -> Artifact {
-    Design { design: design(table), coded: coded(table), report: lines(table, report) }.to_artifact()
+    stored(table, report).to_artifact()
+}
+
+fn stored(table: &DesignTable, report: &Report) -> Design {
+    Design { design: design(table), coded: coded(table), report: lines(table, report), left_out: None }
 }
 
 fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {

@@ -66,6 +66,15 @@ impl Serialize for Names {
 }
 
 impl Names {
+    /// Whether nothing is named.
+    pub(in crate::stage) fn is_empty(&self) -> bool {
+        match self {
+            Names::None => true,
+            Names::One(_) => false,
+            Names::Many(names) => names.is_empty(),
+        }
+    }
+
     pub(in crate::stage) fn list(&self) -> Vec<String> {
         match self {
             Names::None => Vec::new(),

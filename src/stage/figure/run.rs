@@ -85,16 +85,20 @@ fn outlines(specimen: &StoredSpecimen) -> Vec<Vec<[f64; 2]>> {
 
 pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
     let stored = StoredSpecimen::from_artifact(sources.first()?.0)?;
-    let group: Vec<usize> = stored.clump_of.iter().map(|&clump| usize::from(clump >= 0)).collect();
-    let mut groups = vec!["mortar".to_owned()];
-    if group.contains(&1) {
-        groups.push("aggregate".into());
+    if stored.centres.ncols() != 2 {
+        return Err(
+            StageError::new("a specimen is drawn in the plane, and this one is in space").hint("export it as VTU")
+        );
     }
+    // The groups that occur, in the order of their numbers.
+    let used: Vec<i64> = (0..stored.groups.len() as i64).filter(|number| stored.group_of.contains(number)).collect();
+    let group = stored.group_of.iter().map(|own| used.iter().position(|number| number == own).unwrap_or(0)).collect();
+    let groups = used.iter().map(|&number| stored.groups[number as usize].clone()).collect();
     let (low, high) = domain(&stored);
     Ok(Specimen {
         low,
         high,
-        centres: stored.centres.iter().map(|c| c.map(|v| v * MM)).collect(),
+        centres: stored.centres.rows().into_iter().map(|c| [c[0] * MM, c[1] * MM]).collect(),
         radii: stored.radii.iter().map(|r| r * MM).collect(),
         group,
         groups,

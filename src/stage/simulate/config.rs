@@ -1,8 +1,8 @@
 //! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
 
-use super::super::material::{self, Bonding, Need};
+use super::super::material::{self, Bonding, GivenMaterial, Need};
 use super::super::rows;
-use super::super::{Complaint, Context, Point, StageError};
+use super::super::{Complaint, Context, Known, Point, StageError};
 use crate::expression::Measure;
 use crate::unit::{Angle, Pressure, Velocity};
 use dem::loading::drive::{Loading, Rule, TestKind};
@@ -21,8 +21,10 @@ pub struct Simulate {
     pub specimen: String,
     /// The design whose rows are run; the material alone when not given.
     pub design: Option<String>,
-    /// The `[material.NAME]` with the microparameters that rows vary.
+    /// The `[material.NAME]` with the microparameters that rows vary; or the stage that gives them: by formula, or calibrated.
     pub material: String,
+    /// Which set of a calibrated material; the first when not given.
+    pub set: Option<usize>,
     /// The test.
     pub test: TestKind,
     /// Speed of each platen or grip.
@@ -168,9 +170,12 @@ impl Simulate {
     ///
     /// # Errors
     /// The material lacks what the specimen's contacts need, or a value is outside the domain of its law.
-    pub(super) fn contacts(&self, context: &Context, point: &Point) -> Result<Material, StageError> {
-        let found = context.materials.get(&self.material);
-        let material = found.ok_or_else(|| StageError::new(format!("there is no [material.{}]", self.material)))?;
+    pub(super) fn contacts(
+        &self,
+        context: &Context,
+        material: &material::Material,
+        point: &Point,
+    ) -> Result<Material, StageError> {
         let values = rows::apply(material, point, context)?;
         let bonding = self.bond.bonding();
         material.contacts(&values, self.need(context, &bonding)).map_err(|faults| {
@@ -180,17 +185,37 @@ impl Simulate {
         })
     }
 
+    /// The material, and the point at which a calibration left it.
+    ///
+    /// # Errors
+    /// The stage that should give it does not.
+    pub(super) fn given(&self, known: &Known) -> Result<GivenMaterial, StageError> {
+        if let Some(material) = known.context.materials.get(&self.material) {
+            return Ok(GivenMaterial { material: material.clone(), point: Point::new() });
+        }
+        let input = known.one("material")?;
+        let groups = known.context.sketches.get(&self.specimen).map_or(&[][..], |sketch| &sketch.groups);
+        material::given(input.stage, &*known.load(input)?, self.set.unwrap_or(1), groups, known.context)
+    }
+
     fn need<'a>(&'a self, context: &'a Context, bonding: &'a Bonding) -> Need<'a> {
         let groups = context.sketches.get(&self.specimen).map_or(&[][..], |sketch| &sketch.groups);
-        Need { name: Some(&self.material), groups, bonding }
+        Need { name: context.materials.contains_key(&self.material).then_some(&self.material), groups, bonding }
     }
 
     /// All that is wrong with settings and material.
     pub(super) fn faults(&self, context: &Context) -> Vec<Complaint> {
         let mut faults = self.setting_faults();
         faults.extend(self.bond.faults());
-        let Some(material) = context.materials.get(&self.material) else {
-            faults.extend(rows::check_material(Some(&self.material), context));
+        let named = context.materials.get(&self.material);
+        if self.set.is_some() && named.is_some() {
+            let message = format!("`set` has no effect: [material.{}] is no calibrated one", self.material);
+            faults.push(Complaint::new("set", message).hint("leave out `set`"));
+        }
+        let Some(material) = named else {
+            if !context.sketches.contains_key(&self.material) {
+                faults.extend(rows::check_material(Some(&self.material), context));
+            }
             return faults;
         };
         let (values, unresolved) = material.resolve(&material::Values::new(), &|name| self.factor(context, name));

@@ -10,7 +10,10 @@
 //!
 //! The responses of `test = "uniaxial"` are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus
 //! around half of it; strain ratio there), of `"tension"` `sigma_t`, `E`, `nu`, of `"brazilian"` `sigma_t`; in SI units.
-//! Further ones are named in the record. What is computed and why: [`dem::loading`].
+//! Further ones are named in the record.
+//!
+//! `material` names a `[material.NAME]`, or a stage that gives one ([`material`](super::material)): a `formula` stage whose
+//! responses are microparameters, or a calibration, of whose solution `set` picks the target set. What is computed and why: [`dem::loading`].
 
 mod config;
 mod record;
@@ -56,7 +59,7 @@ impl Stage for Simulate {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { varies: true, ..Sketch::default() }
+        Sketch { material: Some(self.material.clone()), varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -64,14 +67,20 @@ impl Stage for Simulate {
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
-        let material = self.contacts(known.context, point)?;
+        let given = self.given(known)?;
+        // What a row varies stands above what was calibrated.
+        let mut point = point.clone();
+        for (name, value) in given.point {
+            point.entry(name).or_insert(value);
+        }
+        let material = self.contacts(known.context, &given.material, &point)?;
         let specimen = known.one("specimen")?;
         let packing = match self.packing {
             PackingChoice::Shared => number,
-            PackingChoice::Own => own_packing(point, number),
+            PackingChoice::Own => own_packing(&point, number),
         };
         let task = Task::new("simulate", json!(Params { material, test: self.spec() }));
-        if let Some(make) = (specimen.vary)(point, packing)? {
+        if let Some(make) = (specimen.vary)(&point, packing)? {
             return Ok(task.after("specimen", Arc::new(make)).seed(number));
         }
         if packing == 1 {
@@ -105,7 +114,7 @@ const REPORT_EVERY: usize = 50;
 
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let specimen = super::specimen::load(job.input("specimen")?)?;
+    let specimen = super::specimen::load(job.input("specimen")?)?.plane()?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
     for warning in uniaxial::warnings(&params.test, &specimen, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));

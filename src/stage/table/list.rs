@@ -212,7 +212,7 @@ fn range(factor: &super::super::Factor) -> Option<[f64; 2]> {
 /// Polygons of a specimen by class: the size of a polygon is the diameter of the circle through its vertices, or, when
 /// they lie on none, of the circle of its area.
 fn aggregate(specimen: &Artifact, bounds: &[f64]) -> Result<Given, StageError> {
-    let made = super::super::specimen::load(specimen)?;
+    let made = super::super::specimen::load(specimen)?.plane()?;
     let sizes: Vec<f64> = made.polygons.iter().map(|polygon| size(&polygon.vertices)).collect();
     let count = |class: &[f64]| sizes.iter().filter(|size| class[0] <= **size && **size < class[1]).count() as f64;
     let bound = |end: usize| bounds.windows(2).map(|class| Some((class[end] * 1e6).round() / 1e3)).collect();

@@ -8,11 +8,13 @@
 
 use crate::block::*;
 use crate::case::{Case, Family, Near};
-use dem::genesis::cloud::{ball_area, ball_count, scale_to_porosity, scatter, uniform_radii};
+use dem::genesis::cloud::{scale_to_porosity, scatter};
 use dem::genesis::gradation::Gradation;
+use dem::genesis::heap::ball_volume;
 use dem::genesis::packing::Packing;
 use dem::genesis::polygon::{AngleLaw, PolygonRecipe, SizeRule};
 use dem::genesis::region::Region;
+use dem::genesis::sizes::Sizes;
 use dem::*;
 use math::elementary::{cos, sin};
 use math::random::Stream;
@@ -44,26 +46,27 @@ fn cases() -> Vec<Case> {
 
 fn balls(cases: &mut Vec<Case>) {
     let (area, porosity, mean, ratio) = (0.02, 0.12, 0.5e-3, 2.5_f64);
-    let count = ball_count(area, porosity, mean);
+    let sizes = Sizes::uniform(mean, ratio);
+    let count = sizes.count::<D2>(area, porosity) as usize;
     cases.push(Case::new("number of balls", "⌊A (1 − n)/(π R̄²)⌋, eq. (4)", 22_409.0, count as f64, Near::Exact));
-    let mut radii = uniform_radii(count, mean, ratio, &mut Stream::new(1, "radii", 0));
+    let mut radii = sizes.draw::<D2>(count, &mut Stream::new(1, "radii", 0));
     let n = count as f64;
     let own_mean = radii.iter().sum::<f64>() / n;
     // Standard deviation of the uniform law over its mean: (ρ − 1)/(√3 (ρ + 1)).
     let spread = (ratio - 1.0) / (3.0_f64.sqrt() * (ratio + 1.0));
     let near = Near::Relative(3.0 * spread / n.sqrt());
     cases.push(Case::new("mean of the drawn radii, m", "R̄", mean, own_mean, near));
-    let factor = scale_to_porosity(&mut radii, area, porosity);
+    let factor = scale_to_porosity::<D2>(&mut radii, area, porosity);
     let second = 1.0 + spread * spread;
     let near = Near::Relative(5e-3);
     cases.push(Case::new("factor on the radii", "1/√(1 + (ρ−1)²/3(ρ+1)²)", 1.0 / second.sqrt(), factor, near));
-    let left = 1.0 - ball_area(&radii) / area;
+    let left = 1.0 - ball_volume::<D2>(&radii) / area;
     cases.push(Case::new("porosity at full size", "n", porosity, left, Near::Relative(1e-12)));
     let small = &radii[..2000];
     let part = Region::Rectangle { width: 0.1, height: 0.2 * 2000.0 / n };
-    let centres = scatter(small, &part, &mut Stream::new(1, "places", 0));
+    let centres = scatter::<D2>(small, &part, &mut Stream::new(1, "places", 0));
     let halves: Vec<f64> = small.iter().map(|r| 0.5 * r).collect();
-    let porosity_of = |radii: &[f64]| 1.0 - ball_area(radii) / part.area();
+    let porosity_of = |radii: &[f64]| 1.0 - ball_volume::<D2>(radii) / part.volume();
     let growth = ((1.0 - porosity_of(small)) / (1.0 - porosity_of(&halves))).sqrt();
     let grown = grown(&centres, &halves, growth);
     let label = "porosity after growth from the cloud";
@@ -81,7 +84,7 @@ fn balls(cases: &mut Vec<Case>) {
     let deepest =
         (0..2000).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| overlap(i, j)).fold(f64::MIN, f64::max);
     cases.push(Case::new("largest overlap in the cloud, m", "none", 0.0, deepest, Near::Below));
-    let outside = small.iter().zip(&centres).map(|(r, &x)| 0.5 * r - part.depth(x)).fold(f64::MIN, f64::max);
+    let outside = small.iter().zip(&centres).map(|(r, &x)| 0.5 * r - part.depth::<D2>(x)).fold(f64::MIN, f64::max);
     cases.push(Case::new("farthest reach out of the vessel, m", "none", 0.0, outside, Near::Below));
 }
 
@@ -97,9 +100,9 @@ fn grown(centres: &[[f64; 2]], radii: &[f64], factor: f64) -> Vec<f64> {
 
 fn packing(cases: &mut Vec<Case>) {
     let region = Region::Rectangle { width: 0.05, height: 0.1 };
-    let recipe = Packing { porosity: 0.12, mean_radius: 2e-3, ratio: 2.5, floaters: 0.0 };
-    let packed = recipe.pack(&region, &mut Stream::new(1, "packing", 0), &|| Watch::Continue).unwrap();
-    let left = 1.0 - ball_area(&packed.heap.radii) / region.area();
+    let recipe = Packing::uniform(0.12, 2e-3, 2.5);
+    let packed = recipe.pack::<D2>(&region, &mut Stream::new(1, "packing", 0), &|| Watch::Continue).unwrap();
+    let left = 1.0 - ball_volume::<D2>(&packed.heap.radii) / region.volume();
     cases.push(Case::new("packing: porosity after floaters were enlarged", "n", 0.12, left, Near::Relative(1e-12)));
     cases.push(Case::new("packing: unbalanced over contact force", "at rest", 1e-3, packed.unbalanced, Near::Below));
     let fabric = dem::genesis::fabric::Fabric::of(&packed.heap);

@@ -8,6 +8,7 @@
 
 use crate::block::{GRAIN, PLATEN, STONE, block};
 use crate::case::{Case, Family, Near};
+use dem::genesis::groups::Share;
 use dem::genesis::packing::Packing;
 use dem::genesis::region::Region;
 use dem::genesis::specimen::Recipe;
@@ -41,8 +42,9 @@ fn cases() -> Vec<Case> {
 /// A uniaxial test of a random mortar, as the campaigns run it.
 fn uniaxial(factor: f64, speed: f64) -> Macro {
     let region = Region::Rectangle { width: 0.04, height: 0.08 };
-    let packing = Packing { porosity: 0.12, mean_radius: 2e-3, ratio: 2.5, floaters: 0.0 };
-    let recipe = Recipe { region, packing, density: 2000.0, aggregate: None };
+    let packing = Packing::uniform(0.12, 2e-3, 2.5);
+    let groups = vec![Share { name: "mortar".to_owned(), share: 1.0 }];
+    let recipe = Recipe { region, packing, density: 2000.0, groups, aggregate: None };
     let (specimen, _) = recipe.make(1, &|| Watch::Continue).unwrap();
     let material = Material::of_one(Contact::bonded("mortar", 20e9 * factor, 2.5, [20e6 * factor; 2], 0.5));
     let test = Loading { speed, ..Loading::new(TestKind::Uniaxial) };

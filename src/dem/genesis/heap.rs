@@ -1,0 +1,176 @@
+//! A heap of frictionless balls in its vessel: what touches what.
+//!
+//! Neighbour search and stiffness of a contact are those of the engine, with a modulus of 1 Pa: in the plane
+//! k_n = 2 min(R₁, R₂) / (R₁ + R₂) per E* t (2 at a wall), in the solid π min(R₁, R₂)² / (R₁ + R₂) (π R at a wall).
+
+use super::region::Region;
+use crate::interaction::{Convention, Stiffness};
+use crate::neighbour;
+use crate::space::{D2, Space, Tuple, Vector, flat};
+
+/// Balls in a vessel (m).
+#[derive(Clone, Debug)]
+pub struct Heap<S: Space = D2> {
+    /// Vessel.
+    pub region: Region,
+    /// Centres.
+    pub centres: Vec<Vector<S>>,
+    /// Radii.
+    pub radii: Vec<f64>,
+}
+
+/// Two balls, or a ball and a wall (`second` is then `None`), that overlap.
+#[derive(Clone, Copy, Debug)]
+pub struct Overlap<S: Space> {
+    /// Index of the first ball.
+    pub first: usize,
+    /// Index of the second ball, larger than the first.
+    pub second: Option<usize>,
+    /// Overlap, positive (m).
+    pub depth: f64,
+    /// Unit vector from the first ball to the second, or to the wall.
+    pub normal: Vector<S>,
+    /// Normal stiffness for a modulus of 1 Pa (N/m).
+    pub stiffness: f64,
+}
+
+/// What may touch: pairs and balls at walls that are nearer than a margin.
+#[derive(Clone, Debug)]
+pub(super) struct Neighbours {
+    pub(super) pairs: Vec<Pair>,
+    pub(super) at_wall: Vec<u32>,
+    /// Factor on all stiffnesses.
+    scale: f64,
+}
+
+/// Two balls that may touch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) i: u32,
+    pub(super) j: u32,
+    /// Sum of the radii (m).
+    pub(super) reach: f64,
+    pub(super) stiffness: f64,
+}
+
+const UNIT: Stiffness = Stiffness::Modulus { modulus: 1.0, ratio: 1.0, convention: Convention::Present };
+
+impl<S: Space> Heap<S> {
+    /// All pairs whose surfaces are nearer than `margin` (m), each once with the smaller index first, sorted.
+    pub fn pairs(&self, margin: f64) -> Vec<(usize, usize)> {
+        let places: Vec<[f64; 3]> = self.centres.iter().map(|&x| flat::<S>(x)).collect();
+        let bodies: Vec<u32> = (0..self.radii.len() as u32).collect();
+        let mut pairs = Vec::with_capacity(4 * self.radii.len());
+        neighbour::pairs(&places, &self.radii, &bodies, margin, |i, j| pairs.push((i as usize, j as usize)));
+        pairs
+    }
+
+    /// What may touch within `margin` (m); all stiffnesses times `scale`.
+    pub(super) fn neighbours(&self, margin: f64, scale: f64) -> Neighbours {
+        let pair = |(i, j): (usize, usize)| {
+            let (ri, rj) = (self.radii[i], self.radii[j]);
+            let stiffness = scale * UNIT.normal::<S>([ri, rj]);
+            Pair { i: i as u32, j: j as u32, reach: ri + rj, stiffness }
+        };
+        let near = |&i: &usize| self.region.depth::<S>(self.centres[i]) < self.radii[i] + margin;
+        let at_wall = (0..self.radii.len()).filter(near).map(|i| i as u32).collect();
+        Neighbours { pairs: self.pairs(margin).into_iter().map(pair).collect(), at_wall, scale }
+    }
+
+    /// Calls `visit` for every pair that overlaps, then for every ball that overlaps a wall.
+    pub fn overlaps(&self, visit: impl FnMut(Overlap<S>)) {
+        self.visit(&self.neighbours(0.0, 1.0), visit);
+    }
+
+    /// The same for what a list holds.
+    #[inline]
+    pub(super) fn visit(&self, list: &Neighbours, mut visit: impl FnMut(Overlap<S>)) {
+        for &Pair { i, j, reach, stiffness } in &list.pairs {
+            let (i, j) = (i as usize, j as usize);
+            let apart = self.centres[j].minus(self.centres[i]);
+            let square = apart.dot(apart);
+            if square < reach * reach {
+                let distance = square.sqrt();
+                let along =
+                    |k: usize| if distance > 0.0 { apart.at(k) / distance } else { f64::from(u8::from(k == 0)) };
+                let normal = Vector::<S>::build(along);
+                visit(Overlap { first: i, second: Some(j), depth: reach - distance, normal, stiffness });
+            }
+        }
+        for &i in &list.at_wall {
+            let (i, radius) = (i as usize, self.radii[i as usize]);
+            let stiffness = list.scale * UNIT.normal::<S>([radius, f64::INFINITY]);
+            self.region.walls_within::<S>(self.centres[i], radius, |wall| {
+                let (depth, normal) = (radius - wall.distance, wall.normal.times(-1.0));
+                visit(Overlap { first: i, second: None, depth, normal, stiffness });
+            });
+        }
+    }
+
+    /// Radii of an overlap's ends; the second is infinite at a wall.
+    pub fn ends(&self, overlap: &Overlap<S>) -> [f64; 2] {
+        [self.radii[overlap.first], overlap.second.map_or(f64::INFINITY, |j| self.radii[j])]
+    }
+
+    /// Number of contacts of every ball, those with walls included.
+    pub fn contact_counts(&self) -> Vec<u32> {
+        let mut counts = vec![0; self.radii.len()];
+        self.overlaps(|overlap| {
+            counts[overlap.first] += 1;
+            if let Some(second) = overlap.second {
+                counts[second] += 1;
+            }
+        });
+        counts
+    }
+
+    /// Σ V(R), overlaps counted twice (m³, or m²).
+    pub fn ball_volume(&self) -> f64 {
+        ball_volume::<S>(&self.radii)
+    }
+
+    /// Multiplies all radii.
+    pub(super) fn scale(&mut self, factor: f64) {
+        self.radii.iter_mut().for_each(|r| *r *= factor);
+    }
+
+    /// The balls with these indices, in this order.
+    pub(super) fn chosen(&self, order: &[usize]) -> Self {
+        let centres = order.iter().map(|&i| self.centres[i]).collect();
+        Self { region: self.region, centres, radii: order.iter().map(|&i| self.radii[i]).collect() }
+    }
+}
+
+/// Σ V(R) (m³, or m²).
+pub fn ball_volume<S: Space>(radii: &[f64]) -> f64 {
+    S::volume(1.0) * radii.iter().fold(0.0, |sum, &r| sum + (1..S::DIMENSION).fold(r, |power, _| power * r))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::D3;
+    use math::random::Stream;
+
+    #[test]
+    fn pairs_are_those_of_all_against_all() {
+        let mut stream = Stream::new(2, "pairs", 0);
+        let region = Region::Box { width: 1.0, height: 2.0, depth: 0.5 };
+        let edges = region.edges();
+        let centres: Vec<[f64; 3]> =
+            (0..300).map(|_| std::array::from_fn(|k| edges[k] * (stream.uniform() - 0.5))).collect();
+        let radii: Vec<f64> = (0..300).map(|_| stream.uniform_in(0.03, 0.06)).collect();
+        let heap = Heap::<D3> { region, centres, radii };
+        let mut expected = Vec::new();
+        for i in 0..300 {
+            for j in i + 1..300 {
+                let apart: f64 = (0..3).map(|k| (heap.centres[i][k] - heap.centres[j][k]).powi(2)).sum();
+                if apart.sqrt() < heap.radii[i] + heap.radii[j] + 0.01 {
+                    expected.push((i, j));
+                }
+            }
+        }
+        assert!(expected.len() > 100);
+        assert_eq!(heap.pairs(0.01), expected);
+    }
+}

@@ -1,0 +1,93 @@
+//! What a calibration found, as sentences for a reader.
+
+use crate::artifact::Artifact;
+use crate::stage::notes::short;
+
+/// For every target set, which parameters the targets determine and within what, and which they leave free.
+pub fn parameters_in_words(solution: &Artifact) -> Vec<String> {
+    read(solution).unwrap_or_default()
+}
+
+/// One parameter of a set.
+struct Parameter<'a> {
+    set: i64,
+    name: &'a str,
+    unit: &'a str,
+    known: &'a str,
+    value: f64,
+    ends: [f64; 2],
+}
+
+fn read(solution: &Artifact) -> Option<Vec<String>> {
+    let table = solution.table("parameters")?;
+    let texts = |name: &str| table.texts(name).ok();
+    let (names, units, known) = (texts("factor")?, texts("unit")?, texts("known")?);
+    let numbers = |name: &str| table.numbers(name, "").ok();
+    let (values, low, high) = (numbers("value")?, numbers("low")?, numbers("high")?);
+    let sets = table.ints("set").ok()?;
+    let parameter = |i: usize| Parameter {
+        set: sets[i],
+        name: &names[i],
+        unit: &units[i],
+        known: &known[i],
+        value: values[i],
+        ends: [low[i], high[i]],
+    };
+    let all: Vec<Parameter<'_>> = (0..sets.len()).map(parameter).collect();
+    let several = all.last().is_some_and(|last| last.set > 1);
+    let sentence = |set: i64| {
+        let own: Vec<&Parameter<'_>> = all.iter().filter(|one| one.set == set).collect();
+        let whose = if several { format!("set {set}: ") } else { String::new() };
+        format!("{whose}{}", of_set(&own))
+    };
+    let count = all.last().map_or(0, |last| last.set);
+    Some((1..=count).map(sentence).collect())
+}
+
+/// "determined: σ_c = 20 MPa (19 … 21); free: mu".
+fn of_set(parameters: &[&Parameter<'_>]) -> String {
+    let list = |word: &str, with_ends: bool| {
+        let own = parameters.iter().filter(|one| one.known == word);
+        let texts: Vec<String> = own.map(|one| if with_ends { one.in_words() } else { one.name.to_owned() }).collect();
+        (!texts.is_empty()).then(|| format!("{word}: {}", texts.join(", ")))
+    };
+    let parts =
+        [list("determined", true), list("partly determined", true), list("free", false), list("unknown", false)];
+    parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+impl Parameter<'_> {
+    fn in_words(&self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let [low, high] = self.ends.map(short);
+        format!("{} = {}{unit} ({low} … {high})", self.name, short(self.value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artifact::{ArtifactKind, Group, Node, Table};
+
+    #[test]
+    fn what_is_known_of_each_parameter_is_one_sentence_a_set() {
+        let nan = f64::NAN;
+        let text = |words: [&str; 4]| words.map(str::to_owned).to_vec();
+        let table = Table::default()
+            .ints_column("set", "", vec![1, 1, 1, 2])
+            .texts_column("factor", "", text(["sigma_c", "Ec", "mu", "mu"]))
+            .texts_column("unit", "", text(["MPa", "GPa", "", ""]))
+            .texts_column("known", "", text(["determined", "partly determined", "free", "unknown"]))
+            .reals_column("value", "", "", vec![20.0, 31.25, 0.5, 0.5])
+            .reals_column("low", "", "", vec![19.123_45, 20.0, 0.1, nan])
+            .reals_column("high", "", "", vec![21.0, 35.0, 1.0, nan]);
+        let solution = Artifact::of(ArtifactKind::SOLUTION, Group::new().with("parameters", Node::Table(table)));
+        assert_eq!(
+            parameters_in_words(&solution),
+            [
+                "set 1: determined: sigma_c = 20 MPa (19.12 … 21); partly determined: Ec = 31.25 GPa (20 … 35); free: mu",
+                "set 2: unknown: mu",
+            ]
+        );
+    }
+}

@@ -1,0 +1,103 @@
+//! `kind = "specimen"`: balls packed in an outline of the plane or the solid, with polygons of aggregate as rigid clumps.
+//!
+//! | outline | keys |
+//! |---|---|
+//! | rectangle | `width`, `height` |
+//! | disc | `diameter` |
+//! | box | `width`, `height`, `depth` |
+//! | cylinder, its axis along the load | `diameter`, `height` |
+//! | thick disc, its axis across the load | `diameter`, `depth` |
+//!
+//! Packed to a `porosity`, or as `[stage.NAME.packing]` says: to a `stress`, or as a `lattice`. Replicate k is another
+//! packing and another aggregate of the same recipe; its seed comes from the workflow's seed and k. What is computed and
+//! why: [`dem::genesis`].
+
+mod aggregate;
+mod config;
+mod fault;
+mod report;
+mod stored;
+
+pub use aggregate::{AggregateConfig, GradationName};
+pub use config::{ClassesConfig, PackingConfig, SieveConfig, SizeName, Specimen};
+pub use stored::{Loaded, load};
+
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
+};
+use crate::artifact::specimen::Specimen as Stored;
+use crate::artifact::{Artifact, ArtifactKind};
+use dem::genesis::packing::PackingError;
+use dem::genesis::specimen::{Recipe, SpecimenError};
+use dem::{D2, D3, Space};
+use math::random::Stream;
+use serde_json::json;
+
+impl Specimen {
+    fn task(&self, seed: u64, number: u64) -> Result<Task, Vec<Complaint>> {
+        let seed = Stream::new(seed, "specimen", number).bits();
+        Ok(Task::new("specimen", json!(self.recipe()?)).seed(seed))
+    }
+}
+
+impl Stage for Specimen {
+    fn inputs(&self) -> Vec<Port> {
+        Vec::new()
+    }
+
+    fn gives(&self) -> ArtifactKind {
+        Stored::KIND
+    }
+
+    fn check(&self, _context: &Context) -> Vec<Complaint> {
+        self.recipe().err().unwrap_or_default()
+    }
+
+    fn sketch(&self) -> Sketch {
+        let aggregate = self.aggregate.iter().map(|aggregate| aggregate.group.clone());
+        let groups = self.shares().into_iter().map(|share| share.name).chain(aggregate).collect();
+        Sketch { groups, varies: true, ..Sketch::default() }
+    }
+
+    fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let faults = |faults: Vec<Complaint>| {
+            StageError::new(faults.iter().map(|fault| fault.message.as_str()).collect::<Vec<_>>().join("; "))
+        };
+        Ok(Step::Finish(self.task(known.context.seed, 1).map_err(faults)?))
+    }
+
+    fn replicate(&self, context: &Context, number: u64) -> Option<Task> {
+        self.task(context.seed, number).ok()
+    }
+}
+
+impl Kind for Specimen {
+    const NAME: &'static str = "specimen";
+    const ABOUT: &'static str =
+        "balls packed to a porosity or a stress, in the plane or the solid; polygons of aggregate";
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SPECIMEN];
+    const CLASS: Class = Class::Simulation;
+    const WORKS: &'static [Work] = &[Work { name: "specimen", version: 2, run: make }];
+}
+
+fn make(job: &Job) -> Result<Artifact, Failure> {
+    let recipe: Recipe = job.params()?;
+    let seed = job.seed.ok_or_else(|| StageError::new("a specimen needs a seed"))?;
+    let failure = |faults: Vec<SpecimenError>| match faults[..] {
+        [SpecimenError::Packing(PackingError::Stopped)] => Failure::Stopped,
+        _ => StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")).into(),
+    };
+    match recipe.region.dimension() {
+        2 => made::<D2>(&recipe, seed, job).map_err(failure),
+        _ => made::<D3>(&recipe, seed, job).map_err(failure),
+    }
+}
+
+fn made<S: Space>(recipe: &Recipe, seed: u64, job: &Job) -> Result<Artifact, Vec<SpecimenError>> {
+    let (made, quality) = recipe.make::<S>(seed, &|| job.watch())?;
+    quality.warnings().iter().for_each(|warning| (job.say)(Progress::warning(warning)));
+    Ok(stored::store(&made, &quality).to_artifact())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,121 @@
+//! Settings read, refused, and stored.
+
+use super::*;
+use dem::genesis::packing::Packing;
+use dem::genesis::region::Region;
+
+#[test]
+fn a_specimen_comes_back_as_it_was_stored() {
+    let config: Specimen = toml::from_str(
+        "width = '50 mm'\nheight = '100 mm'\nporosity = 0.12\nmean_radius = '1.5 mm'\nradius_ratio = 2.5\n\
+         density = '2000 kg/m^3'\n[aggregate]\ngradation = 'walraven'\ncontent = 0.75\n\
+         classes = ['8 mm', '12 mm']\nvertices = [4, 6]\narea = 'equal-area'\nangles = 'jittered'\n\
+         density = '2650 kg/m^3'",
+    )
+    .unwrap();
+    let (made, quality) = config.recipe().unwrap().make::<D2>(1, &|| dem::Watch::Continue).unwrap();
+    assert!(!made.clumps.is_empty());
+    let artifact = stored::store(&made, &quality).to_artifact();
+    assert_eq!(format!("{:?}", load(&artifact).unwrap().plane().unwrap()), format!("{made:?}"));
+}
+
+#[test]
+fn settings_that_lack_or_have_no_effect_are_complaints() {
+    let text = "width = '50 mm'\nheight = '100 mm'\nporosity = 0.12\nmean_radius = '1.5 mm'\nradius_ratio = 2.5\n\
+                density = '2000 kg/m^3'\n[aggregate]\ngradation = 'table'\ncontent = 0.75\nclasses = ['8 mm', '12 mm']\n\
+                vertices = [4, 6]\narea = 'inscribed'\ndensity = '2650 kg/m^3'";
+    let config: Specimen = toml::from_str(text).unwrap();
+    let messages: Vec<String> = config.check(&Context::default()).into_iter().map(|c| c.message).collect();
+    assert_eq!(messages, ["`content` has no effect on gradation `table`", "gradation `table` needs `passing`"]);
+}
+
+fn read(text: &str) -> Specimen {
+    toml::from_str(text).unwrap()
+}
+
+fn messages(text: &str) -> Vec<String> {
+    read(text).check(&Context::default()).into_iter().map(|c| format!("{}: {}", c.path.join("."), c.message)).collect()
+}
+
+const RADII: &str = "mean_radius = '2 mm'\nradius_ratio = 1.66\ndensity = '2650 kg/m^3'\n";
+
+#[test]
+fn a_solid_specimen_to_a_stress_comes_back_as_it_was_stored() {
+    let outline = "diameter = '30 mm'\nheight = '40 mm'\ngroups = { quartz = 0.3, feldspar = 0.7 }\n";
+    let config = read(&format!("{outline}{RADII}packing = {{ stress = '3 MPa' }}"));
+    let recipe = config.recipe().unwrap();
+    assert_eq!(recipe.region, Region::Cylinder { diameter: 0.03, height: 0.04 });
+    let (made, quality) = recipe.make::<D3>(1, &|| dem::Watch::Continue).unwrap();
+    assert!((quality.stress.unwrap() / 3e6 - 1.0).abs() < 0.01);
+    assert_eq!(made.group_names, ["feldspar", "quartz"]);
+    let artifact = stored::store(&made, &quality).to_artifact();
+    let Loaded::Solid(loaded) = load(&artifact).unwrap() else { panic!("a plane specimen") };
+    assert_eq!(format!("{loaded:?}"), format!("{made:?}"));
+    assert!(load(&artifact).unwrap().plane().is_err());
+}
+
+/// Each outline has its keys and no other.
+#[test]
+fn outlines_are_told_by_their_keys() {
+    let region = |keys: &str| {
+        let config = read(&format!("{keys}\n{RADII}porosity = 0.12"));
+        config.recipe().map(|recipe| recipe.region.name()).map_err(|faults| faults[0].message.clone())
+    };
+    assert_eq!(region("width = '0.1 m'\nheight = '0.1 m'"), Ok("rectangle"));
+    assert_eq!(region("diameter = '0.1 m'"), Ok("disc"));
+    assert_eq!(region("width = '0.1 m'\nheight = '0.1 m'\ndepth = '0.1 m'"), Ok("box"));
+    assert_eq!(region("diameter = '0.1 m'\nheight = '0.1 m'"), Ok("cylinder"));
+    assert_eq!(region("diameter = '0.1 m'\ndepth = '0.1 m'"), Ok("thick-disc"));
+    assert_eq!(region("width = '0.1 m'"), Err("the outline is not clear".to_owned()));
+    assert_eq!(region("width = '0.1 m'\ndiameter = '0.1 m'"), Err("the outline is not clear".to_owned()));
+}
+
+#[test]
+fn settings_of_packings_and_sizes_that_do_not_fit_are_named() {
+    let plane = "width = '0.1 m'\nheight = '0.2 m'\ndensity = '2650 kg/m^3'\n";
+    assert_eq!(messages(&format!("{plane}mean_radius = '2 mm'\nradius_ratio = 2")), [": the packing is not clear"]);
+    assert_eq!(
+        messages(&format!(
+            "{plane}mean_radius = '2 mm'\nradius_ratio = 2\nporosity = 0.1\npacking = {{ stress = '1 MPa' }}"
+        )),
+        ["porosity: `porosity` has no effect on a packing to a stress or as a lattice"]
+    );
+    assert_eq!(
+        messages(&format!("{plane}mean_radius = '2 mm'\npacking = {{ lattice = 'hexagonal', stress = '1 MPa' }}")),
+        ["packing.stress: `packing.stress` has no effect on a lattice"]
+    );
+    assert_eq!(
+        messages(&format!("{plane}sizes = 'log-normal'\nmean_radius = '2 mm'\nporosity = 0.1")),
+        [
+            "radius_ratio: sizes \"log-normal\" needs `radius_ratio`",
+            "size_deviation: sizes \"log-normal\" needs `size_deviation`"
+        ]
+    );
+    assert_eq!(
+        messages(&format!("{plane}mean_radius = '2 mm'\nsmallest_radius = '1 mm'\nradius_ratio = 2\nporosity = 0.1")),
+        ["smallest_radius: `mean_radius` and `smallest_radius` are both given"]
+    );
+    let sieve =
+        "sizes = 'sieve'\nsieve = { diameters = ['2 mm', '4 mm', '8 mm'], passing = [0, 0.4, 1] }\nporosity = 0.12";
+    assert!(messages(&format!("{plane}{sieve}")).is_empty());
+    let lattice =
+        read(&format!("{plane}mean_radius = '2 mm'\npacking = {{ lattice = 'hexagonal' }}")).recipe().unwrap();
+    assert!(matches!(lattice.packing, Packing::Lattice { radius, .. } if radius == 2e-3));
+}
+
+/// What would take all memory or never end is refused by `check`, with the number that it would be.
+#[test]
+fn monstrous_and_impossible_packings_are_refused_before_they_run() {
+    let plane = "width = '0.1 m'\nheight = '0.2 m'\ndensity = '2650 kg/m^3'\nradius_ratio = 2.5\n";
+    let of = |keys: &str| messages(&format!("{plane}{keys}"));
+    let tiny = of("mean_radius = '1 nm'\nporosity = 0.12");
+    assert!(tiny.len() == 1 && tiny[0].starts_with("mean_radius:") && tiny[0].contains("5.602e15"), "{tiny:?}");
+    let loose = of("mean_radius = '1 mm'\nporosity = 0.9");
+    assert!(loose.len() == 1 && loose[0].starts_with("porosity:"), "{loose:?}");
+    let one = of("mean_radius = '50 mm'\nporosity = 0.12");
+    assert!(one.len() == 1 && one[0].contains("gives 2 balls"), "{one:?}");
+    let wide = messages(
+        "width = '0.1 m'\nheight = '0.2 m'\ndensity = '2650 kg/m^3'\nradius_ratio = 100\nmean_radius = '1 mm'\nporosity = 0.12",
+    );
+    assert!(wide.len() == 1 && wide[0].starts_with("radius_ratio:"), "{wide:?}");
+}
