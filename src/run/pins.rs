@@ -127,7 +127,7 @@ const DATA: &str = "a [GPa],b,y [MPa]\n1,10,11\n3,10,17\n1,30,19\n3,30,25.5\n";
 
 /// Stage and the first digits of the hash of its result, then work and version.
 const PINS: &str = "\
-specimen 1b3e12a9a056
+specimen 3dc1aee5970f
 simulate 05d57011304d
 design 4707cd1886b9
 formula c57272d7c660
@@ -158,7 +158,7 @@ gather 1
 range 2
 screening 2
 simulate 2
-specimen 1
+specimen 2
 table 3
 verify 1
 ";
