@@ -103,8 +103,8 @@ pub enum UnitError {
     /// A number without a unit.
     #[error("`{0}` needs a unit; write for example \"{1}\"")]
     NoUnit(String, &'static str),
-    /// A sign of multiplication or division with nothing beside it.
-    #[error("`{0}` has a sign with no unit beside it; write for example \"kg/m^3\"")]
+    /// A sign of multiplication or division with nothing beside it, or a bracket without its partner.
+    #[error("`{0}` has a sign with no unit beside it, or an open bracket; write for example \"kg/m^3\"")]
     Incomplete(String),
     /// A power that is not a number, or beyond all use.
     #[error(
@@ -360,6 +360,8 @@ kinds! {
     Pressure, PressureKind = (-1, 1, -2), "stress or modulus", "16 GPa";
     /// Metres per second.
     Velocity, VelocityKind = (1, 0, -1), "velocity", "0.02 m/s";
+    /// Per second.
+    Rate, RateKind = (0, 0, -1), "strain rate", "0.1 s^-1";
     /// Kilograms per cubic metre.
     Density, DensityKind = (-3, 1, 0), "density", "2650 kg/m^3";
     /// Metres per second squared.

@@ -8,6 +8,8 @@ crate::artifact! {
     pub struct Run = ArtifactKind::RUN {
         /// why the run gave no result; empty when it did
         pub failure: String, "";
+        /// why the result is not valid; empty when it is
+        pub validity: Option<String>, "";
         /// what should be known before its results are believed
         pub warnings: Option<Vec<String>>, "";
         /// what the run gave
@@ -62,10 +64,18 @@ crate::table! {
         pub check: Vec<String>, "";
         /// what was found
         pub value: Vec<f64>, "";
-        /// what must not be passed
+        /// what must not be passed, in the unit beside it
         pub bound: Vec<f64>, "";
-        /// 1 when within the bound
+        /// unit of value and bound
+        pub unit: Vec<String>, "";
+        /// 1 when on the right side of the bound
         pub met: Vec<bool>, "";
+        /// 1 when the run is not valid unless it is met
+        pub decisive: Vec<bool>, "";
+        /// what the value is
+        pub meaning: Vec<String>, "";
+        /// what to do when it is not met
+        pub remedy: Vec<String>, "";
     }
 }
 
@@ -170,6 +180,7 @@ impl Run {
     pub fn plain(failure: &str, responses: Responses) -> Self {
         Self {
             failure: failure.to_owned(),
+            validity: None,
             warnings: None,
             responses,
             judgement: None,

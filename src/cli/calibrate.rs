@@ -101,7 +101,7 @@ impl Calibrate {
         .cloned()
         .collect();
         let (Ok(stage), Ok(targets), []) = (stage, targets, &faults[..]) else {
-            faults.iter().for_each(|fault| eprintln!("error: {fault}"));
+            faults.iter().for_each(|fault| err!("error: {fault}"));
             return Err(Exit::BadInput);
         };
         let mut campaign = self.campaign.clone();
@@ -154,7 +154,7 @@ impl Calibrate {
         let ours: Vec<String> = std::iter::once(asked.stage.clone()).chain(asked.checks.clone()).collect();
         let report = decide(&asked.workflow, &asked.store, &ours, true);
         if let Some(why) = &report.broken {
-            eprintln!("error: {why}");
+            err!("error: {why}");
             return Err(Exit::System);
         }
         let missing: Vec<&str> = report
@@ -171,7 +171,7 @@ impl Calibrate {
         });
         let mut first: Vec<&str> = inputs.filter(|name| missing.contains(name)).collect();
         first.dedup();
-        eprintln!(
+        err!(
             "error: the campaign is not finished: {} of what `{}` rests on {} missing\n  run first: {}",
             missing.join(", "),
             asked.stage,
@@ -206,23 +206,24 @@ impl Calibrate {
 
 impl Asked {
     fn run(&self, stages: &[String], jobs: usize, watch: &dyn Watch, stop: &Arc<AtomicBool>) -> Report {
-        let settings = Settings { jobs, keep_going: false, dry: false, targets: stages.to_vec(), memos: true };
+        let settings =
+            Settings { jobs, keep_going: false, dry: false, targets: stages.to_vec(), again: Vec::new(), memos: true };
         run(&self.workflow, &self.store, &settings, watch, stop)
     }
 
     /// The result of a stage, or why there is none.
     fn result(&self, report: &Report, stage: &str) -> Result<Arc<Artifact>, Exit> {
         for damage in self.store.take_damages() {
-            eprintln!("warning: {damage}");
+            err!("warning: {damage}");
         }
         match report.stages.iter().find(|found| found.name == stage).map(|found| &found.status) {
             Some(StageStatus::Done(content)) => self.store.get(content).map_err(|e| system(&e)),
             Some(StageStatus::Failed(why)) => {
-                eprintln!("error: {stage}: {why}");
+                err!("error: {stage}: {why}");
                 Err(Exit::Failed)
             }
             Some(StageStatus::Open | StageStatus::Skipped(_)) | None => {
-                eprintln!("error: {}", report.broken.as_deref().unwrap_or("the calibration has no result"));
+                err!("error: {}", report.broken.as_deref().unwrap_or("the calibration has no result"));
                 Err(if report.broken.is_some() { Exit::System } else { Exit::Failed })
             }
         }

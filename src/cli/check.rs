@@ -20,8 +20,12 @@ pub(super) struct Check {
 impl Check {
     pub(super) fn go(self) -> Exit {
         let (workflow, faults) = self.faults();
+        let remarks = workflow.as_ref().map_or(&[][..], |workflow| &workflow.remarks);
+        if !self.json && !self.campaign.common.quiet {
+            message::remarks(remarks, self.campaign.common.color);
+        }
         if self.json {
-            out!("{}", document(&self.campaign.workflow.display().to_string(), &faults));
+            out!("{}", document(&self.campaign.workflow.display().to_string(), &faults, remarks));
         } else if let (Some(workflow), []) = (&workflow, &faults[..]) {
             if !self.campaign.common.quiet {
                 out!("{}", summary(workflow));
@@ -41,9 +45,10 @@ impl Check {
             Ok(workflow) => workflow,
             Err(faults) => return (None, faults),
         };
-        let mut faults: Vec<Fault> = Vec::new();
+        let mut faults: Vec<Fault> = workflow.absent.clone();
         let others = workflow.profiles.iter().filter(|_| campaign.profile.is_none());
-        for fault in others.filter_map(|name| with(Some(name.clone())).err()).flatten() {
+        let found = |name: &String| with(Some(name.clone())).map_or_else(|faults| faults, |workflow| workflow.absent);
+        for fault in others.flat_map(found) {
             if !faults.contains(&fault) {
                 faults.push(fault);
             }
@@ -63,17 +68,15 @@ fn summary(workflow: &Workflow) -> String {
     format!("{}: {}: no fault", workflow.path.display(), parts.join(", "))
 }
 
-fn document(name: &str, faults: &[Fault]) -> Value {
-    let faults: Vec<Value> = faults
-        .iter()
-        .map(|fault| {
-            let place = fault.place.as_ref();
-            let (line, column) = place.map(|place| place.line_column()).unzip();
-            json!({
-                "file": place.map(|place| place.source.name.as_str()), "line": line, "column": column,
-                "message": fault.message, "label": fault.label, "hint": fault.hint,
-            })
+fn document(name: &str, faults: &[Fault], remarks: &[Fault]) -> Value {
+    let one = |fault: &Fault| {
+        let place = fault.place.as_ref();
+        let (line, column) = place.map(|place| place.line_column()).unzip();
+        json!({
+            "file": place.map(|place| place.source.name.as_str()), "line": line, "column": column,
+            "message": fault.message, "label": fault.label, "hint": fault.hint,
         })
-        .collect();
-    json!({ "workflow": name, "faults": faults })
+    };
+    let all = |list: &[Fault]| list.iter().map(one).collect::<Vec<Value>>();
+    json!({ "workflow": name, "faults": all(faults), "remarks": all(remarks) })
 }

@@ -70,14 +70,34 @@ impl Campaign {
             message::print(&faults, self.common.color);
             Exit::BadInput
         })?;
+        self.known(&workflow, stages)?;
+        Ok(workflow)
+    }
+
+    /// Whether all these stages are in the workflow; says which are not.
+    pub(super) fn known(&self, workflow: &Workflow, stages: &[String]) -> Result<(), Exit> {
         let known: Vec<&str> = workflow.stages.iter().map(|stage| stage.name.as_str()).collect();
         let unknown: Vec<&String> = stages.iter().filter(|name| !known.contains(&name.as_str())).collect();
         for name in &unknown {
             let like = plan::nearest(name, known.iter().copied());
             let meant = like.map_or_else(String::new, |like| format!("; did you mean `{like}`?"));
-            eprintln!("error: the workflow has no stage `{name}`{meant}\n  it has {}", known.join(", "));
+            err!("error: the workflow has no stage `{name}`{meant}\n  it has {}", known.join(", "));
         }
-        if unknown.is_empty() { Ok(workflow) } else { Err(Exit::BadInput) }
+        if unknown.is_empty() { Ok(()) } else { Err(Exit::BadInput) }
+    }
+
+    /// As [`Campaign::load`], for commands that run or plan: the files that the workflow names must be there, unless only
+    /// some stages are asked for, which may not need them.
+    pub(super) fn load_to_run(&self, stages: &[String]) -> Result<Workflow, Exit> {
+        let workflow = self.load(stages)?;
+        if stages.is_empty() && !workflow.absent.is_empty() {
+            message::print(&workflow.absent, self.common.color);
+            return Err(Exit::BadInput);
+        }
+        if !self.common.quiet {
+            message::remarks(&workflow.remarks, self.common.color);
+        }
+        Ok(workflow)
     }
 
     /// The campaign of a workflow file, without overrides of single values.
@@ -114,7 +134,7 @@ impl Common {
     /// Prints a remark, which is no result.
     pub(super) fn remark(&self, text: &str) {
         if !self.quiet {
-            eprintln!("{text}");
+            err!("{text}");
         }
     }
 }
@@ -128,11 +148,13 @@ pub(super) fn provenance(started: i64, seconds: f64, origin: &Origin) -> String 
 
 /// The number of `--jobs`.
 pub(super) fn workers(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|&jobs| jobs > 0).ok_or_else(|| "wanted a whole number of 1 or more".to_owned())
+    const MOST: usize = 1024;
+    let wanted = || format!("wanted a whole number of 1 or more, at most {MOST}");
+    text.parse().ok().filter(|jobs| (1..=MOST).contains(jobs)).ok_or_else(wanted)
 }
 
 /// Prints what is wrong with the store or the system.
 pub(super) fn system(error: &dyn std::error::Error) -> Exit {
-    eprintln!("error: {error}");
+    err!("error: {error}");
     Exit::System
 }

@@ -74,7 +74,7 @@ impl Diff {
         match text.strip_prefix('#') {
             Some(number) => self.recorded(number, store),
             None if text.parse::<u64>().is_ok() && !Path::new(text).exists() => {
-                eprintln!("error: there is no workflow file `{text}`; the recorded run {text} is written '#{text}'");
+                err!("error: there is no workflow file `{text}`; the recorded run {text} is written '#{text}'");
                 Err(Exit::BadInput)
             }
             None => self.planned(text, store),
@@ -109,7 +109,7 @@ impl Diff {
         };
         let Some(campaign) = found else {
             let known: Vec<String> = known.iter().map(|n| format!("#{n}")).collect();
-            eprintln!("error: there is no recorded run #{number}; the store has {}", known.join(", "));
+            err!("error: there is no recorded run #{number}; the store has {}", known.join(", "));
             return Err(Exit::BadInput);
         };
         if !campaign.own {

@@ -69,7 +69,7 @@ impl Export {
         for one in &chosen {
             let artifact = store.get(&one.object.content).map_err(|e| system(&e))?;
             let files = self.files(&store, one, &artifact).map_err(|why| {
-                eprintln!("error: {}: {why}", one.name);
+                err!("error: {}: {why}", one.name);
                 Exit::BadInput
             })?;
             for (name, bytes) in files {
@@ -81,11 +81,11 @@ impl Export {
             }
         }
         if !missing.is_empty() {
-            eprintln!("error: no result yet of {}; run them first", missing.join(", "));
+            err!("error: no result yet of {}; run them first", missing.join(", "));
             return Ok(Exit::Failed);
         }
         if written == 0 {
-            eprintln!("error: nothing of these stages can be written in this form");
+            err!("error: nothing of these stages can be written in this form");
             return Ok(Exit::BadInput);
         }
         Ok(Exit::Done)

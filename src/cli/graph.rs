@@ -130,7 +130,7 @@ fn dag(workflow: &Workflow, states: &[State]) -> Dag {
 fn mermaid(workflow: &Workflow, states: &[State]) -> String {
     let mut text = String::from("flowchart LR\n");
     for (i, (stage, state)) in workflow.stages.iter().zip(states).enumerate() {
-        line(&mut text, &format!("  s{i}[\"{}<br><i>{}</i>\"]", stage.name, stage.kind));
+        line(&mut text, &format!("  s{i}[\"{}<br><i>{}</i>\"]", mermaid_text(&stage.name), mermaid_text(stage.kind)));
         line(&mut text, &format!("  style s{i} fill:{}", state.colour()));
     }
     for (from, to) in arrows(workflow) {
@@ -143,16 +143,43 @@ fn dot(workflow: &Workflow, states: &[State]) -> String {
     let mut text = String::from("digraph workflow {\n  rankdir=LR\n  node [shape=box, style=\"rounded,filled\"]\n");
     for (stage, state) in workflow.stages.iter().zip(states) {
         let colour = state.colour();
-        line(&mut text, &format!("  \"{0}\" [label=\"{0}\\n{1}\", fillcolor=\"{colour}\"]", stage.name, stage.kind));
+        let (name, kind) = (dot_text(&stage.name), dot_text(stage.kind));
+        line(&mut text, &format!("  \"{name}\" [label=\"{name}\\n{kind}\", fillcolor=\"{colour}\"]"));
     }
     for (from, to) in arrows(workflow) {
-        line(&mut text, &format!("  \"{}\" -> \"{}\"", workflow.stages[from].name, workflow.stages[to].name));
+        line(
+            &mut text,
+            &format!("  \"{}\" -> \"{}\"", dot_text(&workflow.stages[from].name), dot_text(&workflow.stages[to].name)),
+        );
     }
     text.push_str("}\n");
     text
 }
 
+/// For a text in double quotes of Mermaid: signs with a meaning as entities.
+fn mermaid_text(text: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || " _-.".contains(c);
+    text.chars().map(|c| if plain(c) { c.to_string() } else { format!("#{};", u32::from(c)) }).collect()
+}
+
+/// For a text in double quotes of DOT.
+fn dot_text(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('"', "\\\"").replace(char::is_control, " ")
+}
+
 fn line(text: &mut String, line: &str) {
     text.push_str(line);
     text.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_stay_texts_in_graphs() {
+        assert_eq!(dot_text("a\"] b\\\n"), r#"a\"] b\\ "#);
+        assert_eq!(mermaid_text("a\"]<b>#1"), "a#34;#93;#60;b#62;#35;1");
+        assert_eq!(mermaid_text("c30_run-2.é"), "c30_run-2.é");
+    }
 }

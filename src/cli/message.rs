@@ -7,15 +7,27 @@ use std::ops::Range;
 
 /// Prints all faults on standard error.
 pub(super) fn print(found: &[Fault], color: Color) {
-    eprint!("{}", faults(found, color.on()));
+    super::output::said(&faults(found, color.on()));
+}
+
+/// Prints what is no fault and must be known, on standard error.
+pub(super) fn remarks(found: &[Fault], color: Color) {
+    let renderer = renderer(color.on());
+    for fault in found {
+        super::output::said(&format!("{}\n\n", renderer.render(&[group(fault, Level::WARNING)])));
+    }
+}
+
+fn renderer(colour: bool) -> Renderer {
+    if colour { Renderer::styled() } else { Renderer::plain() }
 }
 
 /// All faults, one under the other, and how many there are.
 fn faults(faults: &[Fault], colour: bool) -> String {
-    let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+    let renderer = renderer(colour);
     let mut text = String::new();
     for fault in faults {
-        text.push_str(&renderer.render(&[group(fault)]));
+        text.push_str(&renderer.render(&[group(fault, Level::ERROR)]));
         text.push_str("\n\n");
     }
     let what = if faults.len() == 1 { "1 fault".to_owned() } else { format!("{} faults", faults.len()) };
@@ -26,8 +38,8 @@ fn faults(faults: &[Fault], colour: bool) -> String {
     text
 }
 
-fn group(fault: &Fault) -> Group<'_> {
-    let mut group = Group::with_title(Level::ERROR.primary_title(fault.message.as_str()));
+fn group<'f>(fault: &'f Fault, level: Level<'f>) -> Group<'f> {
+    let mut group = Group::with_title(level.primary_title(fault.message.as_str()));
     if let Some(place) = &fault.place {
         let mut shown = vec![(place, AnnotationKind::Primary, fault.label.as_deref())];
         shown.extend(fault.also.iter().map(|(place, words)| (place, AnnotationKind::Context, Some(words.as_str()))));

@@ -56,7 +56,7 @@ impl New {
             let known: Vec<&str> = SHIPPED.iter().map(|shipped| shipped.name).collect();
             let near = nearest(&self.from, known.iter().copied());
             let meant = near.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
-            eprintln!("error: there is no shipped workflow `{}`{meant}\n  there are {}", self.from, known.join(", "));
+            err!("error: there is no shipped workflow `{}`{meant}\n  there are {}", self.from, known.join(", "));
             return Exit::BadInput;
         };
         let path = self.name.with_extension("toml");
@@ -66,11 +66,11 @@ impl New {
                 Exit::Done
             }
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {
-                eprintln!("error: {} is there already and was left as it is", path.display());
+                err!("error: {} is there already and was left as it is", path.display());
                 Exit::BadInput
             }
             Err(e) => {
-                eprintln!("error: {} cannot be written: {e}", path.display());
+                err!("error: {} cannot be written: {e}", path.display());
                 Exit::System
             }
         }

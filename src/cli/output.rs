@@ -1,4 +1,8 @@
-//! Where results go: standard output, and files.
+//! Where words go: results to standard output and files, everything else to standard error.
+//!
+//! A write may fail: the reader has gone (`| head`), the disk is full, the terminal is closed. Words on standard error
+//! are then lost, and the campaign goes on, because its results matter more than what is said of it. A result that cannot
+//! be written ends the command, without a word when nobody reads any more.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
@@ -7,6 +11,18 @@ use std::path::Path;
 /// Prints one line of a result: `println!` that ends quietly when nobody reads any more.
 macro_rules! out {
     ($($text:tt)*) => { $crate::cli::output::line(format_args!($($text)*)) };
+}
+
+/// Prints one line on standard error: `eprintln!` that does not mind when nobody can read it.
+macro_rules! err {
+    ($($text:tt)*) => { $crate::cli::output::said(&format!("{}\n", format_args!($($text)*))) };
+}
+
+/// Writes to standard error, if it can be written to.
+pub(in crate::cli) fn said(text: &str) {
+    let mut err = std::io::stderr().lock();
+    // There is nowhere left to tell of a failure.
+    let _ = err.write_all(text.as_bytes()).and_then(|()| err.flush());
 }
 
 /// Writes one line; a reader that has gone away (`| head`) ends the command quietly.
@@ -19,7 +35,7 @@ pub(super) fn write(text: &str) {
     let mut out = std::io::stdout().lock();
     if let Err(error) = out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         if error.kind() != ErrorKind::BrokenPipe {
-            eprintln!("error: cannot write the result: {error}");
+            err!("error: cannot write the result: {error}");
         }
         let exit = if error.kind() == ErrorKind::BrokenPipe { super::Exit::Done } else { super::Exit::System };
         std::process::exit(exit as i32);

@@ -36,7 +36,7 @@ impl Plan {
     }
 
     fn print(&self) -> Result<Exit, Exit> {
-        let workflow = self.campaign.load(&self.stages)?;
+        let workflow = self.campaign.load_to_run(&self.stages)?;
         let store = self.campaign.open()?;
         let report = decide(&workflow, &store, &self.stages, true);
         let past = Past::of(&workflow, &store).map_err(|e| super::common::system(&e))?;

@@ -52,8 +52,9 @@ impl<'a> Progress<'a> {
 
     fn say(&self, line: &str) {
         match &self.screen {
-            Some(screen) => screen.suspend(|| eprintln!("{line}")),
-            None => eprintln!("{line}"),
+            // Its `suspend` panics when the terminal has gone.
+            Some(screen) => drop(screen.println(line)),
+            None => err!("{line}"),
         }
     }
 
@@ -118,7 +119,7 @@ impl<'a> Progress<'a> {
             bar.set_message(message);
         } else if live.told.elapsed() >= PAUSE && left > 0 {
             live.told = Instant::now();
-            eprintln!("{stage:16} {:>5}/{:<5} {message}", count.ended(), count.total);
+            err!("{stage:16} {:>5}/{:<5} {message}", count.ended(), count.total);
         }
     }
 

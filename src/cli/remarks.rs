@@ -2,7 +2,7 @@
 
 use super::common::Campaign;
 use crate::artifact::results::Results;
-use crate::artifact::{Artifact, Table};
+use crate::artifact::{Artifact, Node, Table};
 use crate::run::{Report, StageStatus};
 use crate::store::Store;
 
@@ -13,6 +13,9 @@ pub(super) fn remarks(campaign: &Campaign, report: &Report, store: &Store) -> Ve
         let StageStatus::Done(content) = &stage.status else { continue };
         // A result that cannot be read is told by whoever needs it.
         let Ok(artifact) = store.get(content) else { continue };
+        if let Some(why) = failure(&artifact) {
+            lines.push(format!("note: {}: the run gave no result: {why}", stage.name));
+        }
         for (table, count) in [("notes", notes(&artifact)), ("runs", failures(&artifact))] {
             if let Some(told) = count {
                 let show = campaign.command("show", &[&stage.name, "--table", table]);
@@ -21,6 +24,14 @@ pub(super) fn remarks(campaign: &Campaign, report: &Report, store: &Store) -> Ve
         }
     }
     lines
+}
+
+/// Why a single run gave no result.
+pub(super) fn failure(artifact: &Artifact) -> Option<&str> {
+    match artifact.root.get("failure") {
+        Some(Node::Text(why)) if !why.is_empty() => Some(why),
+        Some(_) | None => None,
+    }
 }
 
 fn notes(artifact: &Artifact) -> Option<String> {

@@ -35,14 +35,14 @@ impl Report {
         };
         let paper = gather(&workflow, asked, &store).map_err(|e| system(&e))?;
         for damage in store.take_damages() {
-            eprintln!("warning: {damage}");
+            err!("warning: {damage}");
         }
         let html = page(&paper);
         if self.output == Path::new("-") {
             output::write(&html);
         } else {
             output::replace(&self.output, html.as_bytes()).map_err(|e| {
-                eprintln!("error: {}: {e}", self.output.display());
+                err!("error: {}: {e}", self.output.display());
                 Exit::System
             })?;
             if !self.campaign.common.quiet {
@@ -60,7 +60,7 @@ fn told(paper: &Paper) -> Exit {
         return Exit::Done;
     }
     let (all, left) = (paper.parts.len(), missing.len());
-    eprintln!("incomplete: {left} of {all} stages have no result: {}", missing.join(", "));
-    eprintln!("  complete it: {}", paper.command("run", ""));
+    err!("incomplete: {left} of {all} stages have no result: {}", missing.join(", "));
+    err!("  complete it: {}", paper.command("run", ""));
     Exit::Failed
 }

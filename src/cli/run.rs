@@ -8,6 +8,7 @@ use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
 use crate::run::{Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, record, run};
+use crate::stage::command::leftover;
 use crate::store::Store;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -16,7 +17,7 @@ use signal_hook::iterator::Signals;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 /// Run what is missing of a campaign.
 #[derive(Args)]
@@ -34,6 +35,10 @@ pub(super) struct Run {
     /// Go on with what does not depend on a failed task.
     #[arg(long)]
     keep_going: bool,
+    /// Compute this stage again though its results are stored: a program or file that is in no key has changed. May be
+    /// given more than once.
+    #[arg(long, value_name = "STAGE")]
+    again: Vec<String>,
     /// Print one JSON document at the end.
     #[arg(long)]
     json: bool,
@@ -53,12 +58,20 @@ impl Run {
 
     fn report(&self) -> Result<Exit, Exit> {
         let started = SystemTime::now();
-        let workflow = self.campaign.load(&self.stages)?;
+        let workflow = self.campaign.load_to_run(&self.stages)?;
+        self.campaign.known(&workflow, &self.again)?;
         let store = self.campaign.open()?;
         let stop = interruption();
+        leftover::sweep().iter().for_each(|line| err!("warning: {line}"));
         let jobs = self.jobs.unwrap_or_else(cores);
-        let settings =
-            Settings { jobs, keep_going: self.keep_going, dry: false, targets: self.stages.clone(), memos: true };
+        let settings = Settings {
+            jobs,
+            keep_going: self.keep_going,
+            dry: false,
+            targets: self.stages.clone(),
+            again: self.again.clone(),
+            memos: self.again.is_empty(),
+        };
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
@@ -68,7 +81,7 @@ impl Run {
         };
         drop(watch);
         for damage in store.take_damages() {
-            eprintln!("warning: {damage}");
+            err!("warning: {damage}");
         }
         let did = report.count().ran + report.count().failed > 0;
         let recorded = did.then(|| record(&workflow, &self.campaign.sets, &report, started, &store));
@@ -82,7 +95,7 @@ impl Run {
         }
         self.failures(&workflow, &report);
         if !self.campaign.common.quiet {
-            remarks(&self.campaign, &report, &store).iter().for_each(|line| eprintln!("{line}"));
+            remarks(&self.campaign, &report, &store).iter().for_each(|line| err!("{line}"));
         }
         missed.iter().for_each(|(stage, why)| eprintln!("unmet: {stage}: {why}"));
         let exit = match exit(&report) {
@@ -108,15 +121,16 @@ impl Run {
             if let (StageStatus::Failed(why), true) = (&stage.status, lines.is_empty()) {
                 lines.push(format!("failed: {}: {why}", stage.name));
             }
-            lines.iter().for_each(|line| eprintln!("{line}"));
+            lines.iter().for_each(|line| err!("{line}"));
             if !lines.is_empty() {
-                eprintln!("  again: {}", self.campaign.command("run", &[&stage.name]));
+                err!("  again: {}", self.campaign.command("run", &[&stage.name]));
             }
         }
     }
 }
 
-/// A flag that Ctrl-C, a termination request or the end of the terminal sets; a second one ends the process at once.
+/// A flag that Ctrl-C, a termination request or the end of the terminal sets; a second one, or tasks that do not end within
+/// a second, end the process at once.
 pub(super) fn interruption() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
@@ -125,14 +139,29 @@ pub(super) fn interruption() -> Arc<AtomicBool> {
         Ok(mut signals) => drop(std::thread::spawn(move || {
             for _ in signals.forever() {
                 if flag.swap(true, Ordering::Relaxed) {
-                    std::process::exit(Exit::Interrupted as i32);
+                    at_once();
                 }
-                eprintln!("stopping: what is finished is kept; once more to stop at once");
+                err!("stopping: what is finished is kept; once more to stop at once");
+                std::thread::spawn(|| {
+                    std::thread::sleep(PATIENCE);
+                    err!("interrupted: a second run goes on; what ran did not end by itself and begins anew then");
+                    at_once();
+                });
             }
         })),
-        Err(e) => eprintln!("warning: Ctrl-C will not stop cleanly: {e}"),
+        Err(e) => err!("warning: Ctrl-C will not stop cleanly: {e}"),
     }
     stop
+}
+
+/// How long tasks may take to end by themselves. Statistics and packings look at the flag only now and then, and a store is
+/// sound whenever a campaign is killed.
+const PATIENCE: Duration = Duration::from_millis(850);
+
+/// Ends this process and the programs that it runs.
+fn at_once() -> ! {
+    leftover::end_own();
+    std::process::exit(Exit::Interrupted as i32)
 }
 
 /// Whether `nohup` (or the like) started this process: then the end of the terminal must not end the campaign.
@@ -167,7 +196,7 @@ fn summary(report: &Report, seconds: f64, number: Option<u64>) -> String {
 
 fn exit(report: &Report) -> Exit {
     if let Some(why) = &report.broken {
-        eprintln!("error: {why}");
+        err!("error: {why}");
         Exit::System
     } else if report.interrupted {
         Exit::Interrupted

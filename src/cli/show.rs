@@ -85,7 +85,7 @@ impl Show {
         // Single rows are known only when every task is looked up.
         let report = decide(&workflow, &store, std::slice::from_ref(&stage), false);
         let Some(object) = object(&workflow, &report, &stage, row) else {
-            eprintln!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
+            err!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
             return Err(Exit::BadInput);
         };
         if self.path {
@@ -116,6 +116,10 @@ impl Show {
     fn values(&self, what: &str, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
         let artifact = store.get(&object.content).map_err(|e| system(&e))?;
         let tables = self.chosen(what, &artifact)?;
+        // Beside its numbers, in whatever form they are shown.
+        if let Some(why) = super::remarks::failure(&artifact) {
+            err!("warning: {what}: the run gave no result: {}", on_screen(why));
+        }
         if self.json {
             let value = match &self.table {
                 Some(_) => tables.first().map_or(Value::Null, |(_, table)| table_json(table)),
@@ -144,12 +148,12 @@ impl Show {
         if let Some(wanted) = &self.table {
             tables.retain(|(name, _)| name == wanted);
             if tables.is_empty() {
-                eprintln!("error: `{what}` has no table `{wanted}`; it has {known}");
+                err!("error: `{what}` has no table `{wanted}`; it has {known}");
                 return Err(Exit::BadInput);
             }
         }
         if self.csv && tables.len() > 1 {
-            eprintln!("error: `{what}` has several tables; choose one with --table: {known}");
+            err!("error: `{what}` has several tables; choose one with --table: {known}");
             return Err(Exit::BadInput);
         }
         Ok(tables)
@@ -164,7 +168,7 @@ pub(super) fn parts(what: &str) -> Result<(String, Option<usize>), Exit> {
     match row.trim().parse::<usize>() {
         Ok(row) if row > 0 => Ok((stage.to_owned(), Some(row - 1))),
         Ok(_) | Err(_) => {
-            eprintln!("error: `{row}` is not a row; rows are counted from 1, as in orthogonal[12]");
+            err!("error: `{row}` is not a row; rows are counted from 1, as in orthogonal[12]");
             Err(Exit::BadInput)
         }
     }
@@ -226,21 +230,36 @@ fn short(values: &Values) -> Vec<String> {
 /// So many rows of a table are shown to a reader; programs take `--csv` or `--json`.
 const MOST_ROWS: usize = 100;
 
+/// So many columns.
+const MOST_COLUMNS: usize = 200;
+
+/// A cell for a terminal: characters that steer it, which a log or a file may hold, are shown as signs.
+fn on_screen(cell: &str) -> String {
+    cell.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
 pub(super) fn text(table: &Table) -> String {
     let mut shown = comfy_table::Table::new();
     shown.load_style(comfy_table::presets::NOTHING);
-    shown.set_header(table.columns.iter().map(head));
-    let columns: Vec<Vec<String>> = table.columns.iter().map(|column| short(&column.values)).collect();
+    let seen = &table.columns[..table.columns.len().min(MOST_COLUMNS)];
+    shown.set_header(seen.iter().map(|column| on_screen(&head(column))));
+    let columns: Vec<Vec<String>> = seen.iter().map(|column| short(&column.values)).collect();
     for row in 0..table.rows().min(MOST_ROWS) {
-        shown.add_row(columns.iter().map(|column| &column[row]));
+        shown.add_row(columns.iter().map(|column| on_screen(&column[row])));
     }
-    for (place, column) in table.columns.iter().enumerate() {
+    for (place, column) in seen.iter().enumerate() {
         if let (Some(shown), Values::Reals(_) | Values::Ints(_)) = (shown.column_mut(place), &column.values) {
             shown.set_cell_alignment(comfy_table::CellAlignment::Right);
         }
     }
     let more = table.rows().saturating_sub(MOST_ROWS);
-    let rest = if more > 0 { format!("\n… and {more} more rows; --csv shows all") } else { String::new() };
+    let hidden = table.columns.len() - seen.len();
+    let rest = match (more, hidden) {
+        (0, 0) => String::new(),
+        (rows, 0) => format!("\n… and {rows} more rows; --csv shows all"),
+        (0, columns) => format!("\n… and {columns} more columns; --csv shows all"),
+        (rows, columns) => format!("\n… and {rows} more rows and {columns} more columns; --csv shows all"),
+    };
     let lines: Vec<String> = shown.lines().map(|line| line.trim_end().to_owned()).collect();
     format!("{}{rest}", lines.join("\n"))
 }

@@ -144,6 +144,9 @@ impl StoreCommand {
         for path in &gc.workflows {
             reach(path, &self.common, &store, &mut reachable)?;
         }
+        if gc.yes {
+            crate::stage::command::leftover::sweep().iter().for_each(|line| err!("{line}"));
+        }
         let swept = store.sweep(&reachable, gc.yes).map_err(|e| system(&e))?;
         let verb = if gc.yes { "removed" } else { "would remove" };
         let (removed, rubbish) = (swept.removed, swept.rubbish);

@@ -64,10 +64,9 @@ impl Design for BoxBehnken {
         }
         let edges = rows.len();
         let centre = self.centre_points.unwrap_or(*centre);
-        let mut rows = Points::coded(&rows, PointType::Edge);
-        rows.extend(Points::centre(k, centre));
         Ok(Points {
-            rows,
+            rows: Points::coded(&rows, PointType::Edge),
+            centre,
             construction: format!("Box–Behnken, {edges} edge runs and {centre} centre points"),
             source: "Box & Behnken 1960, Technometrics 2, 455, doi:10.1080/00401706.1960.10489912".into(),
         })

@@ -159,10 +159,10 @@ impl Design for CentralComposite {
                 rows.extend(Points::coded(&[row], PointType::Axial));
             }
         }
-        rows.extend(Points::centre(k, centre));
         let part = if fraction { ", a fraction of resolution V or more" } else { "" };
         Ok(Points {
             rows,
+            centre,
             construction: format!(
                 "central composite, {f} corners{part}, {} axial points at α = {alpha:.6}, {centre} centre points",
                 2 * k

@@ -39,14 +39,17 @@ impl Design for FullFactorial {
             };
             (counts.iter().map(place).collect(), kind)
         };
-        let mut rows: Vec<_> = (0..runs).map(row).collect();
-        rows.extend(Points::centre(factors.len(), self.centre_points));
         let shape: Vec<String> = counts.iter().map(ToString::to_string).collect();
         Ok(Points {
-            rows,
+            rows: (0..runs).map(row).collect(),
+            centre: self.centre_points,
             construction: format!("full factorial, {} = {runs} combinations", shape.join(" × ")),
             source: "Fisher 1935, The Design of Experiments".into(),
         })
+    }
+
+    fn size(&self, factors: &[Factor]) -> (usize, usize) {
+        (factors.iter().map(Factor::level_count).product(), self.centre_points)
     }
 
     fn faults(&self, factors: &[Factor]) -> Vec<Fault> {

@@ -166,11 +166,10 @@ impl Design for FractionalFactorial {
         let (Some(relation), true) = (relation, faults.is_empty()) else { return Err(faults) };
         let rows = rows(&words, factors.len());
         let (runs, k, p) = (rows.len(), factors.len(), words.len());
-        let mut rows = Points::coded(&rows, PointType::Cube);
-        rows.extend(Points::centre(factors.len(), self.centre_points));
         let resolution = relation.resolution().map_or("full".into(), |r| format!("resolution {r}"));
         Ok(Points {
-            rows,
+            rows: Points::coded(&rows, PointType::Cube),
+            centre: self.centre_points,
             construction: format!("2^({k}-{p}) fraction, {runs} runs, {resolution}; {}", relation.text(factors, 15)),
             source: if self.generators.is_empty() {
                 "Chen, Sun & Wu 1993, Int. Stat. Rev. 61, 131, doi:10.2307/1403599".into()

@@ -77,6 +77,7 @@ impl Design for Given {
         let row = |row: &Vec<f64>| (row.iter().zip(factors).map(place).collect(), PointType::Given);
         Ok(Points {
             rows: self.rows.iter().map(row).collect(),
+            centre: 0,
             construction: format!("{} given rows", self.rows.len()),
             source: self.source.clone(),
         })

@@ -69,6 +69,10 @@ impl Design for LatinHypercube {
         faults
     }
 
+    fn size(&self, _: &[Factor]) -> (usize, usize) {
+        (self.runs, 0)
+    }
+
     fn draws(&self) -> bool {
         true
     }
@@ -98,6 +102,7 @@ impl Design for LatinHypercube {
         };
         Ok(Points {
             rows,
+            centre: 0,
             construction: format!("Latin hypercube, {n} points, {how}"),
             source: match self.criterion {
                 Criterion::Maximin => {

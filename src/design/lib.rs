@@ -44,6 +44,12 @@ pub trait Design {
         self.points(factors, &mut Stream::new(0, "design", 0)).err().unwrap_or_default()
     }
 
+    /// Runs of a design without faults, and how many more at its centre; for designs whose points take long.
+    fn size(&self, factors: &[Factor]) -> (usize, usize) {
+        let points = self.points(factors, &mut Stream::new(0, "design", 0));
+        points.map_or((0, 0), |points| (points.rows.len(), points.centre))
+    }
+
     /// Whether the points depend on the stream.
     fn draws(&self) -> bool {
         false
@@ -80,6 +86,10 @@ macro_rules! methods {
 
             fn faults(&self, factors: &[Factor]) -> Vec<Fault> {
                 match self { $(Self::$name(design) => design.faults(factors),)* }
+            }
+
+            fn size(&self, factors: &[Factor]) -> (usize, usize) {
+                match self { $(Self::$name(design) => design.size(factors),)* }
             }
 
             fn points(&self, factors: &[Factor], stream: &mut Stream) -> Result<Points, Vec<Fault>> {
@@ -130,13 +140,15 @@ pub fn check(method: &Method, factors: &[Factor], layout: Layout) -> Vec<Fault> 
     if faults.is_empty() {
         faults = method.faults(factors);
     }
-    faults.extend(layout.fault(1));
+    let (rows, centre) = if faults.is_empty() { method.size(factors) } else { (0, 0) };
+    faults.extend(layout.fault(rows, centre));
     faults
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::table::MOST_RUNS;
 
     /// The name in a task text is the name in a workflow.
     #[test]
@@ -187,5 +199,41 @@ mod tests {
         let none = Layout { replicates: 0, order: Order::Standard };
         let error = build(&Method::FullFactorial(Default::default()), &factors, none, 1).unwrap_err();
         assert!(error.to_string().contains("`replicates` is 0"));
+    }
+
+    /// The count of a file is judged, with the number of runs that it would be, before room is made for it.
+    #[test]
+    fn counts_beyond_all_tables_are_refused_before_they_take_memory() {
+        let factors = ["a", "b", "c"].map(|name| Factor::range(name, "", 0.0, 1.0));
+        let once = Layout::default();
+        for count in [MOST_RUNS, 1 << 32, usize::MAX] {
+            let all = [
+                Method::FullFactorial(factorial::FullFactorial { centre_points: count }),
+                Method::FractionalFactorial(fractional::FractionalFactorial {
+                    centre_points: count,
+                    ..Default::default()
+                }),
+                Method::PlackettBurman(plackett_burman::PlackettBurman { centre_points: count, ..Default::default() }),
+                Method::CentralComposite(central_composite::CentralComposite {
+                    centre_points: Some(count),
+                    ..Default::default()
+                }),
+                Method::BoxBehnken(box_behnken::BoxBehnken { centre_points: Some(count) }),
+            ];
+            for method in all {
+                let found = check(&method, &factors, once);
+                assert!(
+                    found.iter().any(|fault| fault
+                        .to_string()
+                        .starts_with(&format!("`centre_points` is {count}; the table would have "))),
+                    "{found:?}"
+                );
+                assert_eq!(build(&method, &factors, once, 1).unwrap_err().to_string(), found[0].to_string());
+                let many = Layout { replicates: count, ..once };
+                assert!(!check(&Method::FullFactorial(Default::default()), &factors, many).is_empty());
+            }
+        }
+        let most = Method::BoxBehnken(box_behnken::BoxBehnken { centre_points: Some(MOST_RUNS - 12) });
+        assert_eq!(check(&most, &factors, once), []);
     }
 }

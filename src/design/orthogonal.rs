@@ -205,6 +205,7 @@ impl Design for Orthogonal {
         };
         Ok(Points {
             rows: (0..table.recipe.runs()).map(row).collect(),
+            centre: 0,
             construction: format!("{}, {}; columns {}{merging}", table.name, table.recipe.words(), numbers.join(", ")),
             source: table.recipe.source().into(),
         })

@@ -55,11 +55,10 @@ impl Design for PlackettBurman {
         if self.fold {
             rows.extend(table.rows.iter().map(row(-1)));
         }
-        let mut rows = Points::coded(&rows, PointType::Cube);
-        rows.extend(Points::centre(factors.len(), self.centre_points));
         let folded = if self.fold { ", folded over" } else { "" };
         Ok(Points {
-            rows,
+            rows: Points::coded(&rows, PointType::Cube),
+            centre: self.centre_points,
             construction: format!("Plackett–Burman, {runs} runs ({}){folded}", table.how),
             source: "Plackett & Burman 1946, Biometrika 33, 305, doi:10.1093/biomet/33.4.305".into(),
         })

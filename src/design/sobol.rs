@@ -133,6 +133,10 @@ impl Design for Sobol {
         faults
     }
 
+    fn size(&self, _: &[Factor]) -> (usize, usize) {
+        (self.runs, 0)
+    }
+
     fn draws(&self) -> bool {
         self.scramble
     }
@@ -148,6 +152,7 @@ impl Design for Sobol {
         let skipped = if self.skip > 0 { format!(", the first {} left out", self.skip) } else { String::new() };
         Ok(Points {
             rows: points.iter().map(row).collect(),
+            centre: 0,
             construction: format!("Sobol sequence, {} points, {how}{skipped}", self.runs),
             source: "Joe & Kuo 2008, SIAM J. Sci. Comput. 30, 2635, doi:10.1137/070709359".into(),
         })

@@ -5,6 +5,7 @@ use super::error::Fault;
 use math::occurrence::occurrences;
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -55,8 +56,11 @@ pub enum Place {
 /// The runs of a design in standard order, before they are given their natural values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points {
-    /// One row a run: the place of every factor, and the type of the point.
+    /// One row a run but for those at the centre: the place of every factor, and the type of the point.
     pub rows: Vec<(Vec<Place>, PointType)>,
+    /// How many runs at the centre follow them. It may come from a file, so nothing is allocated for it before
+    /// [`Layout`] has judged it.
+    pub centre: usize,
     /// What was built, in one line.
     pub construction: String,
     /// Who published it: author, year, DOI.
@@ -69,9 +73,17 @@ impl Points {
         rows.iter().map(|row| (row.iter().map(|&x| Place::Coded(x)).collect(), point_type)).collect()
     }
 
-    /// `count` runs at the centre of `factors` factors.
-    pub(super) fn centre(factors: usize, count: usize) -> Vec<(Vec<Place>, PointType)> {
-        vec![(vec![Place::Coded(0.0); factors], PointType::Centre); count]
+    /// Number of runs.
+    pub fn runs(&self) -> usize {
+        self.rows.len().saturating_add(self.centre)
+    }
+
+    /// Places and type of a run.
+    fn run(&self, index: usize, factors: usize) -> (Cow<'_, [Place]>, PointType) {
+        match self.rows.get(index) {
+            Some((places, point_type)) => (places.into(), *point_type),
+            None => (vec![Place::Coded(0.0); factors].into(), PointType::Centre),
+        }
     }
 }
 
@@ -124,8 +136,8 @@ impl DesignTable {
         layout: Layout,
         stream: &mut Stream,
     ) -> Result<Self, Vec<Fault>> {
-        let once = points.rows.len();
-        if let Some(fault) = layout.fault(once) {
+        let once = points.runs();
+        if let Some(fault) = layout.fault(points.rows.len(), points.centre) {
             return Err(vec![fault]);
         }
         let mut order: Vec<usize> = (0..once * layout.replicates).collect();
@@ -133,9 +145,12 @@ impl DesignTable {
             stream.shuffle(&mut order);
         }
         let codings: Vec<(&Factor, Coding)> = factors.iter().map(|factor| (factor, factor.coding())).collect();
+        let mut types = Vec::with_capacity(order.len());
         let (mut coded, mut natural) = (Vec::with_capacity(order.len()), Vec::with_capacity(order.len()));
         for i in &order {
-            let row = points.rows[i % once].0.iter().zip(&codings);
+            let (places, point_type) = points.run(i % once, codings.len());
+            let row = places.iter().zip(&codings);
+            types.push(point_type);
             let (mut codes, mut values) = (Vec::with_capacity(codings.len()), Vec::with_capacity(codings.len()));
             for (code, value) in row.map(|(place, (factor, coding))| place.values(factor, coding)) {
                 codes.push(code);
@@ -148,7 +163,7 @@ impl DesignTable {
             factors: factors.to_vec(),
             coded,
             natural,
-            point_type: order.iter().map(|i| points.rows[i % once].1).collect(),
+            point_type: types,
             standard_order: order.iter().map(|i| i + 1).collect(),
             construction: points.construction.clone(),
             source: points.source.clone(),
@@ -180,18 +195,21 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// What is wrong with a design of `once` runs laid out so.
-    pub(super) fn fault(self, once: usize) -> Option<Fault> {
+    /// What is wrong with a design of `rows` runs and `centre` more at its centre, laid out so.
+    pub(super) fn fault(self, rows: usize, centre: usize) -> Option<Fault> {
         let bad = |option: &str, found: usize, wanted: &str| Fault::BadOption {
             option: option.into(),
             found: found.to_string(),
             wanted: wanted.into(),
         };
-        let most = || format!("a table has at most {MOST_RUNS} runs");
+        let once = rows as u128 + centre as u128;
+        let all = once * self.replicates as u128;
+        let most = format!("the table would have {all} runs, and has at most {MOST_RUNS}");
         match self.replicates {
             0 => Some(bad("replicates", 0, "it must be at least 1")),
-            _ if once > MOST_RUNS => Some(bad("rows", once, &most())),
-            n if n.saturating_mul(once) > MOST_RUNS => Some(bad("replicates", n, &most())),
+            _ if rows > MOST_RUNS => Some(bad("rows", rows, &most)),
+            _ if once > MOST_RUNS as u128 => Some(bad("centre_points", centre, &most)),
+            n if all > MOST_RUNS as u128 => Some(bad("replicates", n, &most)),
             _ => None,
         }
     }

@@ -5,7 +5,7 @@ use crate::artifact::{Column, Table, Values};
 /// A table as CSV, with units in the first line and all digits.
 pub fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
-    let mut out = csv::Writer::from_writer(Vec::new());
+    let mut out = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
     let written = out.write_record(table.columns.iter().map(head)).and_then(|()| {
         (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))
     });

@@ -1,10 +1,17 @@
 //! Axes: where the ticks stand, what they say, and where a value lies between the ends.
 //!
 //! Linear ticks are 1, 2, 2.5 or 5 times a power of ten; logarithmic ones are powers of ten with 2 … 9 as minor
-//! ticks (labelled too when the axis holds less than two powers). The largest exponents go into the tick labels as
-//! `4×10⁶`, so a number is never longer than six signs.
+//! ticks (labelled too when the axis holds less than two powers). Large and small numbers have a power of ten, `4×10⁶`.
+//! Where labels would be longer than [`LONGEST`] signs, what they have in common goes into the title: a power of ten, or
+//! a number that all of them lie above, `σ / MPa (+100000)`.
 
 use math::elementary::{log10, pow};
+
+/// Most signs of a label before what it has in common with the others goes into the title.
+const LONGEST: usize = 7;
+
+/// Labels of which the span is less than this part of the largest have leading digits in common.
+const SHARED: f64 = 0.02;
 
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
@@ -31,6 +38,8 @@ pub struct Tick {
 pub struct Axis {
     /// Title with its unit, in the markup of [`super::text`].
     pub label: String,
+    /// What all labels of ticks have in common, in the same markup; it belongs behind the title. Mostly empty.
+    pub common: String,
     /// Spread of the values.
     pub scale: Scale,
     /// Value at the start.
@@ -53,7 +62,53 @@ impl Axis {
             Scale::Linear => linear_ticks(low, high, want),
             Scale::Log => log_ticks(low, high, want),
         };
-        Self { label: label.into(), scale, low, high, ticks, minor, grid: true }
+        Self { label: label.into(), common: String::new(), scale, low, high, ticks, minor, grid: true }.shortened()
+    }
+
+    /// The title with what all labels have in common.
+    pub fn title(&self) -> String {
+        if self.label.is_empty() || self.common.is_empty() {
+            self.label.clone()
+        } else {
+            format!("{} ({})", self.label, self.common)
+        }
+    }
+
+    /// Takes a common number or power out of long labels, where there is a title that can say so.
+    fn shortened(mut self) -> Self {
+        self.common.clear();
+        let long = self.ticks.iter().any(|tick| signs(&tick.label) > LONGEST);
+        if !long || self.scale == Scale::Log || self.label.is_empty() || self.ticks.len() < 2 {
+            return self;
+        }
+        let at: Vec<f64> = self.ticks.iter().map(|tick| tick.at).collect();
+        let step = at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
+        let span = at[at.len() - 1] - at[0];
+        let largest = at.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        if !(step > 0.0 && span.is_finite() && largest.is_finite()) {
+            return self;
+        }
+        let place = power_of_ten(log10(span).ceil() as i32);
+        let base = if span < SHARED * largest { (at[0] / place).floor() * place } else { 0.0 };
+        let greatest = at.iter().fold(0.0, |greatest: f64, value| greatest.max((value - base).abs()));
+        let exponent = if (1e-2..1e4).contains(&greatest) { 0 } else { log10(greatest).floor() as i32 };
+        let unit = power_of_ten(exponent);
+        let places = at.iter().map(|value| decimals((value - base).abs().max(step) / unit)).max().unwrap_or(0);
+        let places = places.min(decimals(step / unit) + 1).min(LONGEST - 2);
+        for tick in &mut self.ticks {
+            tick.label = fixed((tick.at - base) / unit, places);
+        }
+        let number = fixed(base.abs(), decimals(place));
+        let short = number.trim_end_matches('0').trim_end_matches('.');
+        let number = if number.contains('.') { short.to_owned() } else { number };
+        let above = match (base == 0.0, base > 0.0, number) {
+            (true, ..) => String::new(),
+            (_, true, number) => format!("+{number}"),
+            (_, false, number) => format!("−{number}"),
+        };
+        let power = if exponent == 0 { String::new() } else { format!("×$10^{{{exponent}}}$") };
+        self.common = [power, above].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join(", ");
+        self
     }
 
     /// Around all finite values, with a margin of 5 % on both sides.
@@ -79,7 +134,8 @@ impl Axis {
     pub fn categories(label: impl Into<String>, names: &[String]) -> Self {
         let ticks = names.iter().enumerate().map(|(i, n)| Tick { at: i as f64, label: n.clone() }).collect();
         let high = names.len() as f64 - 0.5;
-        Self { label: label.into(), scale: Scale::Linear, low: -0.5, high, ticks, minor: Vec::new(), grid: false }
+        let (common, scale) = (String::new(), Scale::Linear);
+        Self { label: label.into(), common, scale, low: -0.5, high, ticks, minor: Vec::new(), grid: false }
     }
 
     /// The same without lines across.
@@ -94,7 +150,7 @@ impl Axis {
         let step = if step.is_finite() && step > 0.0 { step } else { (self.high - self.low).abs() / 4.0 };
         self.ticks = values.iter().map(|&at| Tick { at, label: shortest(at, step) }).collect();
         self.minor = Vec::new();
-        self
+        self.shortened()
     }
 
     /// Place of a value: 0 at the start of the axis, 1 at its end.
@@ -241,6 +297,11 @@ fn shortest(value: f64, step: f64) -> String {
     fixed(value, digits)
 }
 
+/// Signs of a label that are seen.
+fn signs(label: &str) -> usize {
+    label.chars().filter(|c| !"${}^".contains(*c)).count()
+}
+
 /// A number with fixed decimals and a true minus sign.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
@@ -306,6 +367,50 @@ mod tests {
         assert!(none.low < none.high);
         assert_eq!(fixed(-0.0001, 2), "0.00");
         assert_eq!(significant(0.012345, 3), "0.0123");
+    }
+
+    /// Labels of an experiment whose factor is 100000, 100000.5 and 100001 Pa, and of responses far from zero.
+    #[test]
+    fn what_long_labels_share_goes_into_the_title() {
+        let axis = Axis::between("p / Pa", Scale::Linear, 99_999.9, 100_001.1, 3);
+        let axis = axis.with_ticks_at(&[100_000.0, 100_000.5, 100_001.0]);
+        assert_eq!(labels(&axis), ["0.0", "0.5", "1.0"]);
+        assert_eq!(axis.title(), "p / Pa (+100000)");
+        let axis = Axis::between("y", Scale::Linear, -3.0e9, -1.0e9, 5);
+        assert_eq!(axis.title(), "y (×$10^{9}$)");
+        assert!(labels(&axis).contains(&"−2.0") || labels(&axis).contains(&"−2"), "{:?}", labels(&axis));
+        let axis = Axis::between("y", Scale::Linear, 5.000_000_01, 5.000_000_03, 4);
+        assert!(labels(&axis).iter().all(|label| signs(label) <= LONGEST), "{:?}", labels(&axis));
+        assert_eq!(axis.title(), "y (×$10^{-8}$, +5)");
+        // Without a title there is nowhere to say it.
+        assert_eq!(Axis::between("", Scale::Linear, 100_000.1, 100_000.3, 4).common, "");
+    }
+
+    proptest::proptest! {
+        #![proptest_config(proptest::test_runner::Config { failure_persistence: None, ..Default::default() })]
+        /// A reader finds the value of a tick again from its label and what the title adds.
+        #[test]
+        fn labels_and_title_give_the_value(centre in -1e12..1e12f64, exponent in -9i32..3, want in 3usize..8) {
+            let span = centre.abs() * pow(10.0, f64::from(exponent));
+            proptest::prop_assume!(span > 1e-9);
+            let axis = Axis::between("x", Scale::Linear, centre, centre + span, want);
+            let number = |text: &str| text.replace('−', "-").parse::<f64>();
+            let (mut power, mut base) = (0, 0.0);
+            for part in axis.common.split(", ").filter(|part| !part.is_empty()) {
+                match part.strip_prefix("×$10^{") {
+                    Some(rest) => power = rest.trim_end_matches("}$").parse::<i32>().unwrap(),
+                    None => base = number(part).unwrap(),
+                }
+            }
+            let mut seen = std::collections::BTreeSet::new();
+            for tick in &axis.ticks {
+                proptest::prop_assert!(seen.insert(tick.label.clone()), "{:?} {}", axis.ticks, axis.common);
+                if let Ok(label) = number(&tick.label) {
+                    let value = base + label * power_of_ten(power);
+                    proptest::prop_assert!((value - tick.at).abs() < 0.51 * span / axis.ticks.len() as f64, "{value} {tick:?} {}", axis.common);
+                }
+            }
+        }
     }
 
     /// Found by chance: a range of which the round numbers gave one tick.

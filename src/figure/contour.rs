@@ -149,7 +149,7 @@ impl Bands {
         }
         scene.stroke(ticks, Stroke::new(SOFT, 0.2));
         let at = [bar.right + 1.6 + widest + 1.2 + 0.8 * size, bar.centre()[1]];
-        scene.text(Line::new(&self.axis.label, size), at, Anchor::Middle, 90.0, INK);
+        scene.text(Line::new(&self.axis.title(), size), at, Anchor::Middle, 90.0, INK);
     }
 }
 

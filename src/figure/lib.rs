@@ -22,6 +22,7 @@ pub mod curve;
 pub mod dag;
 pub mod effect_plot;
 pub mod effects;
+pub mod escape;
 pub mod font;
 mod geometry;
 pub mod heatmap;

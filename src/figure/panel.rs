@@ -1,10 +1,10 @@
 //! One pair of axes on the page: frame, grid, ticks, titles; values → places.
 
 use super::Style;
-use super::axis::{Axis, Scale};
+use super::axis::{Axis, Scale, Tick};
 use super::palette::{GRID, INK, Marker, SOFT};
 use super::scene::{Anchor, Color, Path, Point, Rect, Scene, Stroke};
-use super::text::{CAP_HEIGHT, Line};
+use super::text::{CAP_HEIGHT, Line, plain_text};
 
 /// Length of a tick in mm.
 const TICK: f64 = 0.8;
@@ -143,14 +143,16 @@ impl Panel {
         self.draw_lines(scene);
         let size = style.size();
         let (x0, y0) = (self.area.left, self.area.bottom);
-        for tick in &self.x.ticks {
+        let below = |tick: &Tick| {
             let line = Line::new(&tick.label, size);
-            let at = [self.place_x(tick.at), y0 + TICK + GAP + CAP_HEIGHT * size];
-            scene.text(line, at, Anchor::Middle, 0.0, INK);
+            (self.place_x(tick.at), line.width + 0.35 * size, line)
+        };
+        for (x, _, line) in apart(labelled(&self.x).map(below).collect()) {
+            scene.text(line, [x, y0 + TICK + GAP + CAP_HEIGHT * size], Anchor::Middle, 0.0, INK);
         }
-        for tick in &self.y.ticks {
-            let line = Line::new(&tick.label, size);
-            scene.text_centred(line, [x0 - TICK - GAP, self.place_y(tick.at)], Anchor::End, INK);
+        let beside = |tick: &Tick| (self.place_y(tick.at), 1.05 * CAP_HEIGHT * size, Line::new(&tick.label, size));
+        for (y, _, line) in apart(labelled(&self.y).map(beside).collect()) {
+            scene.text_centred(line, [x0 - TICK - GAP, y], Anchor::End, INK);
         }
         let [cx, cy] = self.area.centre();
         if !self.x.label.is_empty() {
@@ -158,10 +160,11 @@ impl Panel {
             let labels =
                 if self.x.ticks.iter().any(|t| !t.label.is_empty()) { GAP + CAP_HEIGHT * size + below } else { 0.0 };
             let baseline = y0 + TICK + labels + TITLE_GAP + 0.72 * size;
-            scene.text(Line::new(&self.x.label, size), [cx, baseline], Anchor::Middle, 0.0, INK);
+            let room = self.area.width() + 1.6 * self.left.min(self.area.width() / 3.0);
+            scene.text(within(&self.x.title(), size, room), [cx, baseline], Anchor::Middle, 0.0, INK);
         }
         if !self.y.label.is_empty() {
-            let line = Line::new(&self.y.label, size);
+            let line = within(&self.y.title(), size, self.area.height() + 4.0 * size);
             scene.text(line, [x0 - self.left + 0.75 * size, cy], Anchor::Middle, 90.0, INK);
         }
     }
@@ -204,6 +207,41 @@ impl Panel {
         let y = format!("{} {} {:.3} {:.3} {}", self.y.low, self.y.high, r.bottom, r.top, scale(&self.y));
         vec![("x", x), ("y", y)]
     }
+}
+
+fn labelled(axis: &Axis) -> impl Iterator<Item = &Tick> {
+    axis.ticks.iter().filter(|tick| !tick.label.is_empty())
+}
+
+/// The labels that do not touch: all of them, or every second, third, … from the first on. `labels` are places, lengths
+/// along the axis and what is written.
+fn apart<T>(labels: Vec<(f64, f64, T)>) -> Vec<(f64, f64, T)> {
+    let touch = |every: usize| {
+        let shown: Vec<&(f64, f64, T)> = labels.iter().step_by(every).collect();
+        shown.windows(2).any(|pair| (pair[1].0 - pair[0].0).abs() < (pair[0].1 + pair[1].1) / 2.0)
+    };
+    let every = (1..labels.len().max(2)).find(|every| !touch(*every)).unwrap_or(labels.len().max(1));
+    labels.into_iter().step_by(every).collect()
+}
+
+/// A title that fits into `room`: smaller, down to two thirds, or else cut.
+fn within(title: &str, size: f64, room: f64) -> Line {
+    const SMALLEST: f64 = 0.66;
+    let line = Line::new(title, size);
+    if line.width <= room || room <= 0.0 {
+        return line;
+    }
+    let smaller = Line::new(title, size * (room / line.width).max(SMALLEST));
+    if smaller.width <= 1.001 * room {
+        return smaller;
+    }
+    // Mathematics is not cut in its middle.
+    let plain: Vec<char> = line.plain.chars().collect();
+    let cut = |length: usize| {
+        let text: String = plain[..length].iter().collect();
+        Line::new(&format!("{}…", plain_text(&text)), size * SMALLEST)
+    };
+    (0..plain.len()).rev().map(cut).find(|line| line.width <= room).unwrap_or(smaller)
 }
 
 /// Outline of a marker of a given size (its width) around a point.

@@ -4,6 +4,7 @@
 //! pictures may share a page. Text carries its words as an `aria-label`. Clips are nested `<svg>` views and need no
 //! id. Discs are zero-length lines with round ends, one path per radius class of 0.01 mm.
 
+use super::escape::xml;
 use super::font::{Face, UNITS_PER_EM};
 use super::scene::{Color, Fill, Item, Path, Point, Rect, Scene, Step, Stroke};
 use super::text::Line;
@@ -21,9 +22,9 @@ pub fn svg(scene: &Scene) -> String {
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}mm\" height=\"{h}mm\" viewBox=\"0 0 {w} {h}\" role=\"img\">\n"
     );
-    put(&mut out, format_args!("<title>{}</title>\n", escape(&scene.title)));
+    put(&mut out, format_args!("<title>{}</title>\n", xml(&scene.title)));
     if !scene.description.is_empty() {
-        put(&mut out, format_args!("<desc>{}</desc>\n", escape(&scene.description)));
+        put(&mut out, format_args!("<desc>{}</desc>\n", xml(&scene.description)));
     }
     if !glyphs.is_empty() {
         out += "<defs>\n";
@@ -57,7 +58,7 @@ fn write_item(out: &mut String, glyphs: &mut BTreeSet<(Face, u16)>, item: &Item)
         Item::Discs { discs, color } => write_discs(out, discs, *color),
         Item::Text { line, at, angle, color } => text(out, glyphs, line, *at, *angle, *color),
         Item::Group { clip, facts, items } => {
-            let facts: String = facts.iter().map(|(k, v)| format!(" data-{k}=\"{}\"", escape(v))).collect();
+            let facts: String = facts.iter().map(|(k, v)| format!(" data-{k}=\"{}\"", xml(v))).collect();
             if !facts.is_empty() || clip.is_none() {
                 put(out, format_args!("<g{facts}>\n"));
             }
@@ -205,7 +206,7 @@ fn text(out: &mut String, glyphs: &mut BTreeSet<(Face, u16)>, line: &Line, at: P
         out,
         format_args!(
             "<g role=\"text\" aria-label=\"{}\" fill=\"{}\" transform=\"translate({} {}){turn}\">",
-            escape(&line.plain),
+            xml(&line.plain),
             hex(color),
             number(at[0]),
             number(at[1])
@@ -272,8 +273,4 @@ fn hex(Color(r, g, b): Color) -> String {
         return format!("#{:x}{:x}{:x}", r / 17, g / 17, b / 17);
     }
     format!("#{r:02x}{g:02x}{b:02x}")
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -1,6 +1,9 @@
-//! Tables as CSV, LaTeX (booktabs) and Markdown from columns. Symbols and units stand in the heads.
+//! Tables as CSV, LaTeX (booktabs) and Markdown from columns. Symbols and units stand in the heads. Texts stay texts in
+//! each of them ([`super::escape`]); captions and notes may hold mathematics between dollar signs.
 
 use super::column::{Column, Digits, Values};
+use super::escape;
+use super::text::unit_parts;
 
 /// A table with the words above it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,11 +22,14 @@ pub struct Table {
 pub fn csv(columns: &[Column]) -> String {
     let head = columns
         .iter()
-        .map(|c| quoted(&if c.unit.is_empty() { c.key.clone() } else { format!("{} [{}]", c.key, c.unit) }));
+        .map(|c| escape::csv(&if c.unit.is_empty() { c.key.clone() } else { format!("{} [{}]", c.key, c.unit) }));
     let mut out = head.collect::<Vec<_>>().join(",") + "\n";
+    let alone = columns.len() == 1;
     for row in 0..rows(columns) {
-        let cells = columns.iter().map(|c| quoted(&exact(c, row)));
-        out += &cells.collect::<Vec<_>>().join(",");
+        let cells = columns.iter().map(|c| escape::csv(&exact(c, row)));
+        let line = cells.collect::<Vec<_>>().join(",");
+        // An empty line would be no row.
+        out += if alone && line.is_empty() { "\"\"" } else { &line };
         out.push('\n');
     }
     out
@@ -31,10 +37,6 @@ pub fn csv(columns: &[Column]) -> String {
 
 fn rows(columns: &[Column]) -> usize {
     columns.iter().map(Column::len).max().unwrap_or(0)
-}
-
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.into() }
 }
 
 /// A cell without loss; empty when missing.
@@ -91,10 +93,10 @@ impl Table {
             self.columns.iter().map(|c| if matches!(c.values, Values::Words(_)) { 'l' } else { 'r' }).collect();
         let mut out = String::from("\\begin{table}\n\\centering\n");
         if !self.caption.is_empty() {
-            out += &format!("\\caption{{{}}}\n", latex_text(&self.caption));
+            out += &format!("\\caption{{{}}}\n", escape::latex_markup(&self.caption));
         }
         if !self.label.is_empty() {
-            out += &format!("\\label{{{}}}\n", self.label);
+            out += &format!("\\label{{{}}}\n", escape::latex_label(&self.label));
         }
         out += &format!("\\begin{{tabular}}{{{align}}}\n\\toprule\n");
         let head: Vec<String> = self.columns.iter().map(latex_head).collect();
@@ -105,7 +107,7 @@ impl Table {
         }
         out += "\\bottomrule\n\\end{tabular}\n";
         for note in &self.notes {
-            out += &format!("\\par\\smallskip\\footnotesize {}\n", latex_text(note));
+            out += &format!("\\par\\smallskip\\footnotesize {}\n", escape::latex_markup(note));
         }
         out + "\\end{table}\n"
     }
@@ -114,17 +116,17 @@ impl Table {
     pub fn markdown(&self) -> String {
         let mut out = String::new();
         if !self.caption.is_empty() {
-            out += &format!("**{}**\n\n", self.caption);
+            out += &format!("**{}**\n\n", escape::markdown_markup(&self.caption));
         }
         let head: Vec<String> = self.columns.iter().map(markdown_head).collect();
         let rule = self.columns.iter().map(|c| if matches!(c.values, Values::Words(_)) { ":--" } else { "--:" });
         out += &format!("| {} |\n| {} |\n", head.join(" | "), rule.collect::<Vec<_>>().join(" | "));
         for row in 0..rows(&self.columns) {
-            let cells = self.columns.iter().map(|c| shown(c, row).unwrap_or("–".into()).replace('|', "\\|"));
+            let cells = self.columns.iter().map(|c| shown(c, row).map_or("–".into(), |cell| escape::markdown(&cell)));
             out += &format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "));
         }
         for note in &self.notes {
-            out += &format!("\n{note}\n");
+            out += &format!("\n{}\n", escape::markdown_markup(note));
         }
         out
     }
@@ -136,22 +138,22 @@ impl Table {
 }
 
 fn latex_head(c: &Column) -> String {
-    let name = if c.symbol.is_empty() { latex_text(&c.key) } else { format!("${}$", c.symbol) };
+    let name = if c.symbol.is_empty() { escape::latex(&c.key) } else { format!("${}$", c.symbol) };
     if c.unit.is_empty() { name } else { format!("{name} / {}", latex_unit(&c.unit)) }
 }
 
 fn latex_unit(unit: &str) -> String {
-    latex_text(unit)
-        .replace("\\textasciicircum{}", "^")
-        .replace('*', "\\cdot ")
-        .split_once('^')
-        .map_or_else(|| latex_text(unit), |(base, power)| format!("{base}$^{{{power}}}$"))
+    let part = |(text, power): (&str, &str)| {
+        let text = escape::latex(text).replace("{*}", "$\\cdot$");
+        if power.is_empty() { text } else { format!("{text}$^{{{}}}$", escape::latex(power)) }
+    };
+    unit_parts(unit).into_iter().map(part).collect()
 }
 
 fn latex_cell(c: &Column, row: usize) -> String {
     let Some(text) = shown(c, row) else { return "--".into() };
     if matches!(c.values, Values::Words(_)) {
-        return latex_text(&text);
+        return escape::latex(&text);
     }
     match text.split_once('e') {
         Some((mantissa, power)) => format!("${mantissa}\\times 10^{{{power}}}$"),
@@ -160,33 +162,11 @@ fn latex_cell(c: &Column, row: usize) -> String {
     }
 }
 
-/// Escapes what LaTeX takes for commands; mathematics between dollar signs passes.
-fn latex_text(text: &str) -> String {
-    let mut out = String::new();
-    for (i, part) in text.split('$').enumerate() {
-        if i % 2 == 1 {
-            out += &format!("${part}$");
-            continue;
-        }
-        for c in part.chars() {
-            match c {
-                '%' | '&' | '#' | '_' | '{' | '}' => {
-                    out.push('\\');
-                    out.push(c);
-                }
-                '\\' => out += "\\textbackslash{}",
-                '^' => out += "\\textasciicircum{}",
-                '~' => out += "\\textasciitilde{}",
-                _ => out.push(c),
-            }
-        }
-    }
-    out
-}
-
 fn markdown_head(c: &Column) -> String {
-    let name = if c.symbol.is_empty() { c.key.clone() } else { format!("${}$", c.symbol) };
-    (if c.unit.is_empty() { name } else { format!("{name} / {}", c.unit) }).replace('|', "\\|")
+    // A bar would end the cell, also within mathematics.
+    let name =
+        if c.symbol.is_empty() { escape::markdown(&c.key) } else { format!("${}$", c.symbol.replace('|', "\\vert ")) };
+    if c.unit.is_empty() { name } else { format!("{name} / {}", escape::markdown(&c.unit)) }
 }
 
 #[cfg(test)]

@@ -89,7 +89,12 @@ pub fn check(label: &str) -> Result<(), LabelError> {
     pen.fault.map_or(Ok(()), Err)
 }
 
-/// The markup of a quantity: name, symbol and unit, each of which may be empty.
+/// Any text as markup that shows it as it is.
+pub fn plain_text(text: &str) -> String {
+    text.replace('$', r"$\$$")
+}
+
+/// The markup of a quantity: name (itself markup), symbol and unit, each of which may be empty.
 pub fn quantity(name: &str, symbol: &str, unit: &str) -> String {
     let mut out = name.to_string();
     if !symbol.is_empty() {
@@ -103,31 +108,42 @@ pub fn quantity(name: &str, symbol: &str, unit: &str) -> String {
     out
 }
 
-/// The markup of a unit: `kg/m^3` gets a superscript, `*` becomes a centred dot, `um` and `deg` their signs.
+/// The markup of a unit: `kg/m^3` and `MPa*m^0.5` get superscripts, `*` becomes a centred dot, `um` and `deg` their signs.
 pub fn unit_markup(unit: &str) -> String {
-    let (mut out, mut power) = (String::new(), false);
-    for c in unit.chars() {
-        if power && !(c.is_ascii_digit() || c == '-') {
-            out += "}$";
-            power = false;
+    match unit {
+        "um" => return "μm".into(),
+        "deg" => return "°".into(),
+        _ => {}
+    }
+    let mut out = String::new();
+    for (text, power) in unit_parts(unit) {
+        out += &plain_text(&text.replace('*', "·"));
+        if !power.is_empty() {
+            out += &format!("$^{{{}}}$", power.replace(['\\', '{', '}', '$'], ""));
         }
-        match c {
-            '^' => {
-                out += "$^{";
-                power = true;
+    }
+    out
+}
+
+/// A unit cut behind each of its powers: what stands before a power, and the power without `^` and brackets.
+pub(crate) fn unit_parts(unit: &str) -> Vec<(&str, &str)> {
+    let mut parts = Vec::new();
+    let mut rest = unit;
+    while let Some((before, after)) = rest.split_once('^') {
+        let (power, behind) = match after.strip_prefix('(').and_then(|inner| inner.split_once(')')) {
+            Some(bracket) => bracket,
+            None => {
+                let number = |c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.');
+                after.split_at(after.find(|c| !number(c)).unwrap_or(after.len()))
             }
-            '*' => out.push('·'),
-            _ => out.push(c),
-        }
+        };
+        parts.push((before, power));
+        rest = behind;
     }
-    if power {
-        out += "}$";
+    if !rest.is_empty() {
+        parts.push((rest, ""));
     }
-    match out.as_str() {
-        "um" => "μm".into(),
-        "deg" => "°".into(),
-        _ => out,
-    }
+    parts
 }
 
 impl Line {

@@ -272,9 +272,10 @@ impl Search {
     }
 }
 
-/// The best trial as a recommendation: what was seen there, with no interval.
+/// The best trial as a recommendation: what was seen there in one run. How far another run would be from it is not known,
+/// which is not to say that it is nothing.
 fn observed(trial: &Trial) -> Recommendation {
-    let seen = |&y: &f64| Interval { mean: y, low: y, high: y };
+    let seen = |&y: &f64| Interval { mean: y, low: f64::NAN, high: f64::NAN };
     Recommendation {
         point: trial.point.clone(),
         responses: trial.responses.iter().map(seen).collect(),

@@ -7,7 +7,7 @@ use super::node::{Node, Sources, Step, Table, Value};
 use super::read::read;
 use super::{Overrides, StageNode, Workflow, overlay, stages, syntax};
 use crate::stage::material::{Material, MaterialTable};
-use crate::stage::{Context, Outline};
+use crate::stage::{Context, OWN_COLUMNS, Outline, symbol_fault};
 use crate::unit::Unit;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +18,12 @@ use std::sync::Arc;
 const ROOT: [&str; 6] = ["workflow", "factor", "response", "material", "stage", "profile"];
 
 /// The checked workflow, or every fault of it in the order of the file.
-pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
+pub(super) fn workflow(
+    name: &str,
+    text: &str,
+    overrides: &Overrides,
+    folder: Option<&Path>,
+) -> Result<Workflow, Vec<Fault>> {
     let mut sources = Sources(vec![Arc::new(Source { name: name.to_owned(), text: text.to_owned() })]);
     let (tree, mut faults) = syntax::tree(&sources, 0);
     let Some(Node { value: Value::Table(mut root), .. }) = tree else { return Err(faults) };
@@ -26,6 +31,7 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
     overlay::profile(&mut root, overrides.profile.as_deref(), &mut sources, &mut faults);
     overlay::sets(&mut root, &overrides.sets, &mut sources, &mut faults);
     let mut check = Check { sources: &sources, faults, lost: Vec::new() };
+    let mut looked = stages::Looked { folder, absent: Vec::new(), remarks: Vec::new() };
     check.root_keys(&root);
     let head = check.head(&mut root);
     let mut context = Context {
@@ -35,8 +41,9 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         materials: check.named(&mut root, "material", Check::material),
         ..Context::default()
     };
-    let stages = stages::read_all(&mut check, &mut root, &mut context);
+    let stages = stages::read_all(&mut check, &mut root, &mut context, &mut looked);
     check.settings(&root, &context);
+    check.columns(&root, &context);
     let mut faults = check.faults;
     let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
         faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.source.name != name, place.span.start)));
@@ -57,6 +64,8 @@ pub(super) fn workflow(name: &str, text: &str, overrides: &Overrides) -> Result<
         profile: overrides.profile.clone(),
         profiles,
         stages,
+        absent: looked.absent,
+        remarks: looked.remarks,
     })
 }
 
@@ -119,6 +128,7 @@ impl Check<'_> {
         let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| FactorTable::deserialize(reader))?;
         let before = self.faults.len();
         self.unit(&table.unit, node);
+        self.symbol(table.symbol.as_deref(), node);
         if table.levels.is_empty() && table.range.is_none() {
             let fault = Fault::new(format!("factor `{name}` has neither levels nor a range"));
             let hint = "give it `levels = [10, 20, 30]` or `range = [10, 30]`";
@@ -144,12 +154,38 @@ impl Check<'_> {
     fn response(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Response> {
         let table = read(node, self.sources, &mut self.faults, Vec::new, |reader| ResponseTable::deserialize(reader))?;
         self.unit(&table.unit, node);
+        self.symbol(table.symbol.as_deref(), node);
         Some(table.response(name))
     }
 
     fn material(&mut self, _: &str, node: &mut Node) -> Option<Material> {
         let read_table = |reader: super::reader::Reader<'_>| MaterialTable::deserialize(reader);
         read(node, self.sources, &mut self.faults, Vec::new, read_table).map(|table| table.0)
+    }
+
+    /// Factors and responses are columns of one table, beside the program's own.
+    fn columns(&mut self, root: &Table, context: &Context) {
+        let own = |key| root.0.get(key).map(|entry| &entry.node);
+        let names = context.factors.keys().map(|name| ("factor", name));
+        for (section, name) in names.chain(context.responses.keys().map(|name| ("response", name))) {
+            let Some(node) = own(section) else { continue };
+            let Some(column) = OWN_COLUMNS.iter().find(|column| column.eq_ignore_ascii_case(name)) else { continue };
+            let message = format!("{section} `{name}` has the name of a column that flow writes, `{column}`");
+            let fault = Fault::new(message).hint("give it another name; its `symbol` says how it is shown");
+            self.complain(node, &steps([name.as_str()]), fault);
+        }
+        let both = context.responses.keys().filter(|name| context.factors.contains_key(*name));
+        for (name, node) in both.filter_map(|name| Some((name, own("response")?))) {
+            let message = format!("`{name}` is a factor and a response, which are columns of one table");
+            let fault = Fault::new(message).hint("rename one of them; the `symbol` of both may be the same");
+            self.complain(node, &steps([name.as_str()]), fault);
+        }
+    }
+
+    fn symbol(&mut self, symbol: Option<&str>, node: &Node) {
+        if let Some(why) = symbol.and_then(symbol_fault) {
+            self.complain(node, &steps(["symbol"]), Fault::new(why));
+        }
     }
 
     fn unit(&mut self, unit: &str, node: &Node) {

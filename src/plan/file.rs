@@ -36,7 +36,7 @@ pub(super) struct FactorTable {
     /// How the range is divided: `log` by equal ratios, for ranges over decades; designs, surfaces and searches honour it.
     #[serde(default)]
     pub(super) scale: Scale,
-    /// Symbol for tables and figures, such as "\\bar\\sigma_c"; the factor's name when not given.
+    /// Symbol for tables and figures, such as "\\bar\\sigma_c"; without one the name stands as it is.
     pub(super) symbol: Option<String>,
     /// Levels in the unit, such as [10, 20, 30].
     #[serde(default)]
@@ -53,7 +53,7 @@ pub(super) struct ResponseTable {
     /// Unit in tables and figures, such as "MPa"; none for a pure number.
     #[serde(default)]
     pub(super) unit: String,
-    /// Symbol for tables and figures, such as "\\sigma_u"; the response's name when not given.
+    /// Symbol for tables and figures, such as "\\sigma_u"; without one the name stands as it is.
     pub(super) symbol: Option<String>,
 }
 
@@ -100,6 +100,11 @@ impl JsonSchema for Paths {
     }
 }
 
+/// A name of one letter is a variable; any other stands in words, where `kn_ks` has no subscript.
+fn one_letter(name: &str) -> String {
+    if name.chars().count() == 1 { name.to_owned() } else { String::new() }
+}
+
 impl FactorTable {
     /// The factor as stages see it.
     pub(super) fn factor(self, name: &str) -> Factor {
@@ -110,13 +115,13 @@ impl FactorTable {
         };
         let range = range.or_else(|| ends(&levels));
         let sets = sets.0;
-        Factor { sets, unit, scale, symbol: symbol.unwrap_or_else(|| name.to_owned()), levels, range }
+        Factor { sets, unit, scale, symbol: symbol.unwrap_or_else(|| one_letter(name)), levels, range }
     }
 }
 
 impl ResponseTable {
     /// The response as stages see it.
     pub(super) fn response(self, name: &str) -> Response {
-        Response { unit: self.unit, symbol: self.symbol.unwrap_or_else(|| name.to_owned()) }
+        Response { unit: self.unit, symbol: self.symbol.unwrap_or_else(|| one_letter(name)) }
     }
 }

@@ -53,6 +53,10 @@ pub struct Workflow {
     pub profiles: Vec<String>,
     /// Stages so that each comes after its inputs, else in the order of the file.
     pub stages: Vec<StageNode>,
+    /// Files beside it that cannot be read: faults of a run, but results that are stored can be shown without them.
+    pub absent: Vec<Fault>,
+    /// What is no fault, and must be known before its results are trusted.
+    pub remarks: Vec<Fault>,
 }
 
 /// A stage of a workflow.
@@ -80,17 +84,18 @@ impl Workflow {
 /// All faults of the file at once.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
     let text = syntax::read_file(path).map_err(|fault| vec![fault])?;
-    let mut workflow = parse(&path.display().to_string(), &text, overrides)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut workflow = check::workflow(&path.display().to_string(), &text, overrides, Some(folder))?;
     path.clone_into(&mut workflow.path);
     Ok(workflow)
 }
 
-/// Checks the text of a workflow; `name` is that of its file.
+/// Checks the text of a workflow without a look at files beside it; `name` is that of its file.
 ///
 /// # Errors
 /// All faults of the text at once.
 pub fn parse(name: &str, text: &str, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
-    check::workflow(name, text, overrides)
+    check::workflow(name, text, overrides, None)
 }
 
 #[cfg(test)]

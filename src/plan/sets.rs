@@ -68,7 +68,12 @@ impl Check<'_> {
     fn microparameter(&mut self, context: &Context, one: &One<'_>) {
         let One { factors, name, factor, path } = *one;
         let mut takers = context.materials.iter().filter(|(_, material)| material.takes(path)).peekable();
-        if takers.peek().is_none() {
+        let parameter = path.split_once('.').and_then(|(_, key)| Microparameter::from_key(key));
+        // A material that a stage gives has the groups of the specimens.
+        let group = path.split_once('.').map_or("", |(group, _)| group);
+        let by_stage =
+            parameter.is_some() && context.sketches.values().any(|sketch| sketch.groups.iter().any(|own| own == group));
+        if takers.peek().is_none() && !by_stage {
             let paths: BTreeSet<String> = context.materials.values().flat_map(|material| material.paths()).collect();
             let stages = context.sketches.iter().filter(|(_, sketch)| sketch.varies).map(|(name, _)| name.as_str());
             let known: Vec<&str> = paths.iter().map(String::as_str).chain(stages).collect();
@@ -76,7 +81,17 @@ impl Check<'_> {
             self.complain(factors, &steps([name, "sets"]), fault.known(path, "parameters and stages", known));
         }
         let Ok(unit) = Unit::parse(&factor.unit) else { return };
-        let parameter = path.split_once('.').and_then(|(_, key)| Microparameter::from_key(key));
+        if let Some(parameter) =
+            parameter.filter(|one| takers.peek().is_none() && !material::measures(*one, unit.dimension))
+        {
+            let quantity = parameter.declaration().quantity;
+            let message = format!("factor `{name}` is not in a unit of `{path}`, which it sets");
+            self.complain(
+                factors,
+                &steps([name, "unit"]),
+                Fault::new(message).hint(format!("`{path}` is written as {}", quantity.example())),
+            );
+        }
         for (material, values) in takers {
             let other = match values.get(path) {
                 // A deviation may be given as a stress and varied as a share of the mean.

@@ -7,10 +7,12 @@ use super::read::read;
 use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
 use crate::artifact::{Accepts, ArtifactKind};
+use crate::stage::beside::Beside;
 use crate::stage::simulate::Simulate;
 use crate::stage::vary::Template;
-use crate::stage::{Context, KINDS, Kind, Port, Stage};
+use crate::stage::{Complaint, Context, KINDS, Kind, Port, Stage};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A stage that was read.
 struct Configured {
@@ -20,8 +22,23 @@ struct Configured {
     ports: Vec<Port>,
 }
 
+/// What was seen of the files beside the workflow.
+pub(super) struct Looked<'a> {
+    /// The folder they lie in; none when there is only a text.
+    pub(super) folder: Option<&'a Path>,
+    /// Those that cannot be read.
+    pub(super) absent: Vec<Fault>,
+    /// What else is to be said of them.
+    pub(super) remarks: Vec<Fault>,
+}
+
 /// The stages in order; all faults go to `check`, and then stages may be missing.
-pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &mut Context) -> Option<Vec<StageNode>> {
+pub(super) fn read_all(
+    check: &mut Check<'_>,
+    root: &mut Table,
+    context: &mut Context,
+    looked: &mut Looked<'_>,
+) -> Option<Vec<StageNode>> {
     if !root.0.contains_key("stage") {
         let hint = "add a table such as [stage.runs] with its `kind`";
         let file = &check.sources.0[0].name;
@@ -34,6 +51,7 @@ pub(super) fn read_all(check: &mut Check<'_>, root: &mut Table, context: &mut Co
     context.sketches = stages.iter().map(|stage| (stage.name.clone(), stage.stage.sketch())).collect();
     examine(check, table, &stages, materials.as_ref(), context);
     given_materials(&mut stages, context);
+    look(check, table, &stages, context, looked);
     same_but_for_case(check, table);
     let inputs = connect(check, table, &stages);
     let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| inputs.iter().map(|(_, i)| *i).collect()).collect();
@@ -98,6 +116,22 @@ fn examine(check: &mut Check<'_>, table: &Table, stages: &[Configured], material
             let node = materials.filter(|_| complaint.material.is_some()).unwrap_or(own);
             check.complain(node, &steps(path), fault);
         }
+    }
+}
+
+/// Looks at the files that the stages name.
+fn look(check: &Check<'_>, table: &Table, stages: &[Configured], context: &Context, looked: &mut Looked<'_>) {
+    let Some(folder) = looked.folder else { return };
+    for stage in stages {
+        let Some(node) = table.get(&stage.name) else { continue };
+        let mut found = Beside::of(folder);
+        stage.stage.beside(context, &mut found);
+        let fault = |complaint: Complaint| {
+            let place = check.sources.place(node.nearest(&steps(complaint.path.iter().map(String::as_str))).span);
+            Fault { hint: complaint.hint, ..Fault::new(complaint.message) }.at(place)
+        };
+        looked.absent.extend(found.faults.into_iter().map(fault));
+        looked.remarks.extend(found.remarks.into_iter().map(fault));
     }
 }
 

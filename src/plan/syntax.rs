@@ -7,6 +7,7 @@ use super::node::{Entry, Node, Sources, Span, Table, Value, shortened};
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
+use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -38,6 +39,12 @@ pub(super) fn read_file(path: &Path) -> Result<String, Fault> {
             _ => fault,
         }
     };
+    // Opening a pipe that nobody writes to would wait for ever; a pipe that is handed over is what `/dev/stdin` is.
+    if std::fs::metadata(path)
+        .is_ok_and(|meta| meta.file_type().is_fifo() && !path.starts_with("/dev") && !path.starts_with("/proc"))
+    {
+        return Err(Fault::new(format!("{name}: is a pipe, not a workflow file")));
+    }
     let mut bytes = Vec::new();
     File::open(path).and_then(|file| file.take(LARGEST as u64 + 1).read_to_end(&mut bytes)).map_err(unread)?;
     if bytes.len() > LARGEST {

@@ -1,6 +1,7 @@
 //! The files that stages look at while they decide.
 
 use crate::plan::Workflow;
+use crate::stage::beside::plain;
 use std::path::{Path, PathBuf};
 
 /// Files that were looked at, with their digests.
@@ -14,7 +15,8 @@ pub(super) fn path_of(workflow: &Workflow, path: &str) -> PathBuf {
 /// Whether all these files are as they were.
 pub(super) fn unchanged(workflow: &Workflow, files: &Files) -> bool {
     files.iter().all(|(path, digest)| {
-        let bytes = std::fs::read(path_of(workflow, path)).ok();
+        let path = path_of(workflow, path);
+        let bytes = plain(&path).ok().and_then(|_| std::fs::read(&path).ok());
         bytes.is_some_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
     })
 }

@@ -6,6 +6,7 @@ use super::ledger::Ledger;
 use super::task::Lost;
 use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
+use crate::stage::beside::plain;
 use crate::stage::ledger::Kept;
 use crate::stage::rows::Rows;
 use crate::stage::{FileInput, Library, Memory, Outcome, StageError, Task};
@@ -66,9 +67,12 @@ impl Library for Shelf<'_> {
 
     fn file(&self, name: &str, path: &str) -> Result<FileInput, StageError> {
         let full = path_of(self.workflow, path);
-        let bytes = std::fs::read(&full).map_err(|e| {
-            StageError::new(format!("{}: {e}", full.display())).hint("paths are relative to the workflow file")
-        })?;
+        let absent = |why: String| {
+            let message = format!("{}: {why}", full.display());
+            StageError::new(message).hint("paths are relative to the folder of the workflow")
+        };
+        plain(&full).map_err(absent)?;
+        let bytes = std::fs::read(&full).map_err(|e| absent(e.to_string()))?;
         let digest = blake3::hash(&bytes);
         self.notes.borrow_mut().files.push((path.to_owned(), digest.to_hex().to_string()));
         Ok(FileInput { name: name.to_owned(), path: full, digest: *digest.as_bytes() })

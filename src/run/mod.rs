@@ -54,6 +54,8 @@ pub struct Settings {
     pub dry: bool,
     /// Stages that are wanted, with all they need; all stages when empty.
     pub targets: Vec<String>,
+    /// Stages whose tasks are computed although their results are stored.
+    pub again: Vec<String>,
     /// Believe what is remembered about unchanged stages; without it every task is looked up.
     pub memos: bool,
 }
@@ -206,7 +208,8 @@ fn panicked(panic: &(dyn Any + Send)) -> Failure {
 /// Decides what is done of `workflow` and what is left, by the decisions of [`run`], and starts nothing. `targets` are the
 /// stages that are wanted, all when empty; without `memos` every task is looked up.
 pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Report {
-    let settings = Settings { jobs: 0, keep_going: true, dry: true, targets: targets.to_vec(), memos };
+    let settings =
+        Settings { jobs: 0, keep_going: true, dry: true, targets: targets.to_vec(), again: Vec::new(), memos };
     run(workflow, store, &settings, &Silent, &AtomicBool::new(false))
 }
 
@@ -358,6 +361,10 @@ impl Loop<'_, '_> {
                 self.board.failed(node, why);
                 continue;
             }
+            if ended.is_none() && self.forced(node) {
+                self.ready.insert(node);
+                continue;
+            }
             match self.store.find(&key) {
                 Ok(Some(record)) => open.extend(self.board.done(node, record.content, ended.is_none())),
                 Ok(None) => {
@@ -370,13 +377,20 @@ impl Loop<'_, '_> {
         }
     }
 
+    /// Whether a task is computed in this run, whatever is stored.
+    fn forced(&self, node: NodeId) -> bool {
+        let stage = &self.workflow.stages[self.board.stage(node)].name;
+        self.settings.again.contains(stage)
+    }
+
     fn start(&mut self) {
         if self.again || self.ends() {
             return;
         }
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
-            match task::Order::new(&mut self.board, node, self.store) {
+            let again = self.forced(node);
+            match task::Order::new(&mut self.board, node, self.store, again) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
                     Ok(()) => return,

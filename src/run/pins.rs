@@ -153,13 +153,13 @@ design 2
 effort 1
 figure 8
 fit 2
-formula 1
+formula 2
 gather 1
 range 2
 screening 2
 simulate 2
 specimen 2
-table 3
+table 4
 verify 1
 ";
 
@@ -175,7 +175,8 @@ fn found() -> String {
     });
     let kinds: BTreeSet<&str> = workflow.stages.iter().map(|stage| stage.kind).collect();
     let store = Store::open(&folder.path().join("store")).unwrap();
-    let settings = Settings { jobs: 2, keep_going: true, dry: false, targets: Vec::new(), memos: false };
+    let settings =
+        Settings { jobs: 2, keep_going: true, dry: false, targets: Vec::new(), again: Vec::new(), memos: false };
     let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
     let mut text = String::new();
     for stage in &report.stages {

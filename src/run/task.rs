@@ -18,6 +18,8 @@ pub(super) struct Order {
     key: Key,
     text: String,
     inputs: Vec<(String, Arc<Artifact>)>,
+    /// Whether a stored result does not count.
+    again: bool,
 }
 
 /// A result that cannot be read.
@@ -45,7 +47,7 @@ pub(super) enum Outcome {
 
 impl Order {
     /// Loads the inputs of an open node, or says which of them is lost.
-    pub(super) fn new(board: &mut Board, node: NodeId, store: &Store) -> Result<Self, Box<Lost>> {
+    pub(super) fn new(board: &mut Board, node: NodeId, store: &Store, again: bool) -> Result<Self, Box<Lost>> {
         let known = (board.take_text(node), board.inputs(node), board.key_of(node));
         let (Some(text), Some(contents), Some(key)) = known else {
             panic!("BUG: a task was started before its inputs were known");
@@ -60,7 +62,7 @@ impl Order {
             }
         }
         inputs.extend(task.kept.iter().map(|kept| ("kept".to_owned(), Arc::new(kept.artifact()))));
-        Ok(Self { node, task, key, text, inputs })
+        Ok(Self { node, task, key, text, inputs, again })
     }
 
     /// Computes and stores the result, unless another process does; `begins` is called before the work.
@@ -72,7 +74,8 @@ impl Order {
         stop: &AtomicBool,
         begins: &dyn Fn(),
     ) -> Result<Outcome, Failure> {
-        match store.claim(&self.key).map_err(failure)? {
+        let claim = if self.again { store.claim_again(&self.key) } else { store.claim(&self.key) };
+        match claim.map_err(failure)? {
             Claim::Done(record) => {
                 Ok(Outcome::Finished(Finished { content: record.content, shared: true, seconds: 0.0 }))
             }

@@ -4,6 +4,7 @@
 //! then interactions, `residual`, `total`), `fit`, and `residuals`, in which runs that the model cannot explain are
 //! flagged; `notes` says what to look at. With `published` the printed F values stand beside the computed ones.
 
+use super::beside::Beside;
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
 use super::fitted::{fit_table, residual_table};
 use super::notes::{Notes, short};
@@ -180,6 +181,10 @@ impl Stage for Anova {
         let levels = levels.into_iter().chain(self.pool_above.map(|p| ("pool_above", p)));
         found.extend(levels.filter_map(|(key, value)| check_probability(key, value)));
         found
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("published", self.published.as_ref());
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

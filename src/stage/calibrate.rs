@@ -142,8 +142,9 @@ impl Calibrate {
         let mut params = self.params(known.context, &measured)?;
         if let Some(slope) = &self.proportional {
             let slopes = known.port("proportional").next().map(|input| known.load(input)).transpose()?;
+            let factor = params.factors.first().map_or("", |factor| factor.name.as_str());
             for set in &mut params.sets {
-                set.start = slope.first(slopes.as_deref(), set)?.map(|first| vec![first]);
+                set.start = slope.first(slopes.as_deref(), set, factor)?.map(|first| vec![first]);
             }
         }
         params.check()?;

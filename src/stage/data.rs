@@ -1,17 +1,20 @@
 //! `kind = "data"`: a CSV file with units stands wherever a simulated table stands.
 //!
-//! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`. A column whose cells are all
-//! numbers (or empty: missing) holds reals, any other holds texts. The result is an artifact `results` with the table `runs`, as
+//! How a file is written stands in `sheet.rs`: comments (`#`) above the line of names only, units in brackets after the
+//! names, `sigma_c [MPa]`. A column whose cells are all numbers (or empty: missing) holds reals, any other holds texts. The
+//! result is an artifact `results` with the table `runs`, as
 //! `simulate` gives it.
 
+use super::beside::Beside;
+use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::results::Results;
-use crate::artifact::{Artifact, ArtifactKind, Table};
+use crate::artifact::{Artifact, ArtifactKind, Column, Table, Values};
 use crate::unit::Unit;
-use design::table::MOST_RUNS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::HashSet;
 
 /// Settings of a `data` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -35,6 +38,10 @@ impl Stage for Data {
         if self.file.trim().is_empty() { vec![empty] } else { Vec::new() }
     }
 
+    fn beside(&self, _context: &super::Context, found: &mut Beside) {
+        found.file("file", &self.file);
+    }
+
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let mut task = Task::new("data", json!({}));
         task.files.push(known.library.file("table", &self.file)?);
@@ -55,47 +62,51 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
     Ok(Results { runs: table }.to_artifact())
 }
 
-/// Reads the whole table, or says what is wrong with it.
-pub(super) fn parse(bytes: &[u8]) -> Result<Table, StageError> {
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
-    let fail = |e: csv::Error| StageError::new(e.to_string()).hint("every line must have the cells of the first line");
-    let heads: Vec<String> = reader.headers().map_err(fail)?.iter().map(str::to_owned).collect();
-    let mut cells = vec![Vec::new(); heads.len()];
-    for (row, record) in reader.records().enumerate() {
-        if row == MOST_RUNS {
-            return Err(StageError::new(format!("the table has more than {MOST_RUNS} rows")).hint("name a part of it"));
-        }
-        for (column, cell) in cells.iter_mut().zip(record.map_err(fail)?.iter()) {
-            column.push(cell.to_owned());
-        }
-    }
-    if cells.first().is_none_or(Vec::is_empty) {
+/// Reads the whole table.
+///
+/// # Errors
+/// What is wrong with it, and where.
+pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
+    let sheet = Sheet::read(bytes)?;
+    if sheet.rows() == 0 {
         return Err(StageError::new("the file has no rows below its first line"));
     }
+    let mut names = HashSet::new();
     let mut table = Table::default();
-    for (head, cells) in heads.iter().zip(cells) {
-        table = column(table, head, cells)?;
+    for (head, cells) in sheet.heads.iter().zip(sheet.columns) {
+        let (name, unit) = named(head)?;
+        if name.is_empty() || !names.insert(name) {
+            return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
+        }
+        Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
+        table.columns.push(column(name, unit, cells));
     }
     Ok(table)
 }
 
-fn column(table: Table, head: &str, cells: Vec<String>) -> Result<Table, StageError> {
-    let (name, unit) = match head.split_once('[') {
-        Some((name, unit)) => (name.trim(), unit.trim_end_matches(']').trim()),
-        None => (head, ""),
-    };
-    if name.is_empty() || table.column(name).is_some() {
-        return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
+/// Name and unit of a column.
+fn named(head: &str) -> Result<(&str, &str), StageError> {
+    let Some((name, rest)) = head.split_once('[') else { return Ok((head, "")) };
+    match rest.trim_end().strip_suffix(']') {
+        Some(unit) if !unit.contains(['[', ']']) => Ok((name.trim(), unit.trim())),
+        Some(_) | None => {
+            Err(StageError::new(format!("column `{head}`: the unit must stand alone in brackets at the end"))
+                .hint("write for example `Ec [GPa]`"))
+        }
     }
-    Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
-    let numbers: Option<Vec<f64>> = cells
-        .iter()
-        .map(|cell| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|v: &f64| v.is_finite()) })
-        .collect();
-    Ok(match numbers {
-        Some(values) => table.reals_column(name, unit, "", values),
-        None => table.texts_column(name, "", cells),
-    })
+}
+
+/// Numbers where every cell is one or empty, else texts.
+fn column(name: &str, unit: &str, cells: Vec<String>) -> Column {
+    let number = |cell: &String| {
+        if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|value: &f64| value.is_finite()) }
+    };
+    let numbers: Option<Vec<f64>> = cells.iter().map(number).collect();
+    let (unit, values) = match numbers {
+        Some(values) => (unit.to_owned(), Values::Reals(values)),
+        None => (String::new(), Values::Texts(cells)),
+    };
+    Column { name: name.to_owned(), unit, about: String::new(), values }
 }
 
 #[cfg(test)]
@@ -114,7 +125,9 @@ mod tests {
     #[test]
     fn faults_name_line_or_column() {
         let message = |text: &[u8]| parse(text).unwrap_err().message;
-        assert!(message(b"a,b\n1\n").contains("line: 2"), "{}", message(b"a,b\n1\n"));
+        assert!(message(b"a,b\n1\n").contains("line 2"), "{}", message(b"a,b\n1\n"));
+        assert!(message(b"a [MPa\n1\n").contains("brackets"));
+        assert!(message(b"a [MPa] x\n1\n").contains("brackets"));
         assert!(message(b"a [ell]\n1\n").contains("`a [ell]`"));
         assert!(message(b"a,a\n1,2\n").contains("name of its own"));
         assert!(message(b"a\n").contains("no rows"));

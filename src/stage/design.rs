@@ -19,6 +19,7 @@ mod valid;
 
 pub use config::Design;
 
+use super::beside::Beside;
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work, data,
 };
@@ -76,6 +77,10 @@ impl Stage for Design {
             }
             Err(complaint) => vec![complaint],
         }
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("file", self.file.as_ref());
     }
 
     fn sketch(&self) -> Sketch {

@@ -3,7 +3,7 @@
 //! It costs microseconds, so a campaign's design, analysis and calibration can be tried before a simulation is paid for,
 //! and methods can be compared on known truths. A formula names factors (in their units) and parameters of the material by
 //! path with `_` for the dot (`mortar_Ec`, SI); it knows `+ - * / ^`, `abs sqrt exp ln log10 sin cos tan atan tanh min max`.
-//! Scatter is relative, normal, and a function of seed, point and replicate.
+//! The grammar and its choices stand in `expression/read.rs`. Scatter is relative, normal, and a function of seed, point and replicate.
 
 use super::rows::{self, GATHER};
 use super::{
@@ -12,7 +12,6 @@ use super::{
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::expression::{Expression, Measure};
-use crate::unit::Unit;
 use math::random::Stream;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -81,9 +80,7 @@ impl Stage for Formula {
                     }
                 }
             }
-            if let Err(e) = Unit::parse(&response.unit) {
-                found.push(Complaint::new(&at("unit"), e.to_string()));
-            }
+            found.extend(rows::check_response(&at("unit"), name, &response.unit, context));
             if !(response.scatter >= 0.0) {
                 found.push(Complaint::new(&at("scatter"), "the scatter must be 0 or more"));
             }
@@ -140,7 +137,8 @@ impl Kind for Formula {
     const ABOUT: &'static str = "a stand-in simulator given by formulas of the factors";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "formula", version: 1, run: evaluate }, GATHER];
+    // 2: powers from the right, products from the left, smallest and largest of any number of values
+    const WORKS: &'static [Work] = &[Work { name: "formula", version: 2, run: evaluate }, GATHER];
 }
 
 fn evaluate(job: &Job) -> Result<Artifact, Failure> {

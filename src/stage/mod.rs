@@ -35,6 +35,7 @@
 
 pub mod agreement;
 pub mod anova;
+pub mod beside;
 pub mod calibrate;
 #[cfg(test)]
 pub mod census;
@@ -57,6 +58,7 @@ pub mod regression;
 pub mod rows;
 pub mod rsm;
 pub mod screening;
+mod sheet;
 pub mod simulate;
 pub mod specimen;
 pub mod table;
@@ -76,6 +78,41 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 use serde::{Deserializer, Serialize};
 use serde_json::Value;
+
+/// Names of columns that stand beside factors and responses in one table or template, so that neither can bear them.
+pub const OWN_COLUMNS: [&str; 20] = [
+    "run",
+    "row",
+    "standard_order",
+    "replicate",
+    "point_type",
+    "failure",
+    "validity",
+    "set",
+    "specimen",
+    "evaluation",
+    "evaluations",
+    "misfit",
+    "best",
+    "recommended",
+    "failed",
+    "stop",
+    "free",
+    "seed",
+    "weight",
+    "remark",
+];
+
+/// What is wrong with a symbol, which becomes mathematics in figures, pages and LaTeX.
+pub fn symbol_fault(symbol: &str) -> Option<String> {
+    if symbol.is_empty() || ::figure::escape::is_mathematics(symbol) {
+        return None;
+    }
+    let known = ::figure::text::check(&format!("${symbol}$")).err().map(|fault| fault.to_string());
+    Some(known.unwrap_or_else(|| {
+        format!("symbol `{symbol}`: `$ % & # ~ \" ' are no mathematics; write `\\%` for a per cent sign")
+    }))
+}
 
 /// The settings of a stage as canonical values.
 pub trait Settings {
@@ -100,6 +137,9 @@ pub trait Stage: Settings + Send + Sync {
 
     /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
     fn check(&self, context: &Context) -> Vec<Complaint>;
+
+    /// What can be seen of the files that it names: those that are not there, and those outside every key.
+    fn beside(&self, _context: &Context, _found: &mut beside::Beside) {}
 
     /// What other stages know of it before anything runs.
     fn sketch(&self) -> Sketch {

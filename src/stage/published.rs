@@ -4,6 +4,7 @@
 //! it was printed (its decimals count), an optional `decimals` where the print drops zeros at the end, and an optional
 //! `note` that says what is known about a print that differs.
 
+use super::sheet::Sheet;
 use super::{Failure, Job, StageError};
 use crate::artifact::statistics::Published;
 
@@ -27,33 +28,28 @@ pub(super) fn prints(job: &Job, line: &str, value: &str) -> Result<Option<Vec<Pr
 }
 
 fn parse(bytes: &[u8], line: &str, value: &str) -> Result<Vec<Print>, StageError> {
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
-    let fail = |e: csv::Error| StageError::new(format!("published values: {e}"));
-    let heads = reader.headers().map_err(fail)?.clone();
-    let place = |name: &str| heads.iter().position(|head| head == name);
+    let sheet = Sheet::read(bytes).map_err(|e| StageError { message: format!("published values: {e}"), ..e })?;
     let needed = |name: &str| {
-        place(name).ok_or_else(|| {
+        sheet.place(name).ok_or_else(|| {
             StageError::new(format!("published values: no column `{name}`"))
                 .hint(format!("the file has columns `response`, `{line}`, `{value}` and perhaps `note`"))
         })
     };
     let (response, name, print) = (needed("response")?, needed(line)?, needed(value)?);
-    let (decimals, note) = (place("decimals"), place("note"));
-    let mut found = Vec::new();
-    for (i, record) in reader.records().enumerate() {
-        let record = record.map_err(fail)?;
-        let cell = |at: usize| record.get(at).unwrap_or("").to_owned();
+    let (decimals, note) = (sheet.place("decimals"), sheet.place("note"));
+    let one = |i: usize| {
+        let cell = |at: usize| sheet.columns[at][i].clone();
         let text = cell(print);
         let wrong = |text: &str| StageError::new(format!("published values, row {}: `{text}` is no number", i + 1));
-        let value = text.parse().map_err(|_| wrong(&text))?;
+        let value: f64 = text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| wrong(&text))?;
         let decimals = match decimals.map(cell).filter(|own| !own.is_empty()) {
             Some(own) => own.parse().map_err(|_| wrong(&own))?,
             None => text.split_once('.').map_or(0, |(_, digits)| digits.len()),
         };
         let note = note.map(cell).unwrap_or_default();
-        found.push(Print { response: cell(response), line: cell(name), value, decimals, note });
-    }
-    Ok(found)
+        Ok(Print { response: cell(response), line: cell(name), value, decimals, note })
+    };
+    (0..sheet.rows()).map(one).collect()
 }
 
 /// One computed value, and how far rounding of the data may move it.

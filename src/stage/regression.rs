@@ -4,6 +4,7 @@
 //! `stationary`, `axes`, `path`, `domain`, `selection`, `predictions` where they are asked for, `notes` (what to look
 //! at), and the models that prediction needs.
 
+use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -100,6 +101,10 @@ impl Stage for Regression {
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("published", self.published.as_ref());
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

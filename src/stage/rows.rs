@@ -85,6 +85,21 @@ pub fn check_material(name: Option<&String>, context: &Context) -> Option<Compla
     Some(Complaint::new("material", format!("there is no [material.{name}]")).hint(hint))
 }
 
+/// The complaint about the unit in which a simulator gives a response: it cannot be read, or not be shown in the unit that
+/// the workflow declares.
+pub fn check_response(path: &str, name: &str, unit: &str, context: &Context) -> Option<Complaint> {
+    let given = match Unit::parse(unit) {
+        Ok(given) => given,
+        Err(e) => return Some(Complaint::new(path, e.to_string())),
+    };
+    // What is wrong with the declared unit itself is told where it stands.
+    let declared = &context.responses.get(name)?.unit;
+    Unit::parse(declared).ok().filter(|wanted| wanted.dimension != given.dimension)?;
+    let words = |text: &str| if text.is_empty() { "as a pure number".to_owned() } else { format!("in `{text}`") };
+    let message = format!("`{name}` comes {} and cannot be shown {}", words(unit), words(declared));
+    Some(Complaint::new(path, message).hint(format!("mend this unit, or that of [response.{name}]")))
+}
+
 #[derive(Serialize, Deserialize)]
 struct GatherParams {
     /// Factor columns to take from the design.

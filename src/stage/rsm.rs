@@ -2,6 +2,7 @@
 //!
 //! The result is an artifact `surfaces`, as [`super::regression`] gives it.
 
+use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict};
 use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
@@ -82,6 +83,10 @@ impl Stage for Rsm {
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("published", self.published.as_ref());
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

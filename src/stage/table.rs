@@ -16,6 +16,7 @@ mod beside;
 mod list;
 mod units;
 
+use super::beside::Beside;
 use super::figure::{Names, stored};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::presentation::Printed as Stored;
@@ -24,7 +25,6 @@ use crate::unit::Length;
 use beside::beside;
 use figure::column::{Column, Digits, Values};
 use figure::table::Table as Printed;
-use figure::text;
 use list::Given;
 pub use list::List;
 use schemars::JsonSchema;
@@ -154,12 +154,24 @@ impl Stage for Table {
         if self.digits.is_some_and(|d| d == 0 || d > 17) {
             found.push(Complaint::new("digits", "a number has 1 to 17 significant digits"));
         }
+        for (column, decimals) in self.decimals.iter().filter(|(_, decimals)| **decimals > 17) {
+            let message = format!("{decimals} decimals are asked for; a number has at most 17");
+            found.push(Complaint::new(&format!("decimals.{column}"), message));
+        }
+        if figure::escape::latex_label(&self.label) != self.label {
+            let message = format!("`{}` cannot be a label", self.label);
+            found.push(Complaint::new("label", message).hint("letters, digits and `: . _ -` only"));
+        }
         for (column, symbol) in &self.symbols {
-            if let Err(fault) = text::check(&format!("${symbol}$")) {
-                found.push(Complaint::new(&format!("symbols.{column}"), fault.to_string()));
+            if let Some(fault) = super::symbol_fault(symbol) {
+                found.push(Complaint::new(&format!("symbols.{column}"), fault));
             }
         }
         found
+    }
+
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        found.optional("published", self.published.as_ref());
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -219,8 +231,8 @@ impl Kind for Table {
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
-    /// 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
-    const WORKS: &'static [Work] = &[Work { name: "table", version: 3, run: print }];
+    /// 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 4, run: print }];
 }
 
 /// The table of that name, or the artifact's main one.
@@ -240,7 +252,13 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     let inputs = job.inputs.iter().filter(|(name, _)| name == "of");
     let mut columns: Vec<Column> = Vec::new();
     let mut names: Vec<String> = Vec::new();
+    let mut notes = params.notes.clone();
     for (k, (_, artifact)) in inputs.enumerate() {
+        if let Some(artifact::Node::Text(why)) = artifact.root.get("failure")
+            && !why.is_empty()
+        {
+            notes.push(format!("The run gave no result: {why}."));
+        }
         let part = chosen(find(artifact, params.table.as_deref())?, &params)?;
         let rows = part.first().map_or(0, Column::len);
         names.extend(params.stages.get(k).map(|stage| vec![stage.clone(); rows]).unwrap_or_default());
@@ -266,7 +284,7 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     if !params.stages.is_empty() {
         columns.insert(0, Column::words("stage", names));
     }
-    let printed = Printed { caption: params.caption, label: params.label, columns, notes: params.notes };
+    let printed = Printed { caption: params.caption, label: params.label, columns, notes };
     let stored = Stored {
         csv: printed.csv(),
         latex: printed.latex(),

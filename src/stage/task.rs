@@ -1,6 +1,7 @@
 //! The unit of work, and what runs it.
 
 use super::StageError;
+use super::beside::plain;
 use super::ledger::KeptRuns;
 use crate::artifact::{Artifact, ContentHash};
 use dem::Watch;
@@ -161,7 +162,9 @@ impl Job<'_> {
     pub fn file(&self, name: &str) -> Result<Vec<u8>, Failure> {
         let fail = |message: String| Failure::from(StageError::new(message));
         let file = self.files.iter().find(|f| f.name == name).ok_or_else(|| fail(format!("no file `{name}`")))?;
-        let bytes = std::fs::read(&file.path).map_err(|e| fail(format!("{}: {e}", file.path.display())))?;
+        let unread = |why: String| fail(format!("{}: {why}", file.path.display()));
+        plain(&file.path).map_err(unread)?;
+        let bytes = std::fs::read(&file.path).map_err(|e| unread(e.to_string()))?;
         if *blake3::hash(&bytes).as_bytes() != file.digest {
             return Err(fail(format!("{} changed while the campaign ran", file.path.display())));
         }

@@ -371,12 +371,25 @@ impl Store {
     /// # Errors
     /// The lock cannot be made or the journals cannot be read.
     pub fn claim(&self, key: &Key) -> Result<Claim, StoreError> {
+        self.claimed(key, false)
+    }
+
+    /// Claims a task although it may be finished: its new result counts from then on.
+    ///
+    /// # Errors
+    /// As [`Store::claim`].
+    pub fn claim_again(&self, key: &Key) -> Result<Claim, StoreError> {
+        self.claimed(key, true)
+    }
+
+    fn claimed(&self, key: &Key, again: bool) -> Result<Claim, StoreError> {
         match lock::take(&self.disk, &key.to_string(), &self.machine)? {
             lock::Taken::Theirs(waiting) => Ok(Claim::Theirs(waiting)),
             lock::Taken::Mine(guard) => {
                 // Its last holder recorded the result before it let go.
                 self.refresh()?;
-                Ok(self.find(key)?.map_or(Claim::Mine(guard), Claim::Done))
+                let found = if again { None } else { self.find(key)? };
+                Ok(found.map_or(Claim::Mine(guard), Claim::Done))
             }
         }
     }

@@ -254,3 +254,63 @@ fn a_stress_strain_curve_is_followed_by_simulations() {
         );
     }
 }
+
+const ROCK: &str = r#"
+[workflow]
+seed = 3
+[factor]
+sigma_c = { range = [1, 1000], unit = "MPa", scale = "log" }
+Ec = { range = [1, 100], unit = "GPa", scale = "log" }
+[response]
+UCS = { unit = "MPa" }
+E = { unit = "GPa" }
+sigma_t = { unit = "MPa" }
+[stage.points]
+kind = "design"
+method = "full-factorial"
+factors = ["sigma_c", "Ec"]
+[stage.compression]
+kind = "formula"
+design = "points"
+responses.UCS = { value = "2*sigma_c", unit = "MPa", scatter = 0.04 }
+responses.E = { value = "1.4*Ec", unit = "GPa", scatter = 0.03 }
+[stage.splitting]
+kind = "formula"
+design = "points"
+responses.sigma_t = { value = "0.3*sigma_c", unit = "MPa", scatter = 0.05 }
+[stage.calibrate]
+kind = "calibrate"
+simulators = ["compression", "splitting"]
+factors = ["sigma_c", "Ec"]
+targets = [{ UCS = "80 MPa", E = "40 GPa", sigma_t = { at_least = "5 MPa" } }]
+evaluations = 32
+unmet = "fail"
+[stage.verify]
+kind = "verify"
+solution = "calibrate"
+simulators = ["compression", "splitting"]
+"#;
+
+/// Two tests over three orders of magnitude; a strength ratio that the law cannot have ends the run with 1, each time it
+/// is asked, and its evaluations can be looked at.
+#[test]
+fn unmet_targets_end_a_run_with_one_and_say_what_can_be_had() {
+    let space = Space::new();
+    space.write("w.toml", ROCK);
+    space.run(&[]);
+    let rows: Value = serde_json::from_str(&space.stdout(&["show", "w.toml", "verify", "--json"])).expect("JSON");
+    assert!(rows.to_string().contains("sigma_t"), "{rows}");
+    let run = space.stdout(&["show", "w.toml", "calibrate[2]"]);
+    assert!(run.contains("sigma_t"), "the splitting test of the first evaluation: {run}");
+    let targets = "stage.calibrate.targets=[{ UCS = \"80 MPa\", E = \"40 GPa\", sigma_t = \"30 MPa\" }]";
+    let brittle = ["run", "w.toml", "calibrate", "--json", "--set", targets];
+    for _ in 0..2 {
+        let ended = space.flow(&brittle);
+        assert_eq!(ended.status.code(), Some(1), "{}", told(&ended));
+        let document: Value = serde_json::from_slice(&ended.stdout).expect("JSON");
+        let stages = document["stages"].as_array().expect("stages");
+        let unmet = stages.iter().find(|stage| stage["name"] == "calibrate").map(|stage| stage["unmet"].to_string());
+        assert!(unmet.as_ref().is_some_and(|why| why.contains("sigma_t is expected")), "{unmet:?}");
+        assert!(told(&ended).contains("unmet: calibrate: "), "{}", told(&ended));
+    }
+}

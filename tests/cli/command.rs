@@ -59,7 +59,6 @@ fn each_way_to_fail_is_told_and_not_kept() {
         ("echo '{' > out.csv", "", "no column `UCS`"),
         ("printf 'UCS\\nmany\\n' > out.csv", "", "`many` is not a number"),
         ("printf 'UCS\\nNaN\\n' > out.csv", "", "not a finite number"),
-        ("echo {{mortar.E}}", "", "`mortar.E` is not a value of this run"),
         ("head -c 100 /dev/urandom > out.csv", "", "out.csv"),
     ] {
         let space = space(script, more);
@@ -69,6 +68,14 @@ fn each_way_to_fail_is_told_and_not_kept() {
         assert!(told(&output).contains("again: flow run w.toml trial"), "{}", told(&output));
         assert!(space.objects().is_empty(), "{script}: a failed run was kept");
     }
+}
+
+#[test]
+fn a_template_that_names_what_no_run_has_is_refused_before_anything_runs() {
+    let space = space("echo {{mortar.E}}", "");
+    let output = space.flow(&["check", "w.toml"]);
+    assert_eq!(output.status.code(), Some(2), "{}", told(&output));
+    assert!(told(&output).contains("line 1: `mortar.E` is not a value of this run"), "{}", told(&output));
 }
 
 #[test]

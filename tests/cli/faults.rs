@@ -252,7 +252,7 @@ fn the_summary_of_a_failure_gives_the_very_command_that_runs_it_again() {
     let space = Space::new();
     let workflow = fan_out("[1, 2, 3]", "3*a") + "[profile.'a few']\nfactor.a.levels = [1, 2]\n";
     space.write("it's.toml", &workflow.replace("3*a", "1/max(0, a - 1)"));
-    space.write("bad.toml", &format!("{workflow}[stage.shell]\nkind = \"command\"\nrun = [\"sh\", \"-c\", \"exit 3\"]\nread.y = {{ file = \"y\", pattern = '(.)' }}\n"));
+    space.write("bad.toml", &format!("{workflow}[stage.shell]\nkind = \"command\"\nrun = [\"sh\", \"-c\", \"exit 3\"]\nread.y = {{ file = \"y\", pattern = '(.)', unit = \"MPa\" }}\n"));
     let options =
         ["--profile", "a few", "--set", "stage.shell.run=[\"sh\", \"-c\", \"exit 4 # it's\"]", "--store", "my store"];
     let output = space.flow(&[&["run", "bad.toml", "--keep-going"], &options[..]].concat());

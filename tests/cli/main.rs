@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibrate;
+mod cases;
 mod command;
 mod export;
 mod faults;
@@ -13,3 +14,4 @@ mod reruns;
 mod space;
 mod stop;
 mod trust;
+mod vocabulary;

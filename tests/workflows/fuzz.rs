@@ -104,7 +104,11 @@ struct Inputs {
 
 impl Inputs {
     fn new() -> Self {
-        let folders = ["workflows", "tests/good", "tests/bad", "tests/bad/beyond-schema"];
+        let mut folders =
+            ["workflows", "tests/good", "tests/bad", "tests/bad/beyond-schema"].map(str::to_owned).to_vec();
+        let cases = fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases")).unwrap();
+        folders.extend(cases.map(|case| format!("tests/cases/{}", case.unwrap().file_name().display())));
+        folders.sort();
         let corpus = folders.iter().flat_map(|folder| files(folder)).map(|path| fs::read_to_string(path).unwrap());
         let mut found = Vec::new();
         words(&schema::schema(), &mut found);

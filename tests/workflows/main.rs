@@ -6,4 +6,5 @@ mod corpus;
 mod files;
 mod fuzz;
 mod schema;
+mod texts;
 mod validator;

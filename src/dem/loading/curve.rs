@@ -16,6 +16,8 @@
 //! | `crack_initiation` | stress at which 1 % of the cracks present at the peak exist |
 //! | `crack_damage` | stress at the largest volumetric contraction before the peak |
 //!
+//! Under a confining stress, stress and strains count from the isotropic state on: the stress is the deviator.
+//!
 //! Su et al. 2021 define E as "the tangent slope of the curve when the stress reaches half the peak stress for the first
 //! time" and ν as the "ratio of lateral strain to axial strain at this time": `modulus_tangent` and `poisson_secant`.
 
@@ -53,6 +55,10 @@ pub struct Macro {
     pub crack_initiation: f64,
     /// Crack-damage stress (Pa).
     pub crack_damage: f64,
+    /// Confining stress at the peak (Pa); 0 without one.
+    pub confinement: f64,
+    /// Work to break a unit of the section (J/m²), where the test measures it.
+    pub fracture_energy: f64,
 }
 
 /// The window of the tangents, as shares of the peak.
@@ -100,6 +106,8 @@ pub fn evaluate(samples: &[Sample]) -> Macro {
         poisson_tangent: slope(inside.iter().map(|s| (s.axial, s.lateral))),
         crack_initiation: initiation.map_or(f64::NAN, |s| s.stress),
         crack_damage: damage.stress,
+        confinement: 0.0,
+        fracture_energy: f64::NAN,
     }
 }
 
@@ -116,6 +124,8 @@ impl Macro {
             poisson_tangent: nan,
             crack_initiation: nan,
             crack_damage: nan,
+            confinement: 0.0,
+            fracture_energy: nan,
         }
     }
 }

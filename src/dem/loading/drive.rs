@@ -1,169 +1,18 @@
 //! The loop that every loading test shares: advance, sample, note cracks and snapshots, stop after the peak.
 //!
 //! Samples are taken every `sample_strain` of axial strain. The run stops when the stress has fallen to `stop_fraction`
-//! of the largest one so far, armed only after that has passed `seating_stress`; or at `strain_limit`, which is a
-//! failure ("no peak"), as is whatever the engine reports. Failures are data: the record up to that point is kept.
+//! of the largest one so far and stays below it for a while (`lasting`), armed only after the largest has passed the
+//! seating stress; when the test itself says that it is done; or at the strain limit or the bound on steps, which are
+//! failures, as is whatever the engine reports. Failures are data: the record up to that point is stored.
+//!
+//! The watcher is asked after at most some hundredths of a second of work, however long a sample takes.
 
 use super::crack::{CrackEvent, note_cracks};
-use super::curve::{Macro, Sample, peak};
-use super::judgement::Judgement;
-use super::material::Material;
-use super::rig::Machine;
+use super::curve::{Sample, peak};
+use super::settings::{Rule, Schedule};
 use super::snapshot::{Ladder, Snapshot, State};
-use crate::genesis::specimen::Specimen;
 use crate::measure::{Energy, energy, links};
-use crate::{D2, Engine, Failure, Fault, Faults, Watch};
-use serde::{Deserialize, Serialize};
-
-/// Kinds of test.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum TestKind {
-    /// Compression of a rectangle between two platens.
-    Uniaxial,
-    /// Splitting of a disc between two platens.
-    Brazilian,
-    /// Direct tension of a rectangle by grips.
-    Tension,
-}
-
-/// Settings of a loading test.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Loading {
-    /// Which test.
-    pub kind: TestKind,
-    /// Speed of each platen or grip (m/s).
-    pub speed: f64,
-    /// Friction of the platens.
-    pub platen_friction: f64,
-    /// Damping, masses, time step.
-    pub machine: Machine,
-    /// Sampling and stopping.
-    pub rule: Rule,
-}
-
-impl Loading {
-    /// The published test: 0.02 m/s each, frictionless platens.
-    pub fn new(kind: TestKind) -> Self {
-        Self { kind, speed: 0.02, platen_friction: 0.0, machine: Machine::default(), rule: Rule::default() }
-    }
-
-    /// What is wrong with speed, sampling and stopping; the engine checks the rest.
-    fn faults(&self) -> Vec<Fault> {
-        let rule = &self.rule;
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        let share = |x: f64| x > 0.0 && x <= 1.0;
-        let rules = [
-            ("speed of the test", self.speed, positive(self.speed), "a number above 0"),
-            ("strain between samples", rule.sample_strain, positive(rule.sample_strain), "a number above 0"),
-            ("share of the peak at the end", rule.stop_fraction, share(rule.stop_fraction), "in (0, 1]"),
-            ("seating stress", rule.seating_stress, rule.seating_stress >= 0.0, "0 or more"),
-            ("strain limit", rule.strain_limit, positive(rule.strain_limit), "a number above 0"),
-        ];
-        let snapshots = rule.snapshots.iter().map(|&x| ("share of the peak of a snapshot", x, share(x), "in (0, 1]"));
-        let bad = rules.into_iter().chain(snapshots).filter(|rule| !rule.2);
-        bad.map(|(quantity, value, _, wanted)| Fault::Setting { quantity, value, wanted }).collect()
-    }
-
-    /// Mounts the specimen and runs the test to its end. `seed` draws bond strengths where they scatter; `watch` sees every
-    /// sample and may interrupt.
-    ///
-    /// # Errors
-    /// All faults of the settings, an outline of the specimen that does not fit the test, or what the engine finds wrong.
-    pub fn run(
-        &self,
-        specimen: &Specimen,
-        material: &Material,
-        seed: u64,
-        watch: &mut dyn FnMut(&Sample) -> Watch,
-    ) -> Result<TestRecord, TestError> {
-        let faults = self.faults();
-        if !faults.is_empty() {
-            return Err(Faults(faults).into());
-        }
-        match self.kind {
-            TestKind::Uniaxial => super::uniaxial::run(self, specimen, material, seed, watch),
-            TestKind::Brazilian => super::brazilian::run(self, specimen, material, seed, watch),
-            TestKind::Tension => super::tension::run(self, specimen, material, seed, watch),
-        }
-    }
-}
-
-/// A test that cannot begin.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum TestError {
-    /// Wrong outline.
-    #[error("the {test} test needs a {wanted}; give the specimen {remedy}")]
-    Outline {
-        /// Which test.
-        test: &'static str,
-        /// Outline that it needs.
-        wanted: &'static str,
-        /// Settings that make it.
-        remedy: &'static str,
-    },
-    /// Faults of the settings, or those that the engine finds.
-    #[error(transparent)]
-    Faults(#[from] Faults),
-}
-
-/// The record of a test.
-#[derive(Clone, Debug)]
-pub struct TestRecord {
-    /// Samples, cracks, snapshots, failure.
-    pub run: Run,
-    /// Peak, moduli, Poisson's ratios.
-    pub values: Macro,
-    /// Numbers by which the run is judged.
-    pub judgement: Judgement,
-    /// Whether the specimen failed as the test supposes.
-    pub checks: Vec<Check>,
-}
-
-/// A number that must stay within a bound for the test to be valid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Check {
-    /// What it is.
-    pub name: &'static str,
-    /// The number.
-    pub value: f64,
-    /// Its bound.
-    pub bound: f64,
-    /// Whether it is within.
-    pub met: bool,
-}
-
-/// When to sample and when to stop.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rule {
-    /// Strain between two samples.
-    pub sample_strain: f64,
-    /// Share of the peak at which the test ends.
-    pub stop_fraction: f64,
-    /// Stress (Pa) that must be passed before the test may end.
-    pub seating_stress: f64,
-    /// Strain at which a test without a peak is given up.
-    pub strain_limit: f64,
-    /// Shares of the peak at which the state is kept, besides the last state.
-    pub snapshots: Vec<f64>,
-    /// Whether the forces between the discs are kept with each of these states.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub forces: bool,
-}
-
-impl Default for Rule {
-    fn default() -> Self {
-        let snapshots = vec![0.5, 0.8, 1.0];
-        Self {
-            sample_strain: 2e-6,
-            stop_fraction: 0.75,
-            seating_stress: 5e5,
-            strain_limit: 0.02,
-            snapshots,
-            forces: false,
-        }
-    }
-}
+use crate::{Engine, Failure, Space, Watch};
 
 /// Why a test has no complete result.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -178,6 +27,32 @@ pub enum TestFailure {
         /// Largest stress (Pa).
         stress: f64,
     },
+    /// The bound on steps was reached.
+    #[error(
+        "no end within max_steps = {steps}: the strain is {strain:.3e} and the largest stress {stress:.4e} Pa; load faster or raise max_steps"
+    )]
+    OutOfSteps {
+        /// Bound on steps.
+        steps: u64,
+        /// Strain reached.
+        strain: f64,
+        /// Largest stress (Pa).
+        stress: f64,
+    },
+    /// The side walls did not come to their stress.
+    #[error(
+        "the confining stress of {wanted:.4e} Pa was not reached within {steps} steps: it is off by {off:.1e} of it, the unbalanced ratio {ratio:.1e}; check the packing or lower the stress"
+    )]
+    Confinement {
+        /// Confining stress asked for (Pa).
+        wanted: f64,
+        /// Largest relative deviation of a wall.
+        off: f64,
+        /// Unbalanced ratio.
+        ratio: f64,
+        /// Steps made.
+        steps: u64,
+    },
     /// The engine gave up.
     #[error("{0}")]
     Engine(#[from] Failure),
@@ -185,15 +60,17 @@ pub enum TestFailure {
 
 /// All that a loading test leaves.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct Run<S: Space> {
     /// Every sample.
     pub samples: Vec<Sample>,
     /// Every crack, in the order of breaking.
-    pub cracks: Vec<CrackEvent>,
-    /// States kept.
-    pub snapshots: Vec<Snapshot>,
+    pub cracks: Vec<CrackEvent<S>>,
+    /// States at the wanted shares of the peak, and the last.
+    pub snapshots: Vec<Snapshot<S>>,
     /// Energies at some axial strains, from the start of loading on.
     pub energies: Vec<(f64, Energy)>,
+    /// What else the test read at its largest stress.
+    pub at_peak: Reading,
     /// Why it is not complete, if so.
     pub failure: Option<TestFailure>,
     /// Whether the watcher stopped it.
@@ -204,70 +81,184 @@ pub struct Run {
     pub time_step: f64,
 }
 
+/// What a test reads at a sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// Axial strain.
+    pub axial: f64,
+    /// Lateral strain.
+    pub lateral: f64,
+    /// Stress (Pa).
+    pub stress: f64,
+    /// Confining stress (Pa); 0 without one.
+    pub confinement: f64,
+    /// Difference of the two platen forces over their mean.
+    pub asymmetry: f64,
+}
+
+/// A test under way: how it is read, and when it is done besides the common rule.
+pub trait Bench<S: Space> {
+    /// Reads the engine.
+    fn read(&self, engine: &Engine<S>) -> Reading;
+
+    /// Whether the piece is broken beyond doubt, given the cracks so far and the stress over the largest one.
+    fn done(&mut self, _cracks: &[CrackEvent<S>], _share: f64) -> bool {
+        false
+    }
+}
+
+/// A test that is a reading and nothing else.
+impl<S: Space, F: Fn(&Engine<S>) -> Reading> Bench<S> for F {
+    fn read(&self, engine: &Engine<S>) -> Reading {
+        self(engine)
+    }
+}
+
 /// Samples between two readings of the energies.
 const ENERGY_EVERY: usize = 25;
+/// Contacts and bodies moved between two questions to the watcher: some hundredths of a second.
+const SLICE: u64 = 4_000_000;
 
-/// Loads until the rule ends the test. `rate` is the strain rate at the start (1/s), `measure` reads axial strain,
-/// lateral strain and stress; `watch` sees every sample and may interrupt.
-pub fn drive(
-    engine: &mut Engine<D2>,
-    rate: f64,
+/// Steps between two questions to the watcher.
+pub(super) fn slice<S: Space>(engine: &Engine<S>) -> u64 {
+    (SLICE / (engine.contacts().count() + engine.particle_count()).max(1) as u64).max(1)
+}
+
+/// A run under way.
+struct Drive<'a, S: Space> {
+    rule: &'a Rule,
+    schedule: &'a Schedule,
+    run: Run<S>,
+    ladder: Ladder<S>,
+    largest: f64,
+    /// Strain at which the stress fell below the stop fraction, if it is below.
+    fell: Option<f64>,
+    slice: u64,
+    last_step: u64,
+}
+
+/// Loads until the rule or the test itself ends it; `watch` sees every sample and may interrupt. Between samples that
+/// take long it is shown the last one again.
+pub fn drive<S: Space>(
+    engine: &mut Engine<S>,
+    schedule: &Schedule,
     rule: &Rule,
-    measure: impl Fn(&Engine<D2>) -> [f64; 3],
+    bench: &mut impl Bench<S>,
     watch: &mut dyn FnMut(&Sample) -> Watch,
-) -> Run {
-    let mut run = Run {
+) -> Run<S> {
+    let run = Run {
         samples: vec![Sample::default()],
         cracks: Vec::new(),
         snapshots: Vec::new(),
         energies: Vec::new(),
+        at_peak: Reading::default(),
         failure: None,
         interrupted: false,
         steps: 0,
         time_step: engine.time_step(),
     };
-    let mut ladder = Ladder::default();
-    let mut largest = 0.0_f64;
+    let last_step = engine.steps().saturating_add(rule.max_steps);
+    let (ladder, slice) = (Ladder::default(), slice(engine));
+    let mut drive = Drive { rule, schedule, run, ladder, largest: 0.0, fell: None, slice, last_step };
     engine.keep_books();
-    loop {
-        let before = (engine.steps(), run.samples[run.samples.len() - 1].axial);
-        let every = (rule.sample_strain / (rate * engine.time_step())).max(1.0) as u64;
-        let outcome = engine.advance(every);
-        let [axial, lateral, stress] = measure(engine);
-        let sample = Sample { axial, lateral, stress, cracks: engine.cracks().len() };
-        note_cracks(engine, &mut run.cracks, before, sample.axial);
-        if let Err(failure) = outcome {
-            run.failure = Some(failure.into());
-            break;
-        }
-        run.samples.push(sample);
-        ladder.offer(&sample, || state(engine, rule));
-        largest = largest.max(stress);
-        if run.samples.len().is_multiple_of(ENERGY_EVERY) {
-            run.energies.push((axial, energy(engine)));
-        }
-        if !engine.heed(watch(&sample)) {
-            run.interrupted = true;
-            break;
-        }
-        if largest > rule.seating_stress && stress <= rule.stop_fraction * largest {
-            break;
-        }
-        if axial >= rule.strain_limit {
-            run.failure = Some(TestFailure::NoPeak { strain_limit: rule.strain_limit, stress: largest });
-            break;
-        }
-    }
-    run.steps = engine.steps();
-    let top = peak(&run.samples).map_or(0.0, |k| run.samples[k].stress);
-    let last = run.samples[run.samples.len() - 1];
-    run.energies.push((last.axial, energy(engine)));
-    run.snapshots = ladder.keep(top, &rule.snapshots, Snapshot::new(&last, state(engine, rule)));
-    run
+    while drive.sample(engine, bench, watch) {}
+    drive.finish(engine)
 }
 
-/// What a snapshot keeps of the engine.
-fn state(engine: &Engine<D2>, rule: &Rule) -> State {
+impl<S: Space> Drive<'_, S> {
+    /// One sample; returns whether to go on.
+    fn sample(
+        &mut self,
+        engine: &mut Engine<S>,
+        bench: &mut impl Bench<S>,
+        watch: &mut dyn FnMut(&Sample) -> Watch,
+    ) -> bool {
+        let last = self.run.samples[self.run.samples.len() - 1];
+        let before = (engine.steps(), last.axial);
+        let outcome = self.advance(engine, &last, watch);
+        let reading = bench.read(engine);
+        let Reading { axial, lateral, stress, .. } = reading;
+        let sample = Sample { axial, lateral, stress, cracks: engine.cracks().len() };
+        note_cracks(engine, &mut self.run.cracks, before, sample.axial);
+        if let Err(failure) = outcome {
+            self.run.failure = Some(failure.into());
+            return false;
+        }
+        self.run.samples.push(sample);
+        self.ladder.offer(&sample, || state(engine, self.rule));
+        if stress > self.largest {
+            self.run.at_peak = reading;
+        }
+        self.largest = self.largest.max(stress);
+        if self.run.samples.len().is_multiple_of(ENERGY_EVERY) {
+            self.run.energies.push((axial, energy(engine)));
+        }
+        if self.run.interrupted || !engine.heed(watch(&sample)) {
+            self.run.interrupted = true;
+            return false;
+        }
+        if self.fallen(&sample) || bench.done(&self.run.cracks, stress / self.largest) {
+            return false;
+        }
+        self.run.failure = self.given_up(engine, axial);
+        self.run.failure.is_none()
+    }
+
+    /// Makes the steps of a sample, in slices between which the watcher is asked.
+    fn advance(
+        &mut self,
+        engine: &mut Engine<S>,
+        last: &Sample,
+        watch: &mut dyn FnMut(&Sample) -> Watch,
+    ) -> Result<(), Failure> {
+        let every = (self.schedule.sample_strain / (self.schedule.rate * engine.time_step())).max(1.0) as u64;
+        let mut left = every.min(self.last_step - engine.steps());
+        while left > 0 {
+            let now = left.min(self.slice);
+            engine.advance(now)?;
+            left -= now;
+            if left > 0 && !engine.heed(watch(last)) {
+                self.run.interrupted = true;
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the stress has fallen for good.
+    fn fallen(&mut self, sample: &Sample) -> bool {
+        let rule = self.rule;
+        if !(self.largest > self.schedule.seating && sample.stress <= rule.stop_fraction * self.largest) {
+            self.fell = None;
+            return false;
+        }
+        let fell = *self.fell.get_or_insert(sample.axial);
+        sample.axial - fell >= rule.lasting * self.run.at_peak.axial
+    }
+
+    /// Why the test is given up, if it is.
+    fn given_up(&self, engine: &Engine<S>, strain: f64) -> Option<TestFailure> {
+        let (strain_limit, stress) = (self.schedule.strain_limit, self.largest);
+        if strain >= strain_limit {
+            return Some(TestFailure::NoPeak { strain_limit, stress });
+        }
+        let steps = self.rule.max_steps;
+        (engine.steps() >= self.last_step).then_some(TestFailure::OutOfSteps { steps, strain, stress })
+    }
+
+    fn finish(self, engine: &Engine<S>) -> Run<S> {
+        let Self { rule, mut run, ladder, .. } = self;
+        run.steps = engine.steps();
+        let top = peak(&run.samples).map_or(0.0, |k| run.samples[k].stress);
+        let last = run.samples[run.samples.len() - 1];
+        run.energies.push((last.axial, energy(engine)));
+        run.snapshots = ladder.keep(top, &rule.snapshots, Snapshot::new(&last, state(engine, rule)));
+        run
+    }
+}
+
+/// What a snapshot stores of the engine.
+fn state<S: Space>(engine: &Engine<S>, rule: &Rule) -> State<S> {
     State {
         centres: (0..engine.particle_count()).map(|i| engine.position(i)).collect(),
         forces: if rule.forces { links(engine) } else { Vec::new() },

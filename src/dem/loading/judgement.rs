@@ -1,9 +1,16 @@
 //! Numbers by which a run is judged, and the warnings that follow from them.
 //!
 //! A test is quasi-static when halving the speed changes its strength by less than its scatter. Cheap signs of that are the
-//! strain per step (about 3·10⁻⁸ is the limit) and the platen speed over the wave speed √(E/ρ) (10⁻⁵). The inertial
+//! strain per step (about 3·10⁻⁸ is the limit) and the platen speed over the wave speed √(E*/ρ) (10⁻⁵). The inertial
 //! number ε̇ d √(ρ/σ) is reported too but is far too lax here.
 
+use super::drive::Run;
+use super::piece::Piece;
+use super::rig::Scales;
+use super::settings::Schedule;
+use super::validity::{Check, Reason};
+use crate::measure::unbalanced_ratio;
+use crate::{Engine, Space};
 use serde::{Deserialize, Serialize};
 
 /// Numbers by which a run is judged.
@@ -13,12 +20,16 @@ pub struct Judgement {
     pub time_step: f64,
     /// Steps made.
     pub steps: u64,
+    /// Speed of each platen or grip (m/s).
+    pub speed: f64,
     /// Strain rate (1/s).
     pub strain_rate: f64,
     /// Strain in one step.
     pub strain_per_step: f64,
-    /// Speed of each platen or grip over the wave speed √(E_c/ρ), which is below that of the specimen.
+    /// Speed of each platen or grip over the wave speed √(E*/ρ), which is below that of the specimen.
     pub speed_ratio: f64,
+    /// Wave transits of the height within the reference strain: the quasi-static number.
+    pub transits: f64,
     /// ε̇ d √(ρ/σ) at the peak, d the mean diameter.
     pub inertial_number: f64,
     /// 2 bonds / ball at the start.
@@ -27,6 +38,8 @@ pub struct Judgement {
     pub unbalanced: f64,
     /// Side gauges.
     pub gauges: usize,
+    /// Mean diameters across the narrowest extent.
+    pub particles_across: f64,
 }
 
 /// A test that runs but may not be quasi-static.
@@ -58,11 +71,48 @@ pub enum LoadingWarning {
 const STRAIN_PER_STEP_LIMIT: f64 = 3e-8;
 /// Platen speed over wave speed above which strength depends on the rate.
 const SPEED_RATIO_LIMIT: f64 = 1e-5;
+/// Particles across below which results mean little.
+const LEAST_ACROSS: f64 = 10.0;
 
 impl Judgement {
-    /// The warnings of a test whose platens move at `speed` each (m/s).
-    pub fn warnings(&self, speed: f64) -> Vec<LoadingWarning> {
-        rate_warnings(speed, self.strain_per_step, self.speed_ratio)
+    /// Judges a run of a piece with `bonds` bonds at the start; `strength` is its peak stress (Pa).
+    pub(super) fn of<S: Space>(
+        engine: &Engine<S>,
+        run: &Run<S>,
+        piece: &Piece<S>,
+        (scales, schedule): (&Scales, &Schedule),
+        (bonds, gauges): (usize, usize),
+        strength: f64,
+    ) -> Self {
+        let rate = 2.0 * schedule.speed / piece.outline.height();
+        Self {
+            time_step: run.time_step,
+            steps: run.steps,
+            speed: schedule.speed,
+            strain_rate: rate,
+            strain_per_step: rate * run.time_step,
+            speed_ratio: schedule.speed / scales.wave_speed(),
+            transits: 0.5 * scales.strain() * scales.wave_speed() / schedule.speed,
+            inertial_number: rate * 2.0 * piece.mean_radius() * (scales.density / strength).sqrt(),
+            coordination: 2.0 * bonds as f64 / piece.radii.len() as f64,
+            unbalanced: unbalanced_ratio(engine),
+            gauges,
+            particles_across: piece.particles_across(),
+        }
+    }
+
+    /// The warnings of a test.
+    pub fn warnings(&self) -> Vec<LoadingWarning> {
+        rate_warnings(self.speed, self.strain_per_step, self.speed_ratio)
+    }
+
+    /// What the numbers say on the run: cautions, which do not make it invalid.
+    pub(super) fn checks(&self) -> Vec<Check> {
+        vec![
+            Check::at_most(Reason::StrainPerStep, self.strain_per_step, STRAIN_PER_STEP_LIMIT),
+            Check::at_most(Reason::PlatenSpeed, self.speed_ratio, SPEED_RATIO_LIMIT),
+            Check::at_least(Reason::FewParticles, self.particles_across, LEAST_ACROSS),
+        ]
     }
 }
 

@@ -1,9 +1,15 @@
 //! Loading tests: a specimen, a material and a machine in; curves, cracks and macroscopic quantities out.
 //!
-//! * [`material`]: microparameters by contact group; [`rig`]: the specimen mounted with bonds in, free of force
-//! * [`drive`]: settings and the loop all tests share; [`crack`], [`snapshot`]: what is noted on the way
-//! * [`gauge`]: lateral strain; [`curve`]: strength, moduli, Poisson's ratio by name; [`judgement`]: is it quasi-static
-//! * [`uniaxial`], [`brazilian`], [`tension`]: the tests
+//! * [`piece`]: what a test needs to know of a specimen; [`material`]: microparameters by contact group; [`rig`]: the
+//!   piece mounted with bonds in, free of force; [`platens`]: between two platens or jaws
+//! * [`kind`]: the tests and the responses that each declares; [`settings`], [`speed`]: how fast, when to sample and stop,
+//!   in numbers of their own or relative to the piece
+//! * [`drive`]: the loop all tests share; [`crack`], [`snapshot`]: what is noted on the way; [`gauge`]: lateral strain
+//! * [`curve`]: strength, moduli, Poisson's ratio by name; [`judgement`]: is it quasi-static; [`validity`]: did the piece
+//!   fail as the test supposes; [`record`]: all of it together
+//! * [`uniaxial`], [`brazilian`], [`tension`], [`confined`], [`bending`]: the tests; [`run`] starts the one that is asked for
+//!
+//! Imports run one way: settings and loop know no test, a test knows settings and loop, `run` knows the tests.
 //!
 //! # What the published campaign leaves open, and what was settled
 //! Su et al. 2021 (doi:10.3390/ma14071627). "Base" is the set held in its response surfaces with σ_c/τ_c = 20/20 MPa;
@@ -27,17 +33,27 @@
 //! trend is left in E, −2.1 % over the range of E_c and +2.5 % over that of (E_c)_j, goes with the amount of interface:
 //! two thirds of the aggregate turn both signs ("What is left in E").
 
+pub mod bending;
 pub mod brazilian;
+pub mod confined;
 pub mod crack;
 pub mod curve;
 pub mod drive;
 pub mod gauge;
 pub mod judgement;
+pub mod kind;
 pub mod material;
+pub mod piece;
+pub mod platens;
+pub mod record;
 pub mod rig;
+pub mod run;
+pub mod settings;
 pub mod snapshot;
+pub mod speed;
 pub mod tension;
 pub mod uniaxial;
+pub mod validity;
 
 #[cfg(test)]
 mod tests;

@@ -5,21 +5,21 @@
 //! stress are dropped on the way, so memory stays at about thirty states.
 
 use super::curve::Sample;
-use crate::genesis::region::Point;
 use crate::measure::Link;
+use crate::{Space, Vector};
 
 /// What is kept of the balls at one moment.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct State {
+#[derive(Clone, Debug, Default)]
+pub struct State<S: Space> {
     /// Centres (m).
-    pub centres: Vec<Point>,
+    pub centres: Vec<Vector<S>>,
     /// Forces between them, where they are wanted.
     pub forces: Vec<Link>,
 }
 
 /// All balls at one moment.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Snapshot {
+#[derive(Clone, Debug)]
+pub struct Snapshot<S: Space> {
     /// Axial strain.
     pub strain: f64,
     /// Stress (Pa).
@@ -27,30 +27,30 @@ pub struct Snapshot {
     /// Cracks so far.
     pub cracks: usize,
     /// The balls.
-    pub state: State,
+    pub state: State<S>,
 }
 
-impl Snapshot {
+impl<S: Space> Snapshot<S> {
     /// The state at a sample.
-    pub fn new(sample: &Sample, state: State) -> Self {
+    pub fn new(sample: &Sample, state: State<S>) -> Self {
         Self { strain: sample.axial, stress: sample.stress, cracks: sample.cracks, state }
     }
 }
 
 /// States on the way up.
 #[derive(Clone, Debug, Default)]
-pub struct Ladder {
-    rungs: Vec<Snapshot>,
-    top: Option<Snapshot>,
+pub struct Ladder<S: Space> {
+    rungs: Vec<Snapshot<S>>,
+    top: Option<Snapshot<S>>,
 }
 
 const RUNG: f64 = 1.04;
 const TOP: f64 = 1.002;
 const FORGET: f64 = 1.0 / 3.0;
 
-impl Ladder {
+impl<S: Space> Ladder<S> {
     /// Keeps the state of this sample if it is a rung or a new top.
-    pub fn offer(&mut self, sample: &Sample, state: impl Fn() -> State) {
+    pub fn offer(&mut self, sample: &Sample, state: impl Fn() -> State<S>) {
         if sample.stress > TOP * self.top.as_ref().map_or(0.0, |top| top.stress) {
             self.top = Some(Snapshot::new(sample, state()));
         }
@@ -61,10 +61,10 @@ impl Ladder {
     }
 
     /// The states nearest to `shares` of `peak`, then `last`. Shares below a third find nothing nearer than a third.
-    pub fn keep(mut self, peak: f64, shares: &[f64], last: Snapshot) -> Vec<Snapshot> {
+    pub fn keep(mut self, peak: f64, shares: &[f64], last: Snapshot<S>) -> Vec<Snapshot<S>> {
         self.rungs.extend(self.top);
         let nearest = |share: &f64| {
-            let off = |s: &&Snapshot| (s.stress - share * peak).abs();
+            let off = |s: &&Snapshot<S>| (s.stress - share * peak).abs();
             self.rungs.iter().min_by(|a, b| off(a).total_cmp(&off(b))).cloned()
         };
         shares.iter().filter_map(nearest).chain([last]).collect()
@@ -74,10 +74,11 @@ impl Ladder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::D2;
 
     #[test]
     fn states_lie_near_the_wanted_shares() {
-        let mut ladder = Ladder::default();
+        let mut ladder = Ladder::<D2>::default();
         let sample = |stress: f64, strain: f64| Sample { axial: strain, lateral: 0.0, stress, cracks: 0 };
         let climb: Vec<f64> = (1..=1000).map(f64::from).chain((500..1000).rev().map(f64::from)).collect();
         for (k, &stress) in climb.iter().enumerate() {
@@ -92,6 +93,6 @@ mod tests {
             assert!(snapshot.strain < 1000.0);
         }
         assert!(kept[2].stress > 997.0);
-        assert_eq!(kept[3], last);
+        assert_eq!((kept[3].stress, kept[3].strain), (last.stress, last.strain));
     }
 }

@@ -1,8 +1,13 @@
 //! The tests against closed forms, on lattices where there are any and on small random specimens.
 
-use super::drive::{Loading, TestError, TestFailure, TestKind, TestRecord};
+use super::drive::TestFailure;
+use super::kind::TestKind;
 use super::material::{Contact, Material};
-use super::uniaxial::{between_platens, platens};
+use super::piece::Piece;
+use super::platens::{balance, between_platens};
+use super::record::TestRecord;
+use super::settings::{Loading, TestError};
+use super::speed::{Speed, Threshold};
 use crate::genesis::groups::Share;
 use crate::genesis::packing::Packing;
 use crate::genesis::region::Region;
@@ -44,12 +49,12 @@ fn small() -> Specimen {
     random(Region::Rectangle { width: 0.05, height: 0.1 }, 2.5e-3)
 }
 
-fn run(test: &Loading, specimen: &Specimen, material: &Material) -> TestRecord {
-    test.run(specimen, material, 1, &mut |_| Watch::Continue).unwrap()
+fn run(test: &Loading, specimen: &Specimen, material: &Material) -> TestRecord<D2> {
+    test.run(&Piece::from(specimen), material, 1, &mut |_| Watch::Continue).unwrap()
 }
 
 fn loading(kind: TestKind, speed: f64) -> Loading {
-    Loading { speed, ..Loading::new(kind) }
+    Loading { speed: Speed::Each(speed), ..Loading::new(kind) }
 }
 
 /// E = 2√3 k_n (k_n + k_s) / (3 k_n + k_s) per unit thickness; for k_s = k_n that is √3 k_n with ν = 0, so that rows
@@ -76,7 +81,7 @@ fn a_random_specimen_fails_with_a_record_and_the_same_bits_every_time() {
     let (test, specimen, material) = (loading(TestKind::Uniaxial, 0.2), small(), material(20e9, 2.5, 20e6));
     let (a, b) = (run(&test, &specimen, &material), run(&test, &specimen, &material));
     assert_eq!(a.run.samples, b.run.samples);
-    assert_eq!(a.run.cracks, b.run.cracks);
+    assert_eq!(format!("{:?}", a.run.cracks), format!("{:?}", b.run.cracks));
     assert_eq!(a.run.failure, None);
     assert!((25e6..75e6).contains(&a.values.strength), "{:?}", a.values);
     assert!((20e9..40e9).contains(&a.values.modulus_tangent), "{:?}", a.values);
@@ -87,7 +92,7 @@ fn a_random_specimen_fails_with_a_record_and_the_same_bits_every_time() {
     assert!(a.run.cracks.windows(2).all(|pair| pair[0].strain <= pair[1].strain));
     let books = a.run.energies.last().unwrap().1;
     assert!(books.imbalance().abs() < 0.02 && books.boundary > 0.0, "{books:?}");
-    assert!(a.judgement.warnings(test.speed).len() == 2, "{:?}", a.judgement);
+    assert!(a.judgement.warnings().len() == 2, "{:?}", a.judgement);
 }
 
 /// The trace of the stress is Σ f_n l / A over all contacts, and there is nothing across the load. The outermost branches,
@@ -139,7 +144,7 @@ fn strength_and_modulus_scale_with_their_microparameters() {
 #[test]
 fn a_test_without_a_peak_is_a_result_with_a_reason() {
     let mut test = loading(TestKind::Uniaxial, 0.2);
-    test.rule.strain_limit = 1e-4;
+    test.rule.strain_limit = Threshold::Absolute(1e-4);
     let record = run(&test, &small(), &material(20e9, 2.5, 20e6));
     assert!(matches!(record.run.failure, Some(TestFailure::NoPeak { strain_limit: 1e-4, .. })));
     assert!(record.run.samples.len() > 10);
@@ -148,7 +153,8 @@ fn a_test_without_a_peak_is_a_result_with_a_reason() {
 #[test]
 fn an_outline_that_does_not_fit_names_the_remedy() {
     let disc = random(Region::Disc { diameter: 0.05 }, 2e-3);
-    let error = Loading::new(TestKind::Uniaxial).run(&disc, &material(20e9, 2.5, 20e6), 1, &mut |_| Watch::Continue);
+    let error = Loading::new(TestKind::Uniaxial)
+        .run(&Piece::from(&disc), &material(20e9, 2.5, 20e6), 1, &mut |_| Watch::Continue);
     assert!(matches!(error.unwrap_err(), TestError::Outline { wanted: "rectangle", .. }));
 }
 
@@ -156,11 +162,11 @@ fn an_outline_that_does_not_fit_names_the_remedy() {
 #[test]
 fn settings_of_a_test_that_cannot_end_are_named() {
     let mut test = loading(TestKind::Uniaxial, 0.0);
-    test.rule.sample_strain = f64::NAN;
+    test.rule.sample_strain = Threshold::Absolute(f64::NAN);
     test.rule.stop_fraction = 1.5;
-    test.rule.strain_limit = -1.0;
+    test.rule.strain_limit = Threshold::Absolute(-1.0);
     test.rule.snapshots = vec![0.5, 0.0];
-    let error = test.run(&small(), &material(20e9, 2.5, 20e6), 1, &mut |_| Watch::Continue).unwrap_err();
+    let error = test.run(&Piece::from(&small()), &material(20e9, 2.5, 20e6), 1, &mut |_| Watch::Continue).unwrap_err();
     let TestError::Faults(Faults(faults)) = error else { panic!("{error}") };
     let text: Vec<String> = faults.iter().map(ToString::to_string).collect();
     assert_eq!(
@@ -183,10 +189,13 @@ fn an_unbroken_disc_has_the_elastic_stresses_at_its_centre() {
     let diameter = 0.1;
     let specimen = random(Region::Disc { diameter }, 1.5e-3);
     let test = loading(TestKind::Brazilian, 0.05);
-    let mut engine = between_platens(&test, &specimen, &material(20e9, 2.5, 1e12), 1).unwrap();
-    let steps = (1e-4 * diameter / (2.0 * test.speed * engine.time_step())) as u64;
+    let piece = Piece::from(&specimen);
+    let (mounted, platens) = between_platens(&test, &piece, &material(20e9, 2.5, 1e12), 1).unwrap();
+    let mut engine = mounted.engine;
+    platens.approach(&mut engine, 0.05).unwrap();
+    let steps = (1e-4 * diameter / (2.0 * 0.05 * engine.time_step())) as u64;
     engine.advance(steps).unwrap();
-    let [_, force] = platens(&engine, diameter);
+    let [force, _] = balance(platens.forces(&engine));
     let unit = 2.0 * force / (std::f64::consts::PI * diameter);
     let region = measure::Region::<D2>::Ball { centre: [0.0, 0.0], radius: 0.2 * diameter };
     let found = stress(&engine, &region);
@@ -200,5 +209,5 @@ fn a_disc_splits_along_the_loaded_diameter() {
     let record = run(&loading(TestKind::Brazilian, 0.1), &specimen, &material(20e9, 2.5, 20e6));
     assert_eq!(record.run.failure, None);
     assert!((3e6..30e6).contains(&record.values.strength), "{:?}", record.values);
-    assert!(record.checks.iter().all(|check| check.met), "{:?}", record.checks);
+    assert_eq!(record.validity(), "");
 }

@@ -25,8 +25,13 @@ impl Calibrate {
         if let Some(slope) = &self.proportional {
             found.extend(slope.faults().into_iter().map(|fault| Complaint::new("proportional", fault)));
         }
-        if self.specimens == Some(0) {
-            found.push(Complaint::new("specimens", "there must be at least one specimen"));
+        let counts = [
+            ("specimens", self.specimens.unwrap_or(1), 1, 1_000_000),
+            ("solutions", self.solutions.map_or(0, |count| count as u64), 0, 100_000),
+            ("evaluations", self.evaluations.map_or(1, |count| count as u64), 1, 10_000_000),
+        ];
+        for (key, count, least, most) in counts.into_iter().filter(|(_, n, least, most)| n < least || n > most) {
+            found.push(Complaint::new(key, format!("`{key}` is {count}; a number from {least} to {most} is needed")));
         }
         if !found.is_empty() {
             return found;

@@ -32,7 +32,8 @@ impl Wanted {
             };
             return Err(format!("{found} is not a value in `{unit}`; write for example \"30 {unit}\""));
         };
-        Ok(conversion.of(value))
+        let value = conversion.of(value);
+        if value.is_finite() { Ok(value) } else { Err(format!("{value} `{unit}` is not a finite number")) }
     }
 }
 

@@ -119,7 +119,12 @@ pub(super) fn prediction(params: &Params, solved: &[Solved]) -> Table {
     }
     table = table
         .reals_column("expected", "", "at the solution", reals(|row| row.expected.mean))
-        .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|row| row.expected.low))
+        .reals_column(
+            "low",
+            "",
+            "lower end of the 95 % interval of the mean; missing where one run is all that is known",
+            reals(|row| row.expected.low),
+        )
         .reals_column("high", "", "upper end", reals(|row| row.expected.high))
         .reals_column("deviation_percent", "", "as in the misfit", reals(|row| row.deviation));
     if rows.iter().any(|row| !row.observed.is_nan()) {

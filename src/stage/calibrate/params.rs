@@ -213,6 +213,17 @@ impl Params {
     }
 }
 
+/// Largest population: more than any published one by far, and little memory.
+const MOST_POPULATION: usize = 100_000;
+const POPULATION: &str = "a whole number from 5 to 100000 is needed";
+/// Most generations or moves; nobody waits for more.
+const MOST_STEPS: usize = 10_000_000;
+const STEPS: &str = "a whole number from 1 to 10000000 is needed";
+/// Most runs of a surrogate, whose models take the cube of it.
+const MOST_RUNS: usize = 10_000;
+const RUNS: &str = "a whole number from 1 to 10000 is needed";
+const RESTARTS: &str = "the population, `growth` times larger at each of them, would pass 100000";
+
 /// Settings of the method that are out of their range.
 fn method_faults(method: &Method) -> Vec<Error> {
     let mut found = Vec::new();
@@ -222,18 +233,26 @@ fn method_faults(method: &Method) -> Vec<Error> {
         }
     };
     let part = |value: f64| (0.0..=1.0).contains(&value);
+    let count = |count: Option<usize>| count.map_or(f64::NAN, |count| count as f64);
+    let some = |count: Option<usize>, least, most| count.is_none_or(|count| (least..=most).contains(&count));
     match method {
         Method::Genetic(s) => {
+            within("population", count(s.population), some(s.population, 5, MOST_POPULATION), POPULATION);
+            within("generations", count(s.generations), some(s.generations, 1, MOST_STEPS), STEPS);
             within("elite", s.elite, part(s.elite), "a part between 0 and 1 is needed");
             within("crossover", s.crossover, part(s.crossover), "a part between 0 and 1 is needed");
         }
         Method::Annealing(s) => {
+            within("chain", count(s.chain), some(s.chain, 1, MOST_STEPS), STEPS);
+            within("chains", count(s.chains), some(s.chains, 1, MOST_RUNS), RUNS);
             let factor = s.factor.unwrap_or(0.5);
             within("factor", factor, factor > 0.0 && factor < 1.0, "a number between 0 and 1 is needed");
             let hot = s.temperature.unwrap_or(1.0);
             within("temperature", hot, hot > 0.0, "a positive number is needed");
         }
         Method::Differential(s) => {
+            within("population", count(s.population), some(s.population, 5, MOST_POPULATION), POPULATION);
+            within("generations", count(s.generations), some(s.generations, 1, MOST_STEPS), STEPS);
             let f = s.initial_f.unwrap_or(0.5);
             within("initial_f", f, f > 0.0 && f <= 2.0, "a number between 0 and 2 is needed");
             let cr = s.initial_cr.unwrap_or(0.5);
@@ -241,12 +260,23 @@ fn method_faults(method: &Method) -> Vec<Error> {
             let spread = s.spread.unwrap_or(0.25);
             within("spread", spread, spread > 0.0 && spread <= 1.0, "a part of the range is needed");
         }
-        Method::CmaEs(s) => within("step", s.step, s.step > 0.0 && s.step <= 1.0, "a part of the range is needed"),
-        Method::Proportional(s) => within("runs", s.runs as f64, s.runs > 0, "at least one run is needed"),
+        Method::CmaEs(s) => {
+            within("population", count(s.population), some(s.population, 5, MOST_POPULATION), POPULATION);
+            // Every restart has a larger population than the one before it.
+            let last = u32::try_from(s.restarts).ok().and_then(|restarts| s.growth.max(1).checked_pow(restarts));
+            let last = last.and_then(|growth| growth.checked_mul(s.population.unwrap_or(4)));
+            within("restarts", s.restarts as f64, last.is_some_and(|last| last <= MOST_POPULATION), RESTARTS);
+            within("step", s.step, s.step > 0.0 && s.step <= 1.0, "a part of the range is needed");
+        }
+        Method::Proportional(s) => {
+            within("runs", s.runs as f64, some(Some(s.runs), 1, MOST_RUNS), RUNS);
+        }
         Method::Surrogate(s) => {
             within("width", s.width, s.width > 0.0 && s.width <= 0.5, "at most half a range is needed");
             within("tolerance", s.tolerance, s.tolerance >= 0.0, "it cannot be negative");
-            within("batch", s.batch as f64, s.batch > 0, "at least one run is needed");
+            within("batch", s.batch as f64, some(Some(s.batch), 1, MOST_RUNS), RUNS);
+            within("first", count(s.first), some(s.first, 1, MOST_RUNS), RUNS);
+            within("runs", s.runs as f64, some(Some(s.runs), 1, MOST_RUNS), RUNS);
         }
     }
     found

@@ -7,7 +7,9 @@
 
 use super::params::SetParam;
 use crate::artifact::{Artifact, Table};
+use crate::expression::{Expression, Measure};
 use crate::stage::StageError;
+use crate::unit::Dimension;
 use optim::proportional;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,6 +29,9 @@ pub struct Slope {
     pub table: Option<String>,
     /// The column of slopes; `slope` when not given.
     pub column: Option<String>,
+    /// What the slope multiplies, a formula of the factor and of held factors in their units that is proportional to the
+    /// factor, such as `sigma_cn / (1 + ratio)`; the factor itself when not given.
+    pub regressor: Option<String>,
 }
 
 impl Slope {
@@ -39,6 +44,10 @@ impl Slope {
     /// What is wrong with the settings themselves.
     pub(super) fn faults(&self) -> Vec<String> {
         let mut found = Vec::new();
+        found.extend(self.regressor.as_ref().and_then(|text| Expression::parse(text).err()));
+        if self.regressor.is_some() && self.slope.is_none() && self.slopes.is_none() {
+            found.push("`regressor` has no effect without `slope` or `slopes`".to_owned());
+        }
         if self.slope.is_some() && self.slopes.is_some() {
             found.push("either `slope` or `slopes`, not both".to_owned());
         }
@@ -53,14 +62,41 @@ impl Slope {
         found
     }
 
+    /// What the slope multiplies when the factor is 1, at the held values of a set.
+    fn of_one(&self, factor: &str, held: &BTreeMap<String, f64>) -> Result<f64, StageError> {
+        let Some(text) = &self.regressor else { return Ok(1.0) };
+        let fail = |why: String| StageError::new(format!("`regressor`: {why}"));
+        let formula = Expression::parse(text).map_err(fail)?;
+        let at = |one: f64| {
+            let value = |name: &String| {
+                let value = if name == factor { Some(one) } else { held.get(name).copied() };
+                let known = || fail(format!("`{name}` is neither the factor `{factor}` nor held"));
+                Ok(Measure::of(value.ok_or_else(known)?, Dimension::NONE))
+            };
+            let values = formula.names().iter().map(value).collect::<Result<Vec<_>, StageError>>()?;
+            formula.eval(&values).map(|measure| measure.value).map_err(fail)
+        };
+        let (one, two) = (at(1.0)?, at(2.0)?);
+        if (two - 2.0 * one).abs() > 1e-9 * two.abs() {
+            return Err(fail(format!("`{text}` is not proportional to `{factor}`")));
+        }
+        Ok(one)
+    }
+
     /// The first value of the factor of a set; none when no slope is known.
-    pub(super) fn first(&self, slopes: Option<&Artifact>, set: &SetParam) -> Result<Option<f64>, StageError> {
+    pub(super) fn first(
+        &self,
+        slopes: Option<&Artifact>,
+        set: &SetParam,
+        factor: &str,
+    ) -> Result<Option<f64>, StageError> {
         let Some(target) = set.targets.first().and_then(|target| target.low.or(target.high)) else { return Ok(None) };
         let slope = match (self.slope, slopes) {
             (Some(slope), _) => slope,
             (None, Some(artifact)) => self.interpolated(artifact, &set.held)?,
             (None, None) => return Ok(None),
         };
+        let slope = slope * self.of_one(factor, &set.held)?;
         let first = target / slope;
         if first.is_finite() {
             Ok(Some(first))
@@ -153,7 +189,7 @@ mod tests {
         let target = serde_json::json!({ "response": "s", "unit": "MPa", "low": 9.0, "high": 9.0, "weight": 1.0 });
         let held = [("R_min".to_owned(), r_min), ("ratio".to_owned(), ratio)].into();
         let targets = vec![serde_json::from_value(target).unwrap()];
-        Slope::default().first(Some(&sweep()), &SetParam { targets, held, start: None, seed: None })
+        Slope::default().first(Some(&sweep()), &SetParam { targets, held, start: None, seed: None }, "s")
     }
 
     /// Bilinear within the grid, clamped outside it.
@@ -177,10 +213,25 @@ mod tests {
         let targets = vec![serde_json::from_value(target).unwrap()];
         let set = SetParam { targets, held: BTreeMap::new(), start: None, seed: None };
         let own = Slope { slope: Some(0.3), ..Slope::default() };
-        assert_eq!(own.first(None, &set).unwrap(), Some(30.0));
-        assert_eq!(Slope::default().first(None, &set).unwrap(), None);
+        assert_eq!(own.first(None, &set, "s").unwrap(), Some(30.0));
+        assert_eq!(Slope::default().first(None, &set, "s").unwrap(), None);
         let other = Slope { column: Some("K".into()), ..Slope::default() };
-        let error = other.first(Some(&sweep()), &set).unwrap_err();
+        let error = other.first(Some(&sweep()), &set, "s").unwrap_err();
         assert_eq!(error.hint.as_deref(), Some("the columns are R_min, ratio, slope"));
+    }
+
+    /// The published first values: 9.08 MPa at R_max/R_min = 1.5 with K′ = 0.8033 on σ_cn / (1 + ratio) is 28.26 MPa.
+    #[test]
+    fn a_regressor_is_what_the_slope_multiplies() {
+        let target = serde_json::json!({ "response": "s", "unit": "MPa", "low": 9.08, "high": 9.08, "weight": 1.0 });
+        let targets = vec![serde_json::from_value(target).unwrap()];
+        let set = SetParam { targets, held: [("ratio".to_owned(), 1.5)].into(), start: None, seed: None };
+        let slope =
+            |regressor: &str| Slope { slope: Some(0.8033), regressor: Some(regressor.into()), ..Slope::default() };
+        let first = slope("sigma_cn / (1 + ratio)").first(None, &set, "sigma_cn").unwrap().unwrap();
+        assert!((first - 28.26).abs() < 0.005, "{first}");
+        let why = |regressor: &str| slope(regressor).first(None, &set, "sigma_cn").unwrap_err().message;
+        assert!(why("sigma_cn + ratio").contains("not proportional"), "{}", why("sigma_cn + ratio"));
+        assert!(why("sigma_cn / R_min").contains("`R_min` is neither"), "{}", why("sigma_cn / R_min"));
     }
 }

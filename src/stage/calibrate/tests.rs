@@ -7,7 +7,7 @@ use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Artifact, ContentHash};
 use crate::stage::{Factor, FileInput, Input, Job, Library, Memory, Outcome, Point, Progress, Response};
 use math::random::Stream;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
 /// Runs tasks on first sight; `patience` tasks, then it says that nothing is known of others.
@@ -18,6 +18,8 @@ struct Laboratory {
     model: Model,
     /// What the stage that asks is given to remember with, if anything.
     memory: Option<Memory>,
+    /// How often an outcome was asked for.
+    asked: Cell<usize>,
 }
 
 /// What a simulator gives at a point on a specimen: name, value and unit of each response.
@@ -25,7 +27,14 @@ type Model = fn(&str, &Point, u64) -> Result<Vec<(&'static str, f64, &'static st
 
 impl Laboratory {
     fn new(patience: usize, model: Model) -> Self {
-        Self { objects: RefCell::default(), done: RefCell::default(), patience, model, memory: None }
+        Self {
+            objects: RefCell::default(),
+            done: RefCell::default(),
+            patience,
+            model,
+            memory: None,
+            asked: Cell::new(0),
+        }
     }
 
     fn put(&self, artifact: Artifact) -> ContentHash {
@@ -59,6 +68,7 @@ impl Library for Laboratory {
     }
 
     fn outcome(&self, task: &Task) -> Option<Outcome> {
+        self.asked.set(self.asked.get() + 1);
         // The row is for people: equal tasks are one, whichever row asks.
         let task = &Task { row: None, ..task.clone() };
         if let Some((_, outcome)) = self.done.borrow().iter().find(|(known, _)| known == task) {
@@ -224,6 +234,26 @@ fn goes_on(memory: Option<Memory>) {
         }
     }
     assert_eq!(finished(&broken, &end).unwrap(), finished(&whole, &end).unwrap());
+}
+
+/// A stage that remembers asks for each outcome a few times, however long its history is; the steps are the same.
+#[test]
+fn a_long_history_is_walked_once() {
+    let text = COLD.replace("surrogate = { tolerance = 0.0 }", "method = \"annealing\"").replace("24", "150");
+    let (context, stage) = (context(), stage(&text));
+    let walked = |memory: Option<Memory>| {
+        let mut laboratory = Laboratory { memory, ..Laboratory::new(0, scattering) };
+        loop {
+            let step = stage.next(&known(&context, &laboratory)).unwrap();
+            match step {
+                Step::Ask(tasks, _) => laboratory.patience += tasks.len(),
+                Step::Finish(task) => return (task, laboratory.asked.get()),
+            }
+        }
+    };
+    let ((plain, all), (remembered, few)) = (walked(None), walked(Some(Memory::default())));
+    assert_eq!(plain, remembered);
+    assert!(few <= 6 * 2 * 150 && all > 100 * 150, "{few} {all}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The folder of one run: filled before, watched while the program runs, removed after.
 
-use super::Params;
+use super::leftover::{self, Record};
+use super::{Params, template};
 use crate::stage::{Failure, Job, StageError};
 use rustix::process::{Pid, Signal, kill_process_group};
 use std::fs::File;
@@ -21,13 +22,16 @@ pub(super) fn is_plain(name: &str) -> bool {
 /// A run's own temporary folder; `stdout` and `stderr` lie beside what the program writes.
 pub(super) struct Folder {
     root: TempDir,
+    /// Says that the folder is in use, and by whom; it is dropped after the folder.
+    _record: Record,
 }
 
 impl Folder {
     /// Makes the folder with its files and filled templates.
     pub(super) fn fill(job: &Job, params: &Params) -> Result<Self, Failure> {
-        let root = tempfile::Builder::new().prefix("flow-run-").tempdir().map_err(|e| io("make a folder", e))?;
-        let folder = Self { root };
+        let root = tempfile::Builder::new().prefix(leftover::PREFIX).tempdir().map_err(|e| io("make a folder", e))?;
+        let record = Record::of(root.path());
+        let folder = Self { root, _record: record };
         for file in job.files {
             let bytes = job.file(&file.name)?;
             let (bytes, name) = match file.name.split_once(':') {
@@ -62,22 +66,58 @@ impl Folder {
         command.current_dir(self.root.path()).stdin(Stdio::null()).process_group(0);
         command.stdout(output("stdout")?).stderr(output("stderr")?);
         command.env_clear().envs(std::env::var_os("PATH").map(|path| ("PATH", path))).envs(&params.environment);
+        command.env(leftover::VARIABLE, self.root.path());
         let child = command.spawn().map_err(|e| {
             StageError::new(format!("`{}` cannot be started: {e}", params.run[0]))
                 .hint("is it installed and on the PATH?")
         })?;
-        let status = wait(child, job)?;
+        let status = self.wait(child, job)?;
         Ok(if status.success() { Ok(()) } else { Err(format!("`{}` ended with {status}", params.run.join(" "))) })
     }
 
-    /// A text file that the program left.
+    /// Waits for the end, the time limit or the interruption, whichever is first; leaves no process of the run behind.
+    fn wait(&self, mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
+        let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
+        let group = Pid::from_child(&child);
+        loop {
+            if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
+                // What it started and left running ends with it.
+                let _ = kill_process_group(group, Signal::KILL);
+                leftover::end_strays(self.root.path());
+                return Ok(status);
+            }
+            let late = job.time_limit.is_some_and(|limit| started.elapsed().as_secs_f64() > limit);
+            if late || job.stopped() {
+                let _ = kill_process_group(group, Signal::KILL);
+                let _ = child.wait();
+                leftover::end_strays(self.root.path());
+                return Err(match job.time_limit {
+                    Some(limit) if late => {
+                        StageError::new(format!("the program ran longer than its limit of {limit} s"))
+                            .hint("raise `time_limit`, or find out why it hangs")
+                            .into()
+                    }
+                    Some(_) | None => Failure::Stopped,
+                });
+            }
+            std::thread::sleep(pause);
+            pause = (pause * 2).min(Duration::from_millis(20));
+        }
+    }
+
+    /// A text file that the program left. Programs write logs in any encoding: bytes that are no UTF-8 are shown as `\xE9`,
+    /// and the numbers between them are read.
     pub(super) fn text(&self, name: &str) -> Result<String, String> {
         let path = self.path(name);
-        let size = std::fs::metadata(&path).map_err(|_| format!("the program left no file `{name}`"))?.len();
-        if size > LARGEST {
-            return Err(format!("`{name}` has {size} bytes; at most {LARGEST} are read"));
+        let found = std::fs::symlink_metadata(&path).map_err(|_| format!("the program left no file `{name}`"))?;
+        if !found.is_file() {
+            return Err(format!("`{name}` is no plain file but a folder, a link, a pipe or a device"));
         }
-        std::fs::read_to_string(&path).map_err(|e| format!("`{name}` cannot be read as text: {e}"))
+        if found.len() > LARGEST {
+            return Err(format!("`{name}` has {} bytes; at most {LARGEST} are read", found.len()));
+        }
+        let bytes = std::fs::read(&path).map_err(|e| format!("`{name}` cannot be read: {e}"))?;
+        Ok(readable(&bytes))
     }
 
     /// The end of what the program said, for the message of a failure.
@@ -87,67 +127,61 @@ impl Folder {
         said.map_or_else(
             || "it said nothing".to_owned(),
             |text| {
-                let lines: Vec<&str> = text.trim_end().lines().rev().take(5).collect();
+                let lines: Vec<String> = text.trim_end().lines().rev().take(5).map(shown).collect();
                 format!("it said: {}", lines.into_iter().rev().collect::<Vec<_>>().join(" | "))
             },
         )
     }
 }
 
-/// Waits for the end, the time limit or the interruption, whichever is first; leaves no process of the run behind.
-fn wait(mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
-    let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
-    let group = Pid::from_child(&child);
-    loop {
-        if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
-            // What it started and left running ends with it.
-            let _ = kill_process_group(group, Signal::KILL);
-            return Ok(status);
-        }
-        let late = job.time_limit.is_some_and(|limit| started.elapsed().as_secs_f64() > limit);
-        if late || job.stopped() {
-            let _ = kill_process_group(group, Signal::KILL);
-            let _ = child.wait();
-            return Err(match job.time_limit {
-                Some(limit) if late => StageError::new(format!("the program ran longer than its limit of {limit} s"))
-                    .hint("raise `time_limit`, or find out why it hangs")
-                    .into(),
-                Some(_) | None => Failure::Stopped,
-            });
-        }
-        std::thread::sleep(pause);
-        pause = (pause * 2).min(Duration::from_millis(20));
-    }
-}
-
 /// Fills `{{name}}` with the values of the run.
 fn filled(template: &[u8], file: &str, job: &Job, params: &Params) -> Result<Vec<u8>, StageError> {
-    let text = std::str::from_utf8(template).map_err(|e| StageError::new(format!("template `{file}`: {e}")))?;
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some((before, after)) = rest.split_once("{{") {
-        out.push_str(before);
-        let line = text[..text.len() - after.len()].lines().count();
-        let fail = |what: String| StageError::new(format!("template `{file}`, line {line}: {what}"));
-        let (name, after) = after.split_once("}}").ok_or_else(|| fail("`{{` without `}}`".to_owned()))?;
-        out.push_str(&match name.trim() {
-            "seed" => job.seed.unwrap_or(0).to_string(),
-            "replicate" => params.replicate.to_string(),
-            name => match params.values.get(name) {
-                Some(value) => value.to_string(),
-                None => {
-                    let known: Vec<&str> = params.values.keys().map(String::as_str).collect();
-                    return Err(fail(format!("`{name}` is not a value of this run"))
-                        .hint(format!("known are seed, replicate, {}", known.join(", "))));
-                }
-            },
-        });
-        rest = after;
+    let fail = |why: &dyn std::fmt::Display| StageError::new(format!("template `{file}`: {why}"));
+    let text = std::str::from_utf8(template).map_err(|e| fail(&e))?;
+    let value = |name: &str| match name {
+        "seed" => Some(job.seed.unwrap_or(0).to_string()),
+        "replicate" => Some(params.replicate.to_string()),
+        name => params.values.get(name).map(ToString::to_string),
+    };
+    template::filled(text, value)
+        .map(String::into_bytes)
+        .map_err(|error| StageError { hint: error.hint, ..fail(&error.message) })
+}
+
+/// Bytes as text: what is no UTF-8 as `\xE9`.
+fn readable(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len());
+    for chunk in bytes.utf8_chunks() {
+        text.push_str(chunk.valid());
+        chunk.invalid().iter().for_each(|byte| text.push_str(&format!("\\x{byte:02X}")));
     }
-    out.push_str(rest);
-    Ok(out.into_bytes())
+    text
+}
+
+/// A line of a message: no control characters, which would steer the terminal, and no more than fits a message.
+fn shown(line: &str) -> String {
+    const LONGEST: usize = 400;
+    let line = line.rsplit('\r').find(|part| !part.trim().is_empty()).unwrap_or("");
+    let plain: String = line.chars().filter(|c| !c.is_control() || *c == '\t').collect();
+    match plain.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &plain[..end]),
+        None => plain,
+    }
 }
 
 fn io(doing: &str, error: std::io::Error) -> Failure {
     StageError::new(format!("cannot {doing}: {error}")).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn foreign_bytes_are_shown_and_cost_nothing_else() {
+        assert_eq!(readable(b"Gr\xf6\xdfe fertig\nUCS = 35.5"), "Gr\\xF6\\xDFe fertig\nUCS = 35.5");
+        assert_eq!(readable("Größe".as_bytes()), "Größe");
+        assert_eq!(shown("10 %\r20 %\r\u{1b}[31mred\u{7}"), "[31mred");
+        assert_eq!(shown(&"é".repeat(1000)).chars().count(), 401);
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! For every row of the design (or once, without a design) the program runs in a folder of its own: files are copied
 //! there, templates are filled with the row's parameters, the command is started without a shell (unless asked for),
-//! with no standard input, with `PATH` and the declared environment and nothing else; then the responses are read from
+//! with no standard input, with `PATH`, the declared environment, `FLOW_RUN_FOLDER` (its folder) and nothing else; then the responses are read from
 //! what it left (CSV, JSON, or a pattern on a text file). Command, templates, files and parameters are in the key,
 //! the time limit is not.
 //!
@@ -11,11 +11,15 @@
 //!
 //! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
 //! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
+//! Programs speak in any encoding: bytes of a text file that are not UTF-8 are read as `\\xE9`.
 //! Running out of time or being stopped is never recorded, because it says nothing about the model.
 
 mod folder;
+pub mod leftover;
 mod read;
+mod template;
 
+use super::beside::Beside;
 use super::rows::{self, GATHER};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
@@ -27,7 +31,8 @@ use read::Read;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 /// Settings of a `command` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -115,15 +120,31 @@ impl Stage for Command {
         if self.shell && self.run.len() > 1 {
             found.push(Complaint::new("run", "with `shell` the command is one text").hint("run = [\"a | b\"]"));
         }
-        let material = self.material.iter().filter_map(|name| context.materials.get(name));
-        let names = context.factors.keys().cloned().chain(["seed", "replicate"].map(str::to_owned));
-        let values: Vec<String> = material.flat_map(|material| material.paths()).chain(names).collect();
+        if let Some(limit) = self.time_limit.filter(|limit| !(limit.get() > 0.0)) {
+            let message = format!("a run cannot be ended after {} s", limit.get());
+            found.push(Complaint::new("time_limit", message).hint("give a time above 0, such as \"30 min\""));
+        }
+        let nul = |text: &String| text.contains('\0');
+        if self.run.iter().chain(self.environment.values()).any(nul) {
+            found.push(Complaint::new("run", "no program takes an argument or a variable with a zero byte"));
+        }
+        for name in self.environment.keys().filter(|name| name.is_empty() || name.contains(['=', '\0'])) {
+            found.push(Complaint::new("environment", format!("`{name}` cannot be the name of a variable")));
+        }
+        let values = self.values(context);
         if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument, &values)) {
             let message = format!("`{{{{{name}}}}}` is filled in templates, not in `run`");
             let hint = "put the value into a file of `templates` that the program reads";
             found.push(Complaint::new("run", message).hint(hint));
         }
         found.extend(rows::check_material(self.material.as_ref(), context));
+        for name in self.files.keys().filter(|name| self.templates.contains_key(*name)) {
+            found.push(Complaint::new("templates", format!("`{name}` stands in `files` and in `templates`")));
+        }
+        for name in self.files.keys().chain(self.templates.keys()).filter(|name| OUTPUT.contains(&name.as_str())) {
+            let message = format!("`{name}` is where the run's own output goes");
+            found.push(Complaint::new("", message).hint("give the file another name"));
+        }
         for name in self.files.keys().chain(self.templates.keys()).filter(|name| !folder::is_plain(name)) {
             let message = format!("`{name}` must be a plain name inside the run's folder");
             found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`"));
@@ -131,8 +152,23 @@ impl Stage for Command {
         if self.read.is_empty() {
             found.push(Complaint::new("read", "no response is read").hint("add [stage.NAME.read.RESPONSE]"));
         }
-        found.extend(self.read.iter().flat_map(|(name, read)| read.check(name)));
+        found.extend(self.read.iter().flat_map(|(name, read)| read.check(name, context)));
         found
+    }
+
+    fn beside(&self, context: &Context, found: &mut Beside) {
+        for (key, files) in [("files", &self.files), ("templates", &self.templates)] {
+            for (name, path) in files {
+                let Some(full) = found.file(&format!("{key}.{name}"), path) else { continue };
+                // A template that is no text is told when it is filled.
+                let text = (key == "templates").then(|| std::fs::read_to_string(full).ok()).flatten();
+                if let Some(fault) = text.and_then(|text| template::fault(&text, || self.values(context))) {
+                    let complaint = Complaint::new(key, format!("{path}, {}", fault.message));
+                    found.faults.push(Complaint { hint: fault.hint, ..complaint });
+                }
+            }
+        }
+        self.outside(found);
     }
 
     fn sketch(&self) -> Sketch {
@@ -172,6 +208,53 @@ impl Kind for Command {
     const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
 }
+
+impl Command {
+    /// Every name that a template may use.
+    fn values(&self, context: &Context) -> Vec<String> {
+        let material = self.material.iter().filter_map(|name| context.materials.get(name));
+        let names = context.factors.keys().cloned().chain(["seed", "replicate"].map(str::to_owned));
+        material.flat_map(|material| material.paths()).chain(names).collect()
+    }
+
+    /// Remarks on words of the command that name files beside the workflow, or by their whole path: they are in no key, so
+    /// that a result stays as it was when they change.
+    fn outside(&self, found: &mut Beside) {
+        let words: Vec<&str> = match self.shell {
+            true => self
+                .run
+                .iter()
+                .flat_map(|text| text.split(|c: char| c.is_whitespace() || "'\"();|&<>=".contains(c)))
+                .collect(),
+            false => self.run.iter().map(String::as_str).collect(),
+        };
+        let mut told = BTreeSet::new();
+        for word in words {
+            let known = self.files.contains_key(word) || self.templates.contains_key(word);
+            // Systems' own programs and devices are many, and change with the system.
+            let system = ["/bin/", "/usr/", "/dev/", "/proc/"].iter().any(|folder| word.starts_with(folder));
+            if known || system || !told.insert(word) || found.named(word).is_none() {
+                continue;
+            }
+            let message = match Path::new(word).is_absolute() {
+                true => {
+                    format!("`{word}` is a file outside the key of this stage: its results stay when the file changes")
+                }
+                false => {
+                    format!("`{word}` lies beside the workflow, but a run has a folder of its own, where it is not")
+                }
+            };
+            let name = Path::new(word).file_name().map_or(word.into(), |name| name.to_string_lossy());
+            let hint = format!(
+                "copy it with `files = {{ \"{name}\" = \"{word}\" }}`, or say `flow run … --again STAGE` after a change"
+            );
+            found.remarks.push(Complaint::new("run", message).hint(hint));
+        }
+    }
+}
+
+/// Files of a run that hold what the program says.
+const OUTPUT: [&str; 2] = ["stdout", "stderr"];
 
 /// The first of `{{name}}` in the text that names a value; other braces are the program's own.
 fn placeholder<'a>(text: &'a str, values: &[String]) -> Option<&'a str> {

@@ -1,8 +1,8 @@
 //! How a response is read from what a program left.
 
-use super::folder::Folder;
-use crate::stage::Complaint;
-use crate::unit::Unit;
+use super::folder::{Folder, is_plain};
+use crate::stage::sheet::Sheet;
+use crate::stage::{Complaint, Context, rows};
 use regex::Regex;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,17 +33,20 @@ impl Read {
         &self.unit
     }
 
-    pub(super) fn check(&self, name: &str) -> Vec<Complaint> {
+    pub(super) fn check(&self, name: &str, context: &Context) -> Vec<Complaint> {
         let at = |key: &str| format!("read.{name}.{key}");
         let mut found = Vec::new();
+        if !is_plain(&self.file) {
+            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
+            let hint = "leave out `..` and a leading `/`: what lies outside is in no key; list it in `files`";
+            found.push(Complaint::new(&at("file"), message).hint(hint));
+        }
         let ways = [&self.column, &self.pointer, &self.pattern].iter().filter(|way| way.is_some()).count();
         if ways != 1 {
             let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
             found.push(Complaint::new(&at(""), format!("{ways} ways to read `{name}`, not one")).hint(hint));
         }
-        if let Err(e) = Unit::parse(&self.unit) {
-            found.push(Complaint::new(&at("unit"), e.to_string()));
-        }
+        found.extend(rows::check_response(&at("unit"), name, &self.unit, context));
         match self.pattern.as_deref().map(Regex::new) {
             Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
             Some(Ok(regex)) if regex.captures_len() != 2 => {
@@ -72,14 +75,13 @@ impl Read {
 }
 
 fn from_csv(text: &str, column: &str) -> Result<String, String> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let heads = reader.headers().map_err(|e| e.to_string())?.clone();
-    let place = heads.iter().position(|head| head == column).ok_or_else(|| {
-        let known: Vec<&str> = heads.iter().collect();
-        format!("no column `{column}`; it has {}", known.join(", "))
-    })?;
-    let last = reader.records().last().ok_or("no rows")?.map_err(|e| e.to_string())?;
-    Ok(last[place].to_owned())
+    let sheet = Sheet::read(text.as_bytes()).map_err(|e| e.to_string())?;
+    let place =
+        sheet.place(column).ok_or_else(|| format!("no column `{column}`; it has {}", sheet.heads.join(", ")))?;
+    if sheet.heads.iter().filter(|head| *head == column).count() > 1 {
+        return Err(format!("two columns are called `{column}`"));
+    }
+    sheet.columns[place].last().cloned().ok_or_else(|| "no rows".to_owned())
 }
 
 fn from_json(text: &str, pointer: &str) -> Result<String, String> {
@@ -93,8 +95,10 @@ fn from_json(text: &str, pointer: &str) -> Result<String, String> {
 
 fn from_text(text: &str, pattern: &str) -> Result<String, String> {
     let regex = Regex::new(pattern).map_err(|e| e.to_string())?;
-    let last = regex.captures_iter(text).last().ok_or_else(|| format!("nothing matches `{pattern}`"))?;
-    Ok(last.get(1).map_or("", |group| group.as_str()).to_owned())
+    // A pattern such as `(.*)` matches the empty end of the text too.
+    let found =
+        regex.captures_iter(text).filter_map(|all| Some(all.get(1)?.as_str())).filter(|group| !group.is_empty());
+    found.last().map(str::to_owned).ok_or_else(|| format!("nothing matches `{pattern}`"))
 }
 
 #[cfg(test)]
@@ -106,6 +110,7 @@ mod tests {
         assert_eq!(from_csv("a, UCS\n1, 2\n3, 4.5\n", "UCS"), Ok("4.5".to_owned()));
         assert_eq!(from_json(r#"{"r": [1, {"UCS": 3e7}]}"#, "/r/1/UCS"), Ok("30000000.0".to_owned()));
         assert_eq!(from_text("UCS = 1\nUCS = 2\n", r"UCS = (\S+)"), Ok("2".to_owned()));
+        assert_eq!(from_text("35.5\n", "(.*)"), Ok("35.5".to_owned()));
     }
 
     #[test]

@@ -60,7 +60,9 @@ struct Label {
 
 impl Label {
     fn quantity(&self) -> figure::Quantity {
-        let name = if self.name.is_empty() && self.symbol.is_empty() { &self.key } else { &self.name };
+        // A column may be called anything; a name is markup by its author's will.
+        let key = text::plain_text(&self.key);
+        let name = if self.name.is_empty() && self.symbol.is_empty() { &key } else { &self.name };
         figure::Quantity::new(name, &self.symbol, &self.unit).keyed(&self.key)
     }
 }
@@ -116,9 +118,8 @@ impl Stage for Figure {
             let message = format!("there is no [factor.{name}]");
             found.push(Complaint::new(key, message).hint(format!("known: {}", known.join(", "))));
         }
-        let symbols = context.factors.values().map(|f| &f.symbol).chain(context.responses.values().map(|r| &r.symbol));
-        for label in symbols.map(|symbol| format!("${symbol}$")).chain(self.names.values().cloned()) {
-            if let Err(fault) = text::check(&label) {
+        for label in self.names.values() {
+            if let Err(fault) = text::check(label) {
                 found.push(Complaint::new("", fault.to_string()));
             }
         }

@@ -8,27 +8,33 @@
 //! * `packing = "own"`: every row and replicate has a packing of its own, drawn from its content. All runs then scatter
 //!   alike, which is what pure error, lack of fit and the F-tests of an analysis of variance assume.
 //!
-//! The responses of `test = "uniaxial"` are `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus
-//! around half of it; strain ratio there), of `"tension"` `sigma_t`, `E`, `nu`, of `"brazilian"` `sigma_t`; in SI units.
-//! Further ones are named in the record.
+//! Each test declares its responses ([`TestKind::responses`](dem::loading::kind::TestKind::responses)), in SI units:
+//! `uniaxial` gives `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus around half of it; strain
+//! ratio there), `tension` `sigma_t`, `E`, `nu`, `brazilian` `sigma_t`, `biaxial` and `triaxial` `q`, `sigma_1`, `sigma_3`,
+//! `bending` `f_b`, and each a few more. What is computed and why: [`dem::loading`].
 //!
 //! `material` names a `[material.NAME]`, or a stage that gives one ([`material`](super::material)): a `formula` stage whose
-//! responses are microparameters, or a calibration, of whose solution `set` picks the target set. What is computed and why: [`dem::loading`].
+//! responses are microparameters, or a calibration, of whose solution `set` picks the target set.
 
 mod config;
+mod loading;
 mod record;
+mod speed;
 
 pub use config::{BondConfig, PackingChoice, Simulate};
+pub use speed::PlatenSpeed;
 
 use super::rows::{self, GATHER};
+use super::specimen::Loaded;
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError, Step, Task,
     Work,
 };
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use config::Params;
+use dem::Space;
 use dem::loading::curve::Sample;
-use dem::loading::uniaxial;
+use dem::loading::piece::Piece;
 use math::random::Stream;
 use serde_json::json;
 use std::sync::Arc;
@@ -67,6 +73,7 @@ impl Stage for Simulate {
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
+        self.concerned(known, point)?;
         let given = self.given(known)?;
         // What a row varies stands above what was calibrated.
         let mut point = point.clone();
@@ -92,6 +99,26 @@ impl Stage for Simulate {
     }
 }
 
+impl Simulate {
+    /// Refuses a row that varies what is neither of this stage, nor of its specimen, nor of its material.
+    fn concerned(&self, known: &Known, point: &Point) -> Result<(), StageError> {
+        for name in point.keys() {
+            let paths = known.context.factors.get(name).map_or(&[][..], |factor| &factor.sets);
+            let mine = |path: &String| {
+                let stage = path.split_once('.').map_or("", |(stage, _)| stage);
+                !known.context.sets_stage(path) || stage == known.name || stage == self.specimen
+            };
+            if !paths.is_empty() && !paths.iter().any(mine) {
+                let message = format!("factor `{name}` sets `{}`, which this test does not use", paths.join("`, `"));
+                let hint =
+                    format!("it tests `{}`; let the factor set that, or leave it out of the design", self.specimen);
+                return Err(StageError::new(message).hint(hint));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// The replicate of the specimen that belongs to one row and replicate of a design alone.
 fn own_packing(point: &Point, number: u64) -> u64 {
     let text: Vec<String> =
@@ -104,19 +131,27 @@ impl Kind for Simulate {
     const ABOUT: &'static str = "a loading test on a specimen, once or per design row";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
+    /// 3: thresholds and sampling follow from the specimen where the workflow gives none, checks say what they mean.
     /// 2: the same numbers in another layout: states and their centres stand beside the curve, positions and normals are
     /// `position_x`, `normal_x`, ….
-    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 2, run: simulate }, GATHER];
+    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 3, run: simulate }, GATHER];
 }
 
-/// Samples between two reports of progress.
+/// Looks at the run between two reports of progress.
 const REPORT_EVERY: usize = 50;
 
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
+    match super::specimen::load(job.input("specimen")?)? {
+        Loaded::Plane(specimen) => tested(job, &Piece::from(&specimen)),
+        Loaded::Solid(specimen) => tested(job, &Piece::from(&specimen)),
+    }
+}
+
+/// Runs the test on a piece, in the plane or in the solid.
+fn tested<S: Space>(job: &Job, piece: &Piece<S>) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let specimen = super::specimen::load(job.input("specimen")?)?.plane()?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
-    for warning in uniaxial::warnings(&params.test, &specimen, &params.material).map_err(|faults| fail(&faults))? {
+    for warning in params.test.warnings(piece, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));
     }
     let mut seen = 0;
@@ -129,10 +164,10 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
         job.watch()
     };
     let seed = job.seed.unwrap_or_default();
-    let record = params.test.run(&specimen, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
+    let record = params.test.run(piece, &params.material, seed, &mut watch).map_err(|fault| fail(&fault))?;
     if record.run.interrupted {
         return Err(Failure::Stopped);
     }
-    record::unmet(&record).for_each(|words| (job.say)(Progress::warning(&words)));
+    record.invalid().for_each(|check| (job.say)(Progress::warning(&format!("not valid: {check}"))));
     Ok(record::artifact(&record, &params.test, &params.material))
 }

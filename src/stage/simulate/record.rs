@@ -4,21 +4,26 @@ use crate::artifact::Artifact;
 use crate::artifact::run::{Checks, CrackMode, Cracks, Curve, Energies, Forces, Quantities, Responses, Run, States};
 use dem::loading::crack::CrackEvent;
 use dem::loading::curve::thinned;
-use dem::loading::drive::{Loading, TestKind, TestRecord};
+use dem::loading::kind::TestKind;
 use dem::loading::material::Material;
+use dem::loading::record::TestRecord;
+use dem::loading::settings::Loading;
 use dem::loading::snapshot::Snapshot;
 use dem::measure::{Energy, Link, Mode};
+use dem::space::Tuple;
+use dem::{Space, Vector};
 use ndarray::{Array2, Array3};
 
 /// Points of the stored curve.
 const CURVE_POINTS: usize = 400;
 
 /// The storable form of a record.
-pub(super) fn artifact(record: &TestRecord, test: &Loading, material: &Material) -> Artifact {
+pub(super) fn artifact<S: Space>(record: &TestRecord<S>, test: &Loading, material: &Material) -> Artifact {
     let snapshots = &record.run.snapshots;
     let run = Run {
         failure: record.run.failure.map_or_else(String::new, |failure| failure.to_string()),
-        warnings: Some(warnings(record, test)),
+        validity: Some(record.validity()),
+        warnings: Some(warnings(record)),
         responses: Responses::of(&responses(record, test.kind)),
         judgement: Some(judgement(record)),
         checks: Some(checks(record)),
@@ -32,38 +37,14 @@ pub(super) fn artifact(record: &TestRecord, test: &Loading, material: &Material)
     run.to_artifact()
 }
 
-fn responses(record: &TestRecord, kind: TestKind) -> Vec<(&'static str, f64, &'static str)> {
-    let values = &record.values;
-    let strength = match kind {
-        TestKind::Uniaxial => ("UCS", values.strength, "Pa"),
-        TestKind::Brazilian | TestKind::Tension => ("sigma_t", values.strength, "Pa"),
-    };
-    let mut responses =
-        vec![strength, ("peak_strain", values.peak_strain, ""), ("sigma_ci", values.crack_initiation, "Pa")];
-    if kind != TestKind::Brazilian {
-        responses.extend([
-            ("E", values.modulus_tangent, "Pa"),
-            ("nu", values.poisson_secant, ""),
-            ("E_secant", values.modulus_secant, "Pa"),
-            ("nu_tangent", values.poisson_tangent, ""),
-        ]);
-    }
-    if kind == TestKind::Uniaxial {
-        responses.push(("sigma_cd", values.crack_damage, "Pa"));
-    }
-    responses
+fn responses<S: Space>(record: &TestRecord<S>, kind: TestKind) -> Vec<(&'static str, f64, &'static str)> {
+    kind.responses().iter().map(|response| (response.name, (response.read)(&record.values), response.unit)).collect()
 }
 
-/// Warnings on the rate of loading, and checks that are not met.
-fn warnings(record: &TestRecord, test: &Loading) -> Vec<String> {
-    let rate = record.judgement.warnings(test.speed).into_iter().map(|warning| warning.to_string());
-    rate.chain(unmet(record)).collect()
-}
-
-/// Checks that are not met.
-pub(super) fn unmet(record: &TestRecord) -> impl Iterator<Item = String> + '_ {
-    let unmet = record.checks.iter().filter(|check| !check.met);
-    unmet.map(|c| format!("{} is {:.3}, the bound is {:.3}: the result is not valid", c.name, c.value, c.bound))
+/// Warnings on the rate of loading, and why the run is not valid.
+fn warnings<S: Space>(record: &TestRecord<S>) -> Vec<String> {
+    let rate = record.judgement.warnings().into_iter().map(|warning| warning.to_string());
+    rate.chain(record.invalid().map(|check| format!("not valid: {check}"))).collect()
 }
 
 /// One value of every item.
@@ -71,32 +52,39 @@ fn each<T, V>(items: &[T], pick: impl Fn(&T) -> V) -> Vec<V> {
     items.iter().map(pick).collect()
 }
 
-fn checks(record: &TestRecord) -> Checks {
+fn checks<S: Space>(record: &TestRecord<S>) -> Checks {
     let checks = &record.checks;
     Checks {
-        check: each(checks, |check| check.name.to_owned()),
+        check: each(checks, |check| check.reason.name().to_owned()),
         value: each(checks, |check| check.value),
         bound: each(checks, |check| check.bound),
+        unit: each(checks, |check| check.reason.unit().to_owned()),
         met: each(checks, |check| check.met),
+        decisive: each(checks, |check| check.reason.invalidates()),
+        meaning: each(checks, |check| check.reason.about().to_owned()),
+        remedy: each(checks, |check| check.reason.remedy().to_owned()),
     }
 }
 
-fn judgement(record: &TestRecord) -> Quantities {
+fn judgement<S: Space>(record: &TestRecord<S>) -> Quantities {
     let j = &record.judgement;
     Quantities::of(&[
         ("time step", j.time_step, "s"),
         ("steps", j.steps as f64, ""),
+        ("platen speed", j.speed, "m/s"),
         ("strain rate", j.strain_rate, "1/s"),
         ("strain per step", j.strain_per_step, ""),
         ("platen speed / wave speed", j.speed_ratio, ""),
+        ("wave transits within the reference strain", j.transits, ""),
         ("inertial number at the peak", j.inertial_number, ""),
         ("coordination (2 bonds / disc)", j.coordination, ""),
+        ("discs across", j.particles_across, ""),
         ("side gauges", j.gauges as f64, ""),
         ("unbalanced force / contact force at the end", j.unbalanced, ""),
     ])
 }
 
-fn curve(record: &TestRecord) -> Curve {
+fn curve<S: Space>(record: &TestRecord<S>) -> Curve {
     let samples = thinned(&record.run.samples, CURVE_POINTS);
     Curve {
         axial_strain: each(&samples, |s| s.axial),
@@ -121,12 +109,12 @@ fn energies(energies: &[(f64, Energy)]) -> Energies {
     }
 }
 
-fn cracks(cracks: &[CrackEvent], material: &Material) -> Cracks {
-    let mode = |crack: &CrackEvent| match crack.mode {
+fn cracks<S: Space>(cracks: &[CrackEvent<S>], material: &Material) -> Cracks {
+    let mode = |crack: &CrackEvent<S>| match crack.mode {
         Mode::Tension => CrackMode::Tension,
         Mode::Shear => CrackMode::Shear,
     };
-    let group = |crack: &CrackEvent| {
+    let group = |crack: &CrackEvent<S>| {
         let [a, b] = crack.groups;
         material.contact(a, b).map_or_else(String::new, |(name, _)| name.to_owned())
     };
@@ -134,13 +122,18 @@ fn cracks(cracks: &[CrackEvent], material: &Material) -> Cracks {
         axial_strain: each(cracks, |crack| crack.strain),
         mode: each(cracks, mode),
         group: each(cracks, group),
-        position: Array2::from(each(cracks, |crack| crack.position)),
-        normal: Array2::from(each(cracks, |crack| crack.normal)),
+        position: rows(cracks, |crack| crack.position),
+        normal: rows(cracks, |crack| crack.normal),
         size: each(cracks, |crack| crack.size),
     }
 }
 
-fn states(snapshots: &[Snapshot]) -> States {
+/// A vector of every crack.
+fn rows<S: Space>(cracks: &[CrackEvent<S>], pick: impl Fn(&CrackEvent<S>) -> Vector<S>) -> Array2<f64> {
+    Array2::from_shape_fn((cracks.len(), S::DIMENSION), |(crack, axis)| pick(&cracks[crack]).at(axis))
+}
+
+fn states<S: Space>(snapshots: &[Snapshot<S>]) -> States {
     States {
         axial_strain: each(snapshots, |s| s.strain),
         stress: each(snapshots, |s| s.stress),
@@ -149,14 +142,16 @@ fn states(snapshots: &[Snapshot]) -> States {
 }
 
 /// Centres of the discs in each state.
-fn centres(snapshots: &[Snapshot]) -> Array3<f64> {
+fn centres<S: Space>(snapshots: &[Snapshot<S>]) -> Array3<f64> {
     let discs = snapshots.first().map_or(0, |s| s.state.centres.len());
-    Array3::from_shape_fn((snapshots.len(), discs, 2), |(state, disc, axis)| snapshots[state].state.centres[disc][axis])
+    Array3::from_shape_fn((snapshots.len(), discs, S::DIMENSION), |(state, disc, axis)| {
+        snapshots[state].state.centres[disc].at(axis)
+    })
 }
 
 /// Forces in single precision (their low bytes are zero and take no room in the file): seven digits are plenty, and at
 /// 48,000 contacts and four states the table takes about 2 MB instead of 4.
-fn forces(snapshots: &[Snapshot]) -> Forces {
+fn forces<S: Space>(snapshots: &[Snapshot<S>]) -> Forces {
     let all: Vec<(usize, &Link)> =
         snapshots.iter().enumerate().flat_map(|(k, s)| s.state.forces.iter().map(move |link| (k, link))).collect();
     Forces {

@@ -61,16 +61,15 @@ impl Walk {
             return Err(unexpected(place, "a value", "groups nested too deeply"));
         }
         let mut nodes = Group::new();
-        for link in group.datasets()? {
+        for (link, dataset) in group.iter_datasets()? {
             let place = format!("{place}/{link}");
             self.count(&place)?;
-            let node = self.dataset(&group.dataset(&link)?, &place)?;
+            let node = self.dataset(&dataset, &place)?;
             insert(&mut nodes, &link, &place, node)?;
         }
-        for link in group.groups()? {
+        for (link, inner) in group.iter_groups()? {
             let place = format!("{place}/{link}");
             self.count(&place)?;
-            let inner = group.group(&link)?;
             let attributes = inner.attrs()?;
             let node = match attributes.get("class").and_then(AttrValue::as_str) {
                 Some("table") => Node::Table(self.table(&inner, &attributes, &place)?),
@@ -84,11 +83,14 @@ impl Walk {
 
     fn table(&self, group: &::hdf5::Group, attributes: &Attributes, place: &str) -> Result<Table, Hdf5Error> {
         let names = attributes.get("columns").and_then(AttrValue::as_strings).unwrap_or_default();
+        // Looking each of them up by its name would read the list of names once for every column.
+        let mut datasets: HashMap<String, Dataset> = group.iter_datasets()?.collect();
         let mut columns: Vec<Column> = Vec::new();
         for name in names {
             let place = format!("{place}/{name}");
             self.count(&place)?;
-            let dataset = group.dataset(&super::link_name(name))?;
+            let dataset = datasets.remove(&super::link_name(name));
+            let dataset = dataset.ok_or_else(|| unexpected(&place, "a column", "nothing"))?;
             let Node::Array(Array { shape, unit, about, values }) = self.array(&dataset, &place)? else {
                 return Err(unexpected(&place, "a column", "bytes"));
             };

@@ -13,8 +13,11 @@ use dem::genesis::packing::Packing;
 use dem::genesis::region::Region;
 use dem::genesis::specimen::Recipe;
 use dem::loading::curve::Macro;
-use dem::loading::drive::{Loading, TestKind};
+use dem::loading::kind::TestKind;
 use dem::loading::material::{Contact, Material};
+use dem::loading::piece::Piece;
+use dem::loading::settings::Loading;
+use dem::loading::speed::Speed;
 use dem::space::Tuple;
 use dem::*;
 use std::sync::LazyLock;
@@ -45,10 +48,10 @@ fn uniaxial(factor: f64, speed: f64) -> Macro {
     let packing = Packing::uniform(0.12, 2e-3, 2.5);
     let groups = vec![Share { name: "mortar".to_owned(), share: 1.0 }];
     let recipe = Recipe { region, packing, density: 2000.0, groups, aggregate: None };
-    let (specimen, _) = recipe.make(1, &|| Watch::Continue).unwrap();
+    let (specimen, _) = recipe.make::<D2>(1, &|| Watch::Continue).unwrap();
     let material = Material::of_one(Contact::bonded("mortar", 20e9 * factor, 2.5, [20e6 * factor; 2], 0.5));
-    let test = Loading { speed, ..Loading::new(TestKind::Uniaxial) };
-    test.run(&specimen, &material, 1, &mut |_| Watch::Continue).unwrap().values
+    let test = Loading { speed: Speed::Each(speed), ..Loading::new(TestKind::Uniaxial) };
+    test.run(&Piece::from(&specimen), &material, 1, &mut |_| Watch::Continue).unwrap().values
 }
 
 /// Strength and E follow strengths and moduli, strains and ν do not; exactly where the speed follows the wave speed, and

@@ -1,0 +1,245 @@
+//! Three-point bending of a beam, plain or notched; plane.
+//!
+//! The beam lies along x on two supports at ±L/2 and is loaded from above at the middle by a third roller, which moves
+//! down at the speed of the test. Rollers are discs of the machine, a tenth of the height in radius, that neither move
+//! otherwise nor turn, with the friction of the platens. The notch of depth a is cut into the lower side at the middle: its balls are left out.
+//!
+//! ```text
+//! δ      = settlement of the middle against the supports, read at mid-height, so that what the rollers dent does not count
+//! stress = 3 F L / (2 b (h − a)²)                       (outermost fibre of an elastic beam; b = 1 m)
+//! strain = 6 h δ / L²                                   (the same fibre)
+//! lateral = opening of the lower side at the middle over h (crack mouth opening)
+//! E      = stress over strain = F L³/(4 b h³ δ); none for a notched beam
+//! G_F    = ∫ F dδ / (b (h − a)) up to the end of the test: all of it only with a small `stop_fraction`
+//! ```
+//!
+//! The beam starts with the velocities of an elastic beam that settles at the speed of the test, so that no shock runs
+//! through it.
+//!
+//! An elastic beam settles by F L³/(4 E b h³) (1 + 2.4 (1 + ν)(h/L)²) (Timoshenko). With different moduli in tension and
+//! compression E is 4 E_t E_c/(√E_t + √E_c)².
+
+use super::curve::{Macro, Sample, evaluate};
+use super::drive::{Reading, drive};
+use super::judgement::Judgement;
+use super::material::{Material, PLATEN};
+use super::piece::Piece;
+use super::record::{TestRecord, Watcher};
+use super::rig::{mount, set_velocities};
+use super::settings::{Loading, Notch, TestError};
+use crate::space::Tuple;
+use crate::{Clump, Engine, Fault, Faults, Other, Particle, Space, Vector};
+
+/// Radius of a roller over the height of the beam.
+const ROLLER: f64 = 0.1;
+/// Distance of the supports over the length of the beam, when it is not given.
+const SPAN: f64 = 0.9;
+/// Radius within which balls mark a point of the beam, over the mean diameter.
+const MARK: f64 = 1.5;
+
+pub(super) fn run<S: Space>(
+    test: &Loading,
+    piece: &Piece<S>,
+    material: &Material,
+    seed: u64,
+    watch: Watcher<'_>,
+) -> Result<TestRecord<S>, TestError> {
+    let [width, height, _] = piece.outline.extents();
+    let span = test.particulars.span.unwrap_or(SPAN * width);
+    if !(span > height && span < width) {
+        let wanted = "more than the height of the beam and less than its length";
+        return Err(Faults(vec![Fault::Setting { quantity: "span", value: span, wanted }]).into());
+    }
+    let beam = Beam { span, height, notch: test.particulars.notch };
+    let (cut, kept) = beam.cut(piece);
+    let rollers = [(-0.5 * span, -1.0), (0.5 * span, -1.0), (0.0, 1.0)];
+    let rollers = rollers.map(|(x, side)| beam.roller(&cut, x, side)).to_vec();
+    let balls = cut.radii.len();
+    let mut mounted = mount(&cut, material, Vec::new(), rollers, (&test.platens, &test.machine), seed)?;
+    let engine = &mut mounted.engine;
+    let schedule = test.schedule(&mounted.scales, height, (6.0 * height, span * span), engine.time_step())?;
+    let down = Vector::<S>::build(|k| if k == 1 { -schedule.speed } else { 0.0 });
+    set_velocities(engine, |x| beam.settling::<S>(x, schedule.speed))?;
+    for roller in [balls, balls + 1] {
+        engine.set_motion(roller, Vector::<S>::zero(), crate::Spin::<S>::zero())?;
+    }
+    engine.set_motion(balls + 2, down, crate::Spin::<S>::zero())?;
+    let marks = Marks::new(&cut, &beam);
+    let (start, factor) = (marks.read(engine), beam.stress_per_force());
+    let mut measure = |engine: &Engine<S>| {
+        let forces = roller_forces(engine, balls);
+        let [sag, mouth] = marks.read(engine);
+        let supports = 0.5 * (forces[0] + forces[1]);
+        Reading {
+            axial: 6.0 * height * (start[0] - sag) / (span * span),
+            lateral: (mouth - start[1]) / height,
+            stress: -forces[2] * factor,
+            confinement: 0.0,
+            asymmetry: if supports > 0.0 { (forces[0] - forces[1]).abs() / supports } else { 0.0 },
+        }
+    };
+    let mut run = drive(engine, &schedule, &test.rule, &mut measure, watch);
+    for snapshot in &mut run.snapshots {
+        snapshot.state.centres = restored::<S>(&snapshot.state.centres, &kept, &piece.centres);
+        for link in &mut snapshot.state.forces {
+            link.ends = link.ends.map(|end| kept.get(end).copied().unwrap_or(usize::MAX));
+        }
+        snapshot.state.forces.retain(|link| link.ends[1] != usize::MAX);
+    }
+    let values = beam.values(&run.samples);
+    let counts = (mounted.bonds, 0);
+    let judgement = Judgement::of(engine, &run, piece, (&mounted.scales, &schedule), counts, values.strength);
+    Ok(TestRecord::new(run, values, judgement, Vec::new()))
+}
+
+/// Centres of all balls of the whole piece: the `kept` ones where they are now, the notch's where they were.
+fn restored<S: Space>(now: &[Vector<S>], kept: &[usize], start: &[Vector<S>]) -> Vec<Vector<S>> {
+    let mut centres = start.to_vec();
+    kept.iter().zip(now).for_each(|(&ball, &centre)| centres[ball] = centre);
+    centres
+}
+
+/// A beam on its supports.
+struct Beam {
+    span: f64,
+    height: f64,
+    notch: Option<Notch>,
+}
+
+impl Beam {
+    /// Velocity at a point of an elastic beam whose middle settles at `speed` (m/s): with ξ = 2|x|/L the deflection is
+    /// 1 − (3ξ² − ξ³)/2 of that of the middle between the supports and a straight line outside, and sections stay plane.
+    fn settling<S: Space>(&self, x: Vector<S>, speed: f64) -> Vector<S> {
+        let xi = 2.0 * x.at(0).abs() / self.span;
+        let (share, slope) = if xi <= 1.0 {
+            (1.0 - 0.5 * (3.0 * xi * xi - xi * xi * xi), -0.5 * (6.0 * xi - 3.0 * xi * xi))
+        } else {
+            (1.5 * (1.0 - xi), -1.5)
+        };
+        let slope = slope * 2.0 / self.span * if x.at(0) < 0.0 { -1.0 } else { 1.0 };
+        Vector::<S>::build(|k| [speed * slope * x.at(1), -speed * share, 0.0][k])
+    }
+
+    /// Height above the notch (m).
+    fn ligament(&self) -> f64 {
+        self.height * (1.0 - self.notch.map_or(0.0, |notch| notch.depth))
+    }
+
+    /// 3 L / (2 b (h − a)²), 1/m².
+    fn stress_per_force(&self) -> f64 {
+        let ligament = self.ligament();
+        1.5 * self.span / (ligament * ligament)
+    }
+
+    /// The piece without the balls of the notch, and the indices of those that stay. A clump whose pebbles lie in the
+    /// notch loses them and stays rigid as it was.
+    fn cut<S: Space>(&self, piece: &Piece<S>) -> (Piece<S>, Vec<usize>) {
+        let Some(Notch { depth, width }) = self.notch else { return (piece.clone(), (0..piece.radii.len()).collect()) };
+        let tip = -0.5 * self.height + depth * self.height;
+        let within = |x: Vector<S>| x.at(0).abs() < 0.5 * width * self.height && x.at(1) < tip;
+        let kept: Vec<usize> = (0..piece.radii.len()).filter(|&i| !within(piece.centres[i])).collect();
+        let mut index = vec![None; piece.radii.len()];
+        kept.iter().enumerate().for_each(|(new, &old)| index[old] = Some(new));
+        let clump = |clump: &Clump<S>| {
+            let pebbles: Vec<usize> = clump.pebbles.iter().filter_map(|&pebble| index[pebble]).collect();
+            (!pebbles.is_empty()).then(|| Clump { pebbles, ..clump.clone() })
+        };
+        let cut = Piece {
+            outline: piece.outline,
+            centres: kept.iter().map(|&i| piece.centres[i]).collect(),
+            radii: kept.iter().map(|&i| piece.radii[i]).collect(),
+            groups: kept.iter().map(|&i| piece.groups[i]).collect(),
+            density: piece.density,
+            clumps: piece.clumps.iter().filter_map(clump).collect(),
+        };
+        (cut, kept)
+    }
+
+    /// The roller at `x` that touches the beam from below (`side` −1) or above (1).
+    fn roller<S: Space>(&self, piece: &Piece<S>, x: f64, side: f64) -> Particle<S> {
+        let radius = ROLLER * self.height;
+        let touch = |(centre, r): (&Vector<S>, &f64)| {
+            let (across, reach) = (centre.at(0) - x, r + radius);
+            (across.abs() < reach).then(|| side * centre.at(1) + (reach * reach - across * across).sqrt())
+        };
+        let reach = piece.centres.iter().zip(&piece.radii).filter_map(touch).fold(0.5 * self.height, f64::max);
+        let position = Vector::<S>::build(|k| [x, side * reach, 0.0][k]);
+        Particle::ball(position, radius, piece.density, PLATEN)
+    }
+
+    /// What the record says of the beam.
+    fn values(&self, samples: &[Sample]) -> Macro {
+        let all = evaluate(samples);
+        let nan = f64::NAN;
+        let [tangent, secant] = if self.notch.is_some() { [nan; 2] } else { [all.modulus_tangent, all.modulus_secant] };
+        let force = |sample: &Sample| sample.stress / self.stress_per_force();
+        let sag = |sample: &Sample| sample.axial * self.span * self.span / (6.0 * self.height);
+        let work = |pair: &[Sample]| 0.5 * (force(&pair[0]) + force(&pair[1])) * (sag(&pair[1]) - sag(&pair[0]));
+        Macro {
+            strength: all.strength,
+            peak_strain: all.peak_strain,
+            modulus_tangent: tangent,
+            modulus_secant: secant,
+            crack_initiation: all.crack_initiation,
+            fracture_energy: samples.windows(2).map(work).sum::<f64>() / self.ligament(),
+            ..Macro::unknown()
+        }
+    }
+}
+
+/// Balls that mark points of the beam: at mid-height over the supports and at the middle, and at the mouth.
+struct Marks {
+    supports: [Vec<usize>; 2],
+    middle: Vec<usize>,
+    mouth: [Vec<usize>; 2],
+}
+
+impl Marks {
+    fn new<S: Space>(piece: &Piece<S>, beam: &Beam) -> Self {
+        let diameter = 2.0 * piece.mean_radius();
+        let near = |x: f64, y: f64, side: f64| {
+            let off = |i: usize| {
+                let [dx, dy] = [piece.centres[i].at(0) - x, piece.centres[i].at(1) - y];
+                (dx * dx + dy * dy).sqrt()
+            };
+            let own = |i: usize| side == 0.0 || side * (piece.centres[i].at(0)) > 0.0;
+            let within: Vec<usize> = (0..piece.radii.len()).filter(|&i| own(i) && off(i) <= MARK * diameter).collect();
+            if !within.is_empty() {
+                return within;
+            }
+            (0..piece.radii.len()).filter(|&i| own(i)).min_by(|&a, &b| off(a).total_cmp(&off(b))).into_iter().collect()
+        };
+        let edge = 0.5 * beam.height * beam.notch.map_or(0.0, |notch| notch.width);
+        let low = -0.5 * beam.height;
+        Self {
+            supports: [near(-0.5 * beam.span, 0.0, 0.0), near(0.5 * beam.span, 0.0, 0.0)],
+            middle: near(0.0, 0.0, 0.0),
+            mouth: [near(-edge, low, -1.0), near(edge, low, 1.0)],
+        }
+    }
+
+    /// Height of the middle over the supports, and width of the mouth (m).
+    fn read<S: Space>(&self, engine: &Engine<S>) -> [f64; 2] {
+        let mean = |balls: &[usize], axis: usize| {
+            balls.iter().map(|&i| engine.position(i).at(axis)).sum::<f64>() / balls.len() as f64
+        };
+        let [left, right] = [0, 1].map(|k| mean(&self.supports[k], 1));
+        let [near, far] = [0, 1].map(|k| mean(&self.mouth[k], 0));
+        [mean(&self.middle, 1) - 0.5 * (left + right), far - near]
+    }
+}
+
+/// Forces of the beam on the rollers along y (N per metre of thickness), downwards positive.
+fn roller_forces<S: Space>(engine: &Engine<S>, balls: usize) -> [f64; 3] {
+    let mut forces = [0.0; 3];
+    for contact in engine.contacts().filter(|contact| contact.active) {
+        let Other::Particle(other) = contact.other else { continue };
+        // The force acts on the first end.
+        for (particle, sign) in [(contact.particle, 1.0), (other, -1.0)] {
+            if let Some(force) = particle.checked_sub(balls).and_then(|roller| forces.get_mut(roller)) {
+                *force -= sign * contact.force().at(1);
+            }
+        }
+    }
+    forces
+}

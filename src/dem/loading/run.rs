@@ -1,0 +1,79 @@
+//! Starts the test of each kind, on a piece whose outline suits it.
+
+use super::judgement::{LoadingWarning, rate_warnings};
+use super::kind::TestKind;
+use super::material::Material;
+use super::piece::{Outline, Piece};
+use super::platens::between_platens;
+use super::record::{TestRecord, Watcher};
+use super::settings::{Loading, TestError};
+use super::{bending, brazilian, confined, tension, uniaxial};
+use crate::{Faults, Space};
+
+impl Loading {
+    /// Mounts the piece and runs the test to its end. `seed` draws bond strengths where they scatter; `watch` sees every
+    /// sample, is asked again while a sample takes long, and may interrupt.
+    ///
+    /// # Errors
+    /// All faults of the settings, an outline of the piece that does not suit the test, a test that would not end within
+    /// its bound on steps, or what the engine finds wrong.
+    pub fn run<S: Space>(
+        &self,
+        piece: &Piece<S>,
+        material: &Material,
+        seed: u64,
+        watch: Watcher<'_>,
+    ) -> Result<TestRecord<S>, TestError> {
+        let faults = self.faults();
+        if !faults.is_empty() {
+            return Err(Faults(faults).into());
+        }
+        self.suits(piece)?;
+        match self.kind {
+            TestKind::Uniaxial => uniaxial::run(self, piece, material, seed, watch),
+            TestKind::Brazilian => brazilian::run(self, piece, material, seed, watch),
+            TestKind::Tension => tension::run(self, piece, material, seed, watch),
+            TestKind::Biaxial | TestKind::Triaxial => confined::run(self, piece, material, seed, watch),
+            TestKind::Bending => bending::run(self, piece, material, seed, watch),
+        }
+    }
+
+    /// What should be known before the test is run: it costs a mounting, not a run.
+    ///
+    /// # Errors
+    /// An outline that does not suit the test, a test that would not end within its bound on steps, or all faults of the
+    /// input that the engine finds.
+    pub fn warnings<S: Space>(&self, piece: &Piece<S>, material: &Material) -> Result<Vec<LoadingWarning>, TestError> {
+        self.suits(piece)?;
+        let (mounted, _) = between_platens(self, piece, material, 0)?;
+        let (height, time_step) = (piece.outline.height(), mounted.engine.time_step());
+        let schedule = self.schedule(&mounted.scales, height, (2.0, height), time_step)?;
+        let speed_ratio = schedule.speed / mounted.scales.wave_speed();
+        Ok(rate_warnings(schedule.speed, schedule.rate * time_step, speed_ratio))
+    }
+
+    /// Whether the outline suits the test.
+    fn suits<S: Space>(&self, piece: &Piece<S>) -> Result<(), TestError> {
+        let solid = S::DIMENSION == 3;
+        let upright = !matches!(piece.outline, Outline::Disc { .. });
+        let block = if solid { "width, depth and height, or diameter and height" } else { "width and height" };
+        let (fits, wanted, remedy) = match self.kind {
+            TestKind::Uniaxial | TestKind::Tension if solid => (upright, "box or standing cylinder", block),
+            TestKind::Uniaxial | TestKind::Tension => (upright, "rectangle", block),
+            TestKind::Brazilian if solid => (!upright, "lying cylinder", "a diameter and a depth"),
+            TestKind::Brazilian => (!upright, "disc", "a diameter"),
+            TestKind::Biaxial => {
+                (upright && !solid, "rectangle (in the solid the test is `triaxial`)", "width and height")
+            }
+            TestKind::Triaxial => {
+                (upright && solid, "box or standing cylinder (in the plane the test is `biaxial`)", block)
+            }
+            TestKind::Bending => (upright && !solid, "rectangle", "width and height"),
+        };
+        if fits {
+            return Ok(());
+        }
+        let found = piece.outline.name(S::DIMENSION);
+        Err(TestError::Outline { test: self.kind.name(), wanted, found, remedy })
+    }
+}

@@ -1,0 +1,235 @@
+//! What programs leave behind: processes that outlive their run, and folders of campaigns that were killed.
+//!
+//! A program may start others that leave its process group (`setsid`), and a campaign that is killed (`kill -9`, no memory)
+//! ends nothing itself. So every run is written down before its program starts, in a folder that only this user can enter
+//! and that is the same whatever `TMPDIR` says; and its processes are known by a variable of their environment,
+//! [`VARIABLE`], or by the folder they work in. The next campaign on this machine, and `flow store gc`, find the runs whose
+//! campaign is gone, end their processes and remove their folders. A process that clears its environment and leaves the
+//! folder, or that belongs to another user, is not found.
+
+use rustix::process::{Pid, Signal, getuid, kill_process};
+use std::ffi::OsStr;
+use std::fs::{self, DirBuilder};
+use std::io::Write;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{DirBuilderExt, MetadataExt};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// The variable that a program finds its folder in, and is found by.
+pub(super) const VARIABLE: &str = "FLOW_RUN_FOLDER";
+
+/// How the folders of runs are called.
+pub(super) const PREFIX: &str = "flow-run-";
+
+/// Largest record that is read.
+const LARGEST: u64 = 1 << 14;
+
+/// The record of a run; it goes with the run.
+pub(super) struct Record(Option<PathBuf>);
+
+impl Record {
+    /// Writes a run down. Without a place for it the run goes on: only a killed one could not be found.
+    pub(super) fn of(folder: &Path) -> Self {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        let write = || {
+            let name = format!("{}-{}", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed));
+            let path = registry(true)?.join(name);
+            let mut file = fs::File::create_new(&path).ok()?;
+            let text = [machine()?.as_bytes(), b"\n", owner(std::process::id())?.as_bytes(), b"\n"].concat();
+            file.write_all(&[&text, folder.as_os_str().as_bytes()].concat()).ok()?;
+            Some(path)
+        };
+        Self(write())
+    }
+}
+
+impl Drop for Record {
+    fn drop(&mut self) {
+        self.0.iter().for_each(|path| drop(fs::remove_file(path)));
+    }
+}
+
+/// Ends the processes of runs whose campaign is gone and removes their folders; a line on each.
+pub fn sweep() -> Vec<String> {
+    let Some(records) = registry(false).and_then(|folder| fs::read_dir(folder).ok()) else { return Vec::new() };
+    records.flatten().filter_map(|entry| abandoned(&entry.path())).map(|run| run.clear()).collect()
+}
+
+/// Ends the programs of this campaign, which itself is about to end, and removes their folders.
+pub fn end_own() {
+    let Some(records) = registry(false).and_then(|folder| fs::read_dir(folder).ok()) else { return };
+    let own = format!("{}-", std::process::id());
+    let is_own = |entry: &fs::DirEntry| entry.file_name().as_bytes().starts_with(own.as_bytes());
+    for entry in records.flatten().filter(is_own) {
+        // A record of this number that is older than this process is that of another one.
+        if let Some((folder, _)) = read(&entry.path()).filter(|(_, by)| owner(std::process::id()).as_ref() == Some(by))
+        {
+            Abandoned { record: entry.path(), folder }.clear();
+        }
+    }
+}
+
+/// A run whose campaign is gone.
+struct Abandoned {
+    record: PathBuf,
+    folder: PathBuf,
+}
+
+impl Abandoned {
+    fn clear(self) -> String {
+        let ended = end_strays(&self.folder);
+        let own = |meta: &fs::Metadata| meta.is_dir() && meta.uid() == getuid().as_raw();
+        let there = fs::symlink_metadata(&self.folder).is_ok_and(|meta| own(&meta));
+        let removed = there && fs::remove_dir_all(&self.folder).is_ok();
+        if removed || !there {
+            let _ = fs::remove_file(&self.record);
+        }
+        let processes = match ended {
+            0 => "no process".to_owned(),
+            1 => "a process, which was ended".to_owned(),
+            many => format!("{many} processes, which were ended"),
+        };
+        let folder = match (there, removed) {
+            (false, _) => "its folder is gone".to_owned(),
+            (true, true) => format!("its folder {} was removed", self.folder.display()),
+            (true, false) => format!("its folder {} cannot be removed", self.folder.display()),
+        };
+        format!("a campaign that was killed left {processes}, of a program it ran; {folder}")
+    }
+}
+
+/// The run of a record, if its campaign no longer lives.
+fn abandoned(record: &Path) -> Option<Abandoned> {
+    let (folder, by) = read(record)?;
+    let pid = by.split_once(' ')?.0.parse().ok()?;
+    (owner(pid) != Some(by)).then(|| Abandoned { record: record.to_owned(), folder })
+}
+
+/// Folder and campaign of a record whose processes could be seen from here.
+fn read(record: &Path) -> Option<(PathBuf, String)> {
+    let meta = fs::symlink_metadata(record).ok().filter(|meta| meta.is_file() && meta.len() <= LARGEST)?;
+    let bytes = fs::read(record).ok().filter(|bytes| bytes.len() as u64 == meta.len())?;
+    let mut parts = bytes.splitn(3, |byte| *byte == b'\n');
+    let (on, by, folder) = (parts.next()?, parts.next()?, parts.next()?);
+    let folder = PathBuf::from(OsStr::from_bytes(folder));
+    let named = folder.file_name().is_some_and(|name| name.as_bytes().starts_with(PREFIX.as_bytes()));
+    let (here, there) = (machine()?, std::str::from_utf8(on).ok()?);
+    let ((boot, space), (other_boot, other_space)) = (here.split_once(' ')?, there.split_once(' ')?);
+    // Processes of another container cannot be seen; those before the last start of the machine are gone.
+    let by = if boot == other_boot { std::str::from_utf8(by).ok()?.to_owned() } else { "0 0".to_owned() };
+    let seen = boot != other_boot || space == other_space;
+    (named && folder.is_absolute() && seen).then_some((folder, by))
+}
+
+/// The folder of records: this user's own, which nobody else can write to.
+fn registry(make: bool) -> Option<PathBuf> {
+    let user = getuid().as_raw();
+    let session = PathBuf::from(format!("/run/user/{user}"));
+    let base = if session.is_dir() { session } else { PathBuf::from("/tmp") };
+    let folder = base.join(format!("flow-runs-{user}"));
+    if make {
+        // It may be there already.
+        let _ = DirBuilder::new().mode(0o700).create(&folder);
+    }
+    let meta = fs::symlink_metadata(&folder).ok()?;
+    (meta.is_dir() && meta.uid() == user && meta.mode() & 0o077 == 0).then_some(folder)
+}
+
+/// Which start of which machine this is, and which processes can be seen.
+fn machine() -> Option<String> {
+    let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
+    let space = fs::read_link("/proc/self/ns/pid").ok()?;
+    Some(format!("{} {}", boot.trim(), space.display()))
+}
+
+/// A process: its number, and when it started, because numbers come again.
+fn owner(pid: u32) -> Option<String> {
+    let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    // The name of the program, in brackets, may hold anything.
+    let started = stat.rsplit_once(')')?.1.split_whitespace().nth(19)?.to_owned();
+    Some(format!("{pid} {started}"))
+}
+
+/// Ends every process of a run that is left, and says how many there were.
+pub(super) fn end_strays(folder: &Path) -> usize {
+    const ROUNDS: usize = 20;
+    let mut ended = 0;
+    // Until none is found: while one is ended it may start another.
+    for _ in 0..ROUNDS {
+        let found = strays(folder);
+        if found.is_empty() {
+            break;
+        }
+        ended += found.iter().filter(|pid| kill_process(**pid, Signal::KILL).is_ok()).count();
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    ended
+}
+
+/// Processes of this user that were started in a run of this folder, or work in it.
+fn strays(folder: &Path) -> Vec<Pid> {
+    let Ok(processes) = fs::read_dir("/proc") else { return Vec::new() };
+    let entry = [VARIABLE.as_bytes(), b"=", folder.as_os_str().as_bytes()].concat();
+    let user = getuid().as_raw();
+    let own = std::process::id();
+    let stray = |path: &Path| {
+        let environment = fs::read(path.join("environ")).unwrap_or_default();
+        let told = environment.split(|byte| *byte == 0).any(|variable| variable == entry);
+        told || fs::read_link(path.join("cwd")).is_ok_and(|cwd| cwd.starts_with(folder))
+    };
+    let number = |process: &fs::DirEntry| process.file_name().to_str()?.parse::<u32>().ok().filter(|pid| *pid != own);
+    let all = processes.flatten().filter_map(|process| Some((number(&process)?, process.path())));
+    let mine = all.filter(|(_, path)| fs::metadata(path).is_ok_and(|meta| meta.uid() == user));
+    // A process that has ended and that nobody waited for has no environment and no folder.
+    mine.filter(|(_, path)| stray(path)).filter_map(|(pid, _)| Pid::from_raw(pid as i32)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::process::{Command, Stdio};
+
+    /// A program that leaves its group and ignores requests to end.
+    #[test]
+    fn a_process_that_left_its_group_is_found_by_its_environment_and_ended() {
+        let folder = tempfile::Builder::new().prefix(PREFIX).tempdir().unwrap();
+        let script = "trap '' TERM HUP; sleep 600 & sleep 600";
+        let mut child = Command::new("setsid")
+            .args(["sh", "-c", script])
+            .env(VARIABLE, folder.path())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        while strays(folder.path()).len() < 2 {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(end_strays(folder.path()) >= 2);
+        child.wait().unwrap();
+        assert_eq!(strays(folder.path()), []);
+    }
+
+    #[test]
+    fn a_record_of_a_living_campaign_is_left_alone_and_that_of_a_dead_one_is_not() {
+        let folder = tempfile::Builder::new().prefix(PREFIX).tempdir().unwrap();
+        let record = Record::of(folder.path());
+        let path = record.0.clone().expect("a place for records");
+        assert!(abandoned(&path).is_none());
+        let text = fs::read_to_string(&path).unwrap();
+        let mut lines: Vec<&str> = text.split('\n').collect();
+        // The same number, started at another time: another process.
+        let other = format!("{} 1", std::process::id());
+        lines[1] = &other;
+        let dead = folder.path().join("record");
+        fs::write(&dead, lines.join("\n")).unwrap();
+        assert_eq!(abandoned(&dead).unwrap().folder, folder.path());
+        for folder in ["/", "/home", "relative/flow-run-1", "/tmp/flow-run-1/.."] {
+            lines[2] = folder;
+            fs::write(&dead, lines.join("\n")).unwrap();
+            assert!(abandoned(&dead).is_none(), "{folder}");
+        }
+        drop(record);
+        assert!(!path.exists());
+    }
+}

@@ -1,0 +1,140 @@
+//! Units, formulas and tables under mutated texts: no panic, and what is read means the same when it is read again.
+//!
+//! Inputs are a function of their number alone, without feedback from the code: coverage-guided fuzzers need an unstable
+//! compiler, and this repository is built by a pinned stable one. `FLOW_FUZZ=1000000 cargo test --release --test workflows
+//! texts` runs as many of each as it says; a failure names the number, and `FLOW_FUZZ_ONLY=number` runs and shows just
+//! that one. What a run by hand finds goes into `tests/workflows/corpus`.
+
+use flow::expression::{Expression, Measure};
+use flow::stage::data;
+use flow::unit::{Unit, parse_any};
+use math::random::Stream;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+const IN_EVERY_TEST_RUN: u64 = 5_000;
+
+const PIECES: &[&str] = &[
+    "^",
+    "*",
+    "/",
+    "(",
+    ")",
+    " ",
+    "\u{3000}",
+    "m",
+    "Pa",
+    "GPa",
+    "µ",
+    "°",
+    "%",
+    "√",
+    "²",
+    "⁻",
+    "1",
+    "0.5",
+    "-",
+    "1e400",
+    "nan",
+    "inf",
+    "max(",
+    "min(",
+    "sqrt(",
+    ",",
+    "x",
+    "sigma_c",
+    "+",
+    "1e-3",
+    ".",
+    "#",
+    "\n",
+    "\r\n",
+    "\"",
+    "\"\"",
+    ";",
+    "\t",
+    "[",
+    "]",
+    "[GPa]",
+    "\u{feff}",
+    "\u{0}",
+    "é",
+    "\u{1f600}",
+    "99999999999999999999",
+];
+
+fn mutated(corpus: &[&str], random: &mut Stream) -> String {
+    let place = |random: &mut Stream, text: &str| text.floor_char_boundary(random.below(text.len() + 1));
+    let mut text = corpus[random.below(corpus.len())].to_owned();
+    for _ in 0..random.below(6) {
+        let (a, b) = (place(random, &text), place(random, &text));
+        let (from, to) = (a.min(b), a.max(b));
+        let piece = PIECES[random.below(PIECES.len())];
+        match random.below(6) {
+            0 => text.insert_str(a, piece),
+            1 => text.replace_range(from..to, piece),
+            2 => text.replace_range(from..to, ""),
+            3 => text.insert_str(a, &piece.repeat(random.below(100))),
+            4 => {
+                let copied = text[from..to].to_owned();
+                text.insert_str(b, &copied);
+            }
+            _ => {
+                let other = corpus[random.below(corpus.len())];
+                text.replace_range(from.., &other[place(random, other)..]);
+            }
+        }
+    }
+    text
+}
+
+fn unit(text: &str) {
+    if let Ok(unit) = Unit::parse(text) {
+        assert!(unit.factor.is_normal() && unit.factor > 0.0, "{unit:?}");
+        let inverse = Unit::parse(&format!("1/({text})"));
+        if let (Ok(inverse), false) = (inverse, text.trim().is_empty()) {
+            assert!((inverse.factor * unit.factor - 1.0).abs() < 1e-9, "{inverse:?} {unit:?}");
+        }
+        if let Ok((value, dimension)) = parse_any(&format!("2 {text}")) {
+            assert!(value.is_finite() && dimension == unit.dimension);
+        }
+    }
+}
+
+fn formula(text: &str) {
+    let Ok(formula) = Expression::parse(text) else { return };
+    let values = vec![Measure::number(1.5); formula.names().len()];
+    let value = formula.eval(&values).unwrap().value;
+    // A bracket around the whole changes nothing.
+    let again = Expression::parse(&format!("({text})")).map(|same| same.eval(&values).unwrap().value);
+    assert!(again.is_err() || again.is_ok_and(|again| again.to_bits() == value.to_bits() || again.is_nan()));
+}
+
+fn table(text: &str) {
+    let Ok(table) = data::parse(text.as_bytes()) else { return };
+    assert!(table.rows() > 0 && table.columns.iter().all(|column| column.values.len() == table.rows()));
+    let written = flow::export::csv_text(&table);
+    let again = data::parse(written.as_bytes()).unwrap_or_else(|e| panic!("{e}: {written:?}"));
+    assert_eq!(again.columns, table.columns, "{written:?}");
+}
+
+#[test]
+fn texts() {
+    let number = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u64>().unwrap());
+    let lines = |text: &'static str| text.lines().collect::<Vec<&str>>();
+    let targets: [(&str, Vec<&str>, fn(&str)); 3] = [
+        ("unit", lines(include_str!("corpus/units.txt")), unit),
+        ("formula", lines(include_str!("corpus/formulas.txt")), formula),
+        ("table", include_str!("corpus/tables.txt").split("=====\n").collect(), table),
+    ];
+    for (name, corpus, read) in &targets {
+        corpus.iter().for_each(|text| read(text));
+        let numbers =
+            number("FLOW_FUZZ_ONLY").map_or(0..number("FLOW_FUZZ").unwrap_or(IN_EVERY_TEST_RUN), |n| n..n + 1);
+        for number in numbers {
+            let text = mutated(corpus, &mut Stream::new(number, name, 0));
+            if catch_unwind(AssertUnwindSafe(|| read(&text))).is_err() {
+                panic!("{name}, input {number}: {text:?}; see it alone with FLOW_FUZZ_ONLY={number}");
+            }
+        }
+    }
+}
