@@ -90,9 +90,12 @@ impl Cells for Array2<f64> {
 
 /// Numbered columns `NAME_1`, `NAME_2`, …, as many as there are: one list per column.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Numbered(pub Vec<Vec<f64>>);
+pub struct Numbered<T = f64>(pub Vec<Vec<T>>);
 
-impl Cells for Numbered {
+impl<T> Cells for Numbered<T>
+where
+    Vec<T>: Cells,
+{
     fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str) {
         for (values, number) in self.0.iter().zip(1..) {
             values.put(table, &format!("{name}_{number}"), unit, about);
@@ -101,7 +104,7 @@ impl Cells for Numbered {
     fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread> {
         let names = (1..).map(|number| format!("{name}_{number}"));
         let there = names.take_while(|name| table.column(name).is_some());
-        there.map(|name| table.numbers(&name, unit)).collect::<Result<_, _>>().map(Self)
+        there.map(|name| Cells::take(table, &name, unit)).collect::<Result<_, _>>().map(Self)
     }
 }
 

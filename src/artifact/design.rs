@@ -1,6 +1,7 @@
 //! A design of experiments as it is stored.
 
-use super::{Artifact, ArtifactKind, Node, Table, Wanted};
+use super::field::table_of;
+use super::{Artifact, ArtifactKind, Table, Wanted};
 
 crate::artifact! {
     /// A design of experiments.
@@ -52,10 +53,6 @@ impl Design {
     /// # Errors
     /// The artifact holds no design.
     pub fn table(artifact: &Artifact) -> Result<&Table, Wanted> {
-        match artifact.root.get("design") {
-            Some(Node::Table(table)) => Ok(table),
-            Some(other) => Err(Wanted::new("design", "a table", other.type_name())),
-            None => Err(Wanted::new("design", "a table", "nothing")),
-        }
+        table_of(artifact, "design")
     }
 }

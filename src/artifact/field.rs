@@ -1,6 +1,6 @@
 //! Values of typed artifacts: one [`Field`] per type of value, read back in the unit that the declaration names.
 
-use super::{Array, Group, Node, Table, Values};
+use super::{Array, Artifact, Group, Node, Table, Values};
 use crate::unit::Conversion;
 use ndarray::{Dimension, IxDyn};
 use std::collections::BTreeMap;
@@ -112,6 +112,14 @@ impl<F: Field> Field for BTreeMap<String, F> {
         let own = <Group as Field>::take(group, name, unit)?;
         let one = |(key, _): (&str, &Node)| Ok((key.to_owned(), F::take(&own, key, unit)?));
         own.iter().map(one).collect::<Result<_, Wanted>>().map_err(|wanted| wanted.within(name))
+    }
+}
+
+/// The table called `name` of an artifact, without a copy.
+pub(super) fn table_of<'a>(artifact: &'a Artifact, name: &str) -> Result<&'a Table, Wanted> {
+    match node(&artifact.root, name, "a table")? {
+        Node::Table(table) => Ok(table),
+        other => Err(Wanted::new(name, "a table", other.type_name())),
     }
 }
 

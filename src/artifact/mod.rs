@@ -6,15 +6,18 @@
 //!
 //! Typed artifacts are declared with [`artifact!`](crate::artifact!), one type per file, and convert to and from the tree.
 
+pub mod agreement;
 pub mod calibration;
 mod cells;
 mod declare;
 pub mod design;
 mod field;
+pub mod groups;
 mod key;
 mod kind;
 mod node;
 pub mod presentation;
+pub mod range;
 mod read;
 pub mod results;
 pub mod run;

@@ -1,6 +1,8 @@
 //! Runs or measurements as they are stored: what simulators, external programs, formulas and data files give alike.
 
-use super::{Artifact, ArtifactKind, Node, Table, Values, Wanted};
+use super::field::table_of;
+use super::statistics::Remarks;
+use super::{Artifact, ArtifactKind, Table, Values, Wanted};
 
 crate::artifact! {
     /// Runs or measurements. Besides factors (in their units) and responses (in the units of `[response.NAME]`) the
@@ -8,6 +10,8 @@ crate::artifact! {
     pub struct Results = ArtifactKind::RESULTS {
         /// one row per run
         pub runs: Table, "";
+        /// how a file was read, where that was detected and is not the plain way
+        pub notes: Option<Remarks>, "";
     }
 }
 
@@ -17,7 +21,7 @@ const FAILURE: &str = "failure";
 impl Results {
     /// The runs of a simulator: `runs` without the reasons, which are empty where all went well.
     pub fn of(runs: Table, failures: Vec<String>) -> Self {
-        Self { runs: runs.texts_column(FAILURE, "why the run gave no result; empty when it did", failures) }
+        Self::from(runs.texts_column(FAILURE, "why the run gave no result; empty when it did", failures))
     }
 
     /// The table of an artifact, without a copy.
@@ -25,11 +29,7 @@ impl Results {
     /// # Errors
     /// The artifact holds no runs.
     pub fn table(artifact: &Artifact) -> Result<&Table, Wanted> {
-        match artifact.root.get("runs") {
-            Some(Node::Table(table)) => Ok(table),
-            Some(other) => Err(Wanted::new("runs", "a table", other.type_name())),
-            None => Err(Wanted::new("runs", "a table", "nothing")),
-        }
+        table_of(artifact, "runs")
     }
 
     /// Why each run gave no result, empty when it did; none where runs cannot fail.
@@ -38,5 +38,12 @@ impl Results {
             Some(Values::Texts(reasons)) => reasons,
             Some(Values::Reals(_) | Values::Ints(_)) | None => &[],
         }
+    }
+}
+
+/// Rows without notes.
+impl From<Table> for Results {
+    fn from(runs: Table) -> Self {
+        Self { runs, notes: None }
     }
 }

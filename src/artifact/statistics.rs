@@ -1,7 +1,7 @@
 //! Results of the statistics as they are stored. A column that mixes responses has no unit: each row is in that of its
 //! response, which stands in `[response.NAME]`.
 
-use super::{ArtifactKind, Cells, Numbered, Table, Unread};
+use super::{ArtifactKind, Cells, Table, Unread};
 use ndarray::Array2;
 use std::collections::BTreeMap;
 
@@ -20,131 +20,11 @@ crate::artifact! {
 }
 
 crate::artifact! {
-    /// Computed results beside values from elsewhere.
-    pub struct Agreement = ArtifactKind::AGREEMENT {
-        /// the ratio computed/reference
-        pub summary: Ratios, "";
-        /// what the ratio depends on
-        pub trends: Trends, "";
-        /// every pair
-        pub pairs: Pairs, "";
-    }
-}
-
-crate::table! {
-    /// the ratio computed/reference
-    pub struct Ratios {
-        /// the response
-        pub response: Vec<String>, "";
-        /// `all`: all tables together
-        pub table: Vec<String>, "";
-        /// pairs
-        pub n: Vec<i64>, "";
-        /// median
-        pub median: Vec<f64>, "";
-        /// first quartile
-        pub lower: Vec<f64>, "";
-        /// third quartile
-        pub upper: Vec<f64>, "";
-        /// least
-        pub least: Vec<f64>, "";
-        /// greatest
-        pub greatest: Vec<f64>, "";
-        /// mean
-        pub mean: Vec<f64>, "";
-        /// standard deviation
-        pub std: Vec<f64>, "";
-        /// rank correlation of the values
-        pub spearman: Vec<f64>, "";
-    }
-}
-
-crate::table! {
-    /// what the ratio depends on: regression of 100 ln ratio
-    pub struct Trends {
-        /// the response
-        pub response: Vec<String>, "";
-        /// the stage with the computed values
-        pub table: Vec<String>, "";
-        /// the factor
-        pub factor: Vec<String>, "";
-        /// change of the ratio over the factor's span
-        pub effect: Vec<f64>, "%";
-        /// standard error
-        pub std_error: Vec<f64>, "%";
-        /// effect over standard error
-        pub t: Vec<f64>, "";
-        /// probability of such a t by chance
-        pub p: Vec<f64>, "";
-    }
-}
-
-crate::table! {
-    /// every pair, in the units of the responses
-    pub struct Pairs {
-        /// the response
-        pub response: Vec<String>, "";
-        /// the stage with the computed values
-        pub table: Vec<String>, "";
-        /// of the reference
-        pub row: Vec<i64>, "";
-        /// the computed value
-        pub computed: Vec<f64>, "";
-        /// the value to compare with
-        pub reference: Vec<f64>, "";
-        /// computed over reference
-        pub ratio: Vec<f64>, "";
-    }
-}
-
-crate::artifact! {
-    /// A range analysis.
-    pub struct Range = ArtifactKind::RANGE {
-        /// mean response at each level
-        pub range: Ranges, "";
-        /// values of the levels
-        pub levels: LevelValues, "";
-        /// what should be looked at before the numbers are trusted
-        pub notes: Remarks, "";
-    }
-}
-
-crate::table! {
-    /// mean response at each level
-    pub struct Ranges {
-        /// the response
-        pub response: Vec<String>, "";
-        /// the factor
-        pub factor: Vec<String>, "";
-        /// mean response at the level, in its unit
-        pub level: Numbered, "";
-        /// greatest mean minus least
-        pub range: Vec<f64>, "";
-        /// 1 has the largest range
-        pub rank: Vec<i64>, "";
-        /// runs without a value
-        pub missing: Vec<i64>, "";
-    }
-}
-
-crate::table! {
-    /// values of the levels
-    pub struct LevelValues {
-        /// the factor
-        pub factor: Vec<String>, "";
-        /// unit of the factor
-        pub unit: Vec<String>, "";
-        /// in the factor's unit
-        pub level: Numbered, "";
-    }
-}
-
-crate::artifact! {
     /// Effects of a two-level design.
     pub struct Screening = ArtifactKind::SCREENING {
         /// the effects
         pub effects: Effects, "";
-        /// Lenth's limits
+        /// Lenth's limits and the critical value of t
         pub limits: Limits, "";
         /// quality of the models
         pub fit: Fits, "";
@@ -180,6 +60,8 @@ crate::artifact! {
         pub notes: Remarks, "";
         /// what prediction needs of each model
         pub models: BTreeMap<String, FittedModel>, "";
+        /// the same terms with a constant, for fits through the origin
+        pub with_constant: Option<WithConstant>, "";
         /// predictions at the points that were asked for
         pub predictions: Option<Predictions>, "";
     }
@@ -286,6 +168,26 @@ crate::table! {
 }
 
 crate::table! {
+    /// the same terms with a constant: whether the data point to the origin
+    pub struct WithConstant {
+        /// the response
+        pub response: Vec<String>, "";
+        /// the term
+        pub term: Vec<String>, "";
+        /// unit of the response per unit of the term
+        pub estimate: Vec<f64>, "";
+        /// standard error
+        pub std_error: Vec<f64>, "";
+        /// estimate over standard error
+        pub t: Vec<f64>, "";
+        /// probability of such a t by chance
+        pub p: Vec<f64>, "";
+        /// about the mean
+        pub r2: Vec<f64>, "";
+    }
+}
+
+crate::table! {
     /// quality of the fits
     pub struct Fits {
         /// the response
@@ -316,6 +218,10 @@ crate::table! {
         pub lack_of_fit_f: Vec<f64>, "";
         /// probability of such an F by chance
         pub lack_of_fit_p: Vec<f64>, "";
+        /// what r2 is a share of
+        pub model: Option<Vec<String>>, "";
+        /// 1 - SSE over squares about the mean
+        pub r2_about_mean: Option<Vec<f64>>, "";
         /// terms pooled into the error
         pub pooled: Option<Vec<String>>, "";
         /// interactions that the runs cannot tell apart
@@ -476,6 +382,8 @@ crate::table! {
         pub effect: Vec<f64>, "";
         /// where the design leaves degrees of freedom
         pub std_error: Vec<f64>, "";
+        /// effect over its standard error
+        pub standardized: Vec<f64>, "";
         /// with that standard error
         pub p: Vec<f64>, "";
         /// effect over the pseudo standard error
@@ -492,11 +400,13 @@ crate::table! {
         pub half_normal: Vec<f64>, "";
         /// against Lenth's margins
         pub verdict: Vec<String>, "";
+        /// against the critical value of the standardised effect
+        pub significance: Vec<String>, "";
     }
 }
 
 crate::table! {
-    /// Lenth's limits
+    /// Lenth's limits, and the critical value of t where there is an error to test against
     pub struct Limits {
         /// the response
         pub response: Vec<String>, "";
@@ -506,6 +416,8 @@ crate::table! {
         pub margin: Vec<f64>, "";
         /// simultaneous margin of error
         pub simultaneous: Vec<f64>, "";
+        /// critical value of the standardised effects
+        pub critical: Vec<f64>, "";
     }
 }
 

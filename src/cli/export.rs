@@ -10,10 +10,12 @@ use crate::export::{File, files, paraview, particles, tables};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
 use crate::stage::specimen;
+use crate::stage::units::presented;
 use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
 use dem::genesis::specimen::Specimen;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.
 #[derive(Args)]
@@ -68,6 +70,8 @@ impl Export {
         let mut written = 0;
         for one in &chosen {
             let artifact = store.get(&one.object.content).map_err(|e| system(&e))?;
+            let csv = self.to == Form::Csv;
+            let artifact = if csv { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
             let files = self.files(&store, one, &artifact).map_err(|why| {
                 err!("error: {}: {why}", one.name);
                 Exit::BadInput

@@ -6,6 +6,7 @@ use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::export::{cells, csv_text, head};
 use crate::plan::Workflow;
 use crate::run::{Report, StageReport, StageStatus, decide};
+use crate::stage::units::presented;
 use crate::store::{ObjectId, Store};
 use clap::Args;
 use math::elementary::log10;
@@ -92,7 +93,7 @@ impl Show {
             out!("{}", store.path(&object).display());
             return Ok(Exit::Done);
         }
-        self.values(what, &store, &object)
+        self.values(what, &store, &object, &workflow)
     }
 
     /// Why there is nothing to show.
@@ -113,8 +114,9 @@ impl Show {
         }
     }
 
-    fn values(&self, what: &str, store: &Store, object: &ObjectId) -> Result<Exit, Exit> {
-        let artifact = store.get(&object.content).map_err(|e| system(&e))?;
+    fn values(&self, what: &str, store: &Store, object: &ObjectId, workflow: &Workflow) -> Result<Exit, Exit> {
+        let stored = store.get(&object.content).map_err(|e| system(&e))?;
+        let artifact = presented(&stored, &workflow.context);
         let tables = self.chosen(what, &artifact)?;
         // Beside its numbers, in whatever form they are shown.
         if let Some(why) = super::remarks::failure(&artifact) {

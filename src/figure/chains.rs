@@ -5,7 +5,7 @@ use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::palette::{BLUE, VERMILION};
 use super::scene::{Path, Point, Rect, Scene, Stroke};
-use super::specimen::Frame;
+use super::specimen::{Frame, Outline};
 use super::{Figure, Style};
 
 /// The force in one contact or bond.
@@ -22,6 +22,8 @@ pub struct Link {
 /// Forces in a specimen at one moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chains {
+    /// Shape of the specimen.
+    pub outline: Outline,
     /// Lower left corner of the domain in mm.
     pub low: Point,
     /// Upper right corner in mm.
@@ -55,6 +57,7 @@ impl Figure for Chains {
         scene.description =
             format!("{} contacts, mean normal force {} {unit}.", self.links.len(), significant(mean, 3));
         let frame = Frame::fit(self.low, self.high, Rect::new(0.8, 0.8, width, width * aspect));
+        let frame = frame.shaped(self.outline);
         let widest = self.widest(&frame);
         let first = scene.items.len();
         for (color, sign) in [(BLUE, 1.0), (VERMILION, -1.0)] {

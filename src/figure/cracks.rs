@@ -4,7 +4,7 @@ use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::palette::{self, INK, SOFT};
 use super::scene::{Anchor, Color, Path, Point, Rect, Scene, Stroke};
-use super::specimen::{Frame, thousands};
+use super::specimen::{Frame, Outline, thousands};
 use super::text::Line;
 use super::{Figure, Style};
 use math::elementary::sin_cos;
@@ -34,6 +34,8 @@ pub struct Moment {
 /// Growth of the crack pattern.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cracks {
+    /// Shape of the specimen.
+    pub outline: Outline,
     /// Lower left corner of the domain in mm.
     pub low: Point,
     /// Upper right corner in mm.
@@ -72,6 +74,7 @@ impl Figure for Cracks {
             let left = 0.8 + (i % columns) as f64 * (width + BETWEEN);
             let y = top + (i / columns) as f64 * row_height;
             let frame = Frame::fit(self.low, self.high, Rect::new(left, y + 1.55 * size, width, height));
+            let frame = frame.shaped(self.outline);
             let [x, _] = frame.area.centre();
             scene.text(Line::new(&moment.title, size), [x, y + 1.1 * size], Anchor::Middle, 0.0, INK);
             self.draw_moment(&mut scene, &frame, moment);

@@ -48,6 +48,8 @@ pub struct EffectPlot {
     pub effects: Vec<Effect>,
     /// Standard error that the line shows: Lenth's pseudo standard error, or that of the model.
     pub error: f64,
+    /// Whether the effects are over their standard errors: pure numbers.
+    pub standardized: bool,
     /// Margin of error to mark, and its name; `None` to leave out.
     pub margin: Option<(String, f64)>,
 }
@@ -117,11 +119,18 @@ impl EffectPlot {
     /// Effects along, quantiles up; the signed plot reaches as far to both sides of zero upwards.
     fn axes(&self) -> [Axis; 2] {
         let (word, quantile) = match self.coordinates {
+            Coordinates::Normal if self.standardized => {
+                ("Standardized effect on", "Normal quantile $z$ / –".to_owned())
+            }
             Coordinates::Normal => ("Effect on", "Normal quantile $z$ / –".to_owned()),
+            Coordinates::HalfNormal if self.standardized => {
+                ("Standardized absolute effect on", "Half-normal quantile $z$ / –".to_owned())
+            }
             Coordinates::HalfNormal => ("Absolute effect on", "Half-normal quantile $z$ / –".to_owned()),
             Coordinates::Chi(degrees) => ("Root sum of squares of", format!("Quantile of $\\chi_{{{degrees}}}$ / –")),
         };
-        let title = self.response.worded(word).title();
+        let unit = if self.standardized { String::new() } else { self.response.unit.clone() };
+        let title = Quantity { unit, ..self.response.worded(word) }.title();
         let sizes = self.effects.iter().map(|e| 1.04 * e.size).chain(self.margins());
         let quantiles = self.effects.iter().map(|e| e.quantile);
         if self.coordinates == Coordinates::Normal {

@@ -40,6 +40,7 @@ pub mod residuals;
 pub mod rose;
 pub mod scatter;
 pub mod scene;
+pub mod solid;
 pub mod solutions;
 pub mod specimen;
 pub mod surface;

@@ -2,16 +2,27 @@
 
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
-use super::palette::{self, INK};
+use super::palette::{self, INK, SOFT};
 use super::scene::{Anchor, Color, Item, Path, Point, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Style};
+
+/// Shape of a specimen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outline {
+    /// A rectangle, loaded over its upper and lower side.
+    #[default]
+    Rectangle,
+    /// A disc between two platens, as in the Brazilian test.
+    Disc,
+}
 
 /// The outline of a specimen on the page: mm of the model → mm of the page.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// Place on the page.
     pub area: Rect,
+    outline: Outline,
     low: Point,
     scale: f64,
 }
@@ -21,7 +32,13 @@ impl Frame {
     pub fn fit(low: Point, high: Point, place: Rect) -> Self {
         let (w, h) = (high[0] - low[0], high[1] - low[1]);
         let scale = (place.width() / w).min(place.height() / h);
-        Self { area: Rect::new(place.left, place.top, w * scale, h * scale), low, scale }
+        Self { area: Rect::new(place.left, place.top, w * scale, h * scale), outline: Outline::Rectangle, low, scale }
+    }
+
+    /// The same with the shape of the specimen.
+    #[must_use]
+    pub fn shaped(self, outline: Outline) -> Self {
+        Self { outline, ..self }
     }
 
     /// A place in the model on the page.
@@ -49,15 +66,31 @@ impl Frame {
         scene.text_centred(line, [end + 1.4, at[1]], Anchor::Start, INK);
     }
 
-    /// The border of the domain.
+    /// The border of the specimen; of a disc also the platens above and below.
     pub fn draw_border(&self, scene: &mut Scene) {
-        scene.stroke(Path::rect(self.area), Stroke::new(INK, 0.25));
+        match self.outline {
+            Outline::Rectangle => scene.stroke(Path::rect(self.area), Stroke::new(INK, 0.25)),
+            Outline::Disc => {
+                let (centre, radius) = (self.area.centre(), self.area.width().min(self.area.height()) / 2.0);
+                scene.stroke(Path::circle(centre, radius), Stroke::new(INK, 0.25));
+                let half = PLATEN * radius;
+                for y in [centre[1] - radius, centre[1] + radius] {
+                    let platen = [[centre[0] - half, y], [centre[0] + half, y]];
+                    scene.stroke(Path::polyline(&platen), Stroke::new(SOFT, 0.6));
+                }
+            }
+        }
     }
 }
+
+/// Half the length of a drawn platen as a share of the radius of the disc.
+const PLATEN: f64 = 0.28;
 
 /// Particles of one specimen; lengths in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Specimen {
+    /// Its shape.
+    pub outline: Outline,
     /// Lower left corner of the domain.
     pub low: Point,
     /// Upper right corner of the domain.
@@ -95,6 +128,7 @@ impl Figure for Specimen {
         scene.title = "Specimen".into();
         scene.description = self.describe();
         let frame = Frame::fit(self.low, self.high, Rect::new(0.8, 0.8, picture_width, height));
+        let frame = frame.shaped(self.outline);
         for (i, _) in self.groups.iter().enumerate() {
             let discs = self.members(i).map(|k| (frame.place(self.centres[k]), frame.length(self.radii[k]))).collect();
             scene.items.push(Item::Discs { discs, color: group_color(i) });

@@ -140,7 +140,8 @@ impl Check<'_> {
             let message = format!("the range must rise: {} is not below {}", range[0], range[1]);
             self.complain(node, &steps(["range"]), Fault::new(message));
         }
-        let mut sorted: Vec<(f64, usize)> = table.levels.iter().copied().zip(0..).collect();
+        self.categories(name, &table, node);
+        let mut sorted: Vec<(f64, usize)> = table.numbers().into_iter().zip(0..).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for pair in sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
             let path = [Step::Key("levels".to_owned()), Step::Index(pair[1].1)];
@@ -149,6 +150,32 @@ impl Check<'_> {
         let factor = table.factor(name);
         self.scale(name, &factor, node);
         (self.faults.len() == before).then_some(factor)
+    }
+
+    /// Faults of a factor whose levels are names.
+    fn categories(&mut self, name: &str, table: &FactorTable, node: &Node) {
+        let (numbers, names) = (table.numbers(), table.names());
+        if names.is_empty() {
+            return;
+        }
+        let mut complain = |key: &str, message: String, hint: &str| {
+            self.complain(node, &steps([key]), Fault::new(message).hint(hint));
+        };
+        if !numbers.is_empty() {
+            let message = format!("factor `{name}` has numbers and names for levels");
+            complain("levels", message, "write all of them as numbers, or all as names in quotes");
+        }
+        if let Some(twice) = names.iter().enumerate().find(|(i, own)| names[..*i].contains(own)).map(|(_, own)| own) {
+            complain("levels", format!("level `{twice}` stands here twice"), "name each level once");
+        }
+        for (key, given) in
+            [("range", table.range.is_some()), ("unit", !table.unit.is_empty()), ("sets", !table.sets.0.is_empty())]
+        {
+            if given {
+                let message = format!("`{key}` has no effect on factor `{name}`, whose levels are names");
+                complain(key, message, "leave it out");
+            }
+        }
     }
 
     fn response(&mut self, name: &str, node: &mut Node) -> Option<crate::stage::Response> {

@@ -2,6 +2,7 @@
 
 use crate::stage::{Factor, Response, Scale};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, de};
 use std::borrow::Cow;
 use std::fmt;
@@ -38,12 +39,84 @@ pub(super) struct FactorTable {
     pub(super) scale: Scale,
     /// Symbol for tables and figures, such as "\\bar\\sigma_c"; without one the name stands as it is.
     pub(super) symbol: Option<String>,
-    /// Levels in the unit, such as [10, 20, 30].
+    /// Levels in the unit, such as [10, 20, 30], or names, such as ["OPC", "slag"].
     #[serde(default)]
     #[schemars(extend("uniqueItems" = true))]
-    pub(super) levels: Vec<f64>,
+    pub(super) levels: Vec<Level>,
     /// Low and high end in the unit, such as [10, 30]; those of the levels when not given.
     pub(super) range: Option<[f64; 2]>,
+}
+
+/// One level of a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Level {
+    /// A value in the unit of the factor.
+    Number(f64),
+    /// A name, of a factor that is a category.
+    Name(String),
+}
+
+impl<'de> Deserialize<'de> for Level {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Reader;
+        impl Visitor<'_> for Reader {
+            type Value = Level;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, or a name in quotes")
+            }
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Level, E> {
+                Ok(Level::Number(value))
+            }
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Level, E> {
+                Ok(Level::Number(value as f64))
+            }
+            fn visit_u64<E: de::Error>(self, value: u64) -> Result<Level, E> {
+                Ok(Level::Number(value as f64))
+            }
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<Level, E> {
+                Ok(Level::Name(value.to_owned()))
+            }
+            // a hole, where a fault was found already
+            fn visit_unit<E: de::Error>(self) -> Result<Level, E> {
+                Ok(Level::Number(1.0))
+            }
+        }
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+impl JsonSchema for Level {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Level".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "string"], "minLength": 1 })
+    }
+}
+
+impl FactorTable {
+    /// The levels that are numbers.
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        let number = |level: &Level| match level {
+            Level::Number(value) => Some(*value),
+            Level::Name(_) => None,
+        };
+        self.levels.iter().filter_map(number).collect()
+    }
+
+    /// The levels that are names.
+    pub(super) fn names(&self) -> Vec<String> {
+        let name = |level: &Level| match level {
+            Level::Number(_) => None,
+            Level::Name(name) => Some(name.clone()),
+        };
+        self.levels.iter().filter_map(name).collect()
+    }
 }
 
 /// `[response.NAME]`: how a response is shown.
@@ -59,7 +132,7 @@ pub(super) struct ResponseTable {
 
 /// One path or several.
 #[derive(Debug, Default)]
-pub(super) struct Paths(Vec<String>);
+pub(super) struct Paths(pub(super) Vec<String>);
 
 impl<'de> Deserialize<'de> for Paths {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -108,14 +181,16 @@ fn one_letter(name: &str) -> String {
 impl FactorTable {
     /// The factor as stages see it.
     pub(super) fn factor(self, name: &str) -> Factor {
-        let Self { sets, unit, scale, symbol, levels, range } = self;
+        let (numbers, names) = (self.numbers(), self.names());
+        let Self { sets, unit, scale, symbol, range, .. } = self;
+        let levels = if names.is_empty() { numbers } else { (0..names.len()).map(|i| i as f64).collect() };
         let ends = |levels: &[f64]| {
             let low = levels.iter().copied().reduce(f64::min)?;
             Some([low, levels.iter().copied().reduce(f64::max)?])
         };
-        let range = range.or_else(|| ends(&levels));
+        let range = range.or_else(|| ends(&levels)).filter(|_| names.is_empty());
         let sets = sets.0;
-        Factor { sets, unit, scale, symbol: symbol.unwrap_or_else(|| one_letter(name)), levels, range }
+        Factor { sets, unit, scale, symbol: symbol.unwrap_or_else(|| one_letter(name)), levels, names, range }
     }
 }
 

@@ -44,7 +44,7 @@ pub fn text_without_inputs(task: &Task, room: usize) -> String {
     if let Some(seed) = task.seed {
         write(&mut text, format_args!("seed {seed}\n"));
     }
-    params(&mut text, &mut String::with_capacity(64), &task.params);
+    params(&mut text, &mut String::with_capacity(64), &task.params.value());
     for file in &task.files {
         hash_line(&mut text, "file", &file.name, &file.digest);
     }

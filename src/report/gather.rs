@@ -4,9 +4,11 @@ use super::paper::{Cost, Paper, Part, State};
 use crate::artifact::ContentHash;
 use crate::plan::{StageNode, Workflow};
 use crate::run::{Report, StageStatus, decide};
-use crate::stage::{Class, kind};
+use crate::stage::units::presented;
+use crate::stage::{Class, Context, kind};
 use crate::store::{Campaign, Store, StoreError};
 use std::collections::HashSet;
+use std::sync::Arc;
 
 /// What was asked for on the command line, besides the workflow.
 #[derive(Clone, Debug, Default)]
@@ -30,7 +32,7 @@ pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper,
     let mut parts = Vec::with_capacity(workflow.stages.len());
     for (node, cost) in workflow.stages.iter().zip(costs) {
         let status = report.stages.iter().find(|stage| stage.name == node.name).map(|stage| &stage.status);
-        parts.push(part(node, state(status, store)?, cost));
+        parts.push(part(node, state(status, store, &workflow.context)?, cost));
     }
     Ok(Paper {
         title: if workflow.title.is_empty() { workflow.name.clone() } else { workflow.title.clone() },
@@ -60,9 +62,9 @@ fn part(node: &StageNode, state: State, cost: Cost) -> Part {
     }
 }
 
-fn state(status: Option<&StageStatus>, store: &Store) -> Result<State, StoreError> {
+fn state(status: Option<&StageStatus>, store: &Store, context: &Context) -> Result<State, StoreError> {
     let done = |content: &ContentHash| match store.get(content) {
-        Ok(artifact) => Ok(State::Done { content: *content, artifact }),
+        Ok(artifact) => Ok(State::Done { content: *content, artifact: Arc::new(presented(&artifact, context)) }),
         Err(error) if error.is_missing() => Ok(State::Broken(error.to_string())),
         Err(error) => Err(error),
     };

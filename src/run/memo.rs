@@ -14,7 +14,7 @@ use crate::stage::Context;
 use crate::store::{Memo, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
-use std::time::UNIX_EPOCH;
+use std::os::unix::fs::MetadataExt;
 
 /// What a stage came to.
 pub(super) struct Known {
@@ -50,8 +50,8 @@ pub(super) struct Base {
 /// The hashes that the keys of all memos begin with.
 pub(super) fn base(workflow: &Workflow) -> Base {
     let program = std::env::current_exe().and_then(std::fs::metadata).ok().map(|meta| {
-        let changed = meta.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-        (meta.len(), changed.map(|since| since.as_nanos()))
+        // Not by the time that can be set alone: another build may have the same.
+        (meta.len(), meta.ino(), meta.mtime(), meta.mtime_nsec(), meta.ctime(), meta.ctime_nsec())
     });
     let Context { seed, factors, responses, materials, sketches, templates, outline } = &workflow.context;
     let all = format!("{responses:?}\n{materials:?}\n{sketches:?}\n{templates:?}");

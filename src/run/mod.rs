@@ -21,6 +21,7 @@ mod memo;
 mod pins;
 mod record;
 mod stages;
+mod streamed;
 mod task;
 
 pub use board::{TaskCount, TaskState};
@@ -42,6 +43,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use streamed::Streamed;
 
 /// How a campaign is run.
 #[derive(Clone, Debug)]
@@ -180,6 +182,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             ready: BTreeSet::new(),
             running: 0,
             elsewhere: Elsewhere::default(),
+            streamed: Streamed::default(),
             failed: false,
             untold: Vec::new(),
             fatal: None,
@@ -234,6 +237,8 @@ struct Loop<'pool, 'env> {
     running: usize,
     /// Tasks that other processes compute.
     elsewhere: Elsewhere,
+    /// What gathering takes from the runs that were computed.
+    streamed: Streamed,
     failed: bool,
     /// Stages that have failed while other tasks of theirs may still end, and those left out because of them.
     untold: Vec<usize>,
@@ -390,7 +395,7 @@ impl Loop<'_, '_> {
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
             let again = self.forced(node);
-            match task::Order::new(&mut self.board, node, self.store, again) {
+            match task::Order::new(&mut self.board, node, self.store, &self.streamed, again) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
                     Ok(()) => return,
@@ -452,6 +457,9 @@ impl Loop<'_, '_> {
             }
             Ok(task::Outcome::Finished(finished)) => {
                 self.board.took(node, finished.seconds);
+                if let Some(brief) = &finished.brief {
+                    self.streamed.put(finished.content, brief);
+                }
                 if let Some(key) = self.board.key_of(node).filter(|_| !finished.shared) {
                     self.ended.insert(key, None);
                 }

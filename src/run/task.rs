@@ -3,8 +3,11 @@
 //! A task that another process computes is handed back, so that this one takes another meanwhile.
 
 use super::board::{Board, NodeId};
+use super::streamed::{self, Streamed};
 use crate::artifact::{Artifact, ContentHash, Key};
 use crate::exec::Share;
+use crate::stage::ledger::{Briefs, KeptRuns};
+use crate::stage::rows::{GATHER, RUN};
 use crate::stage::{Failure, Job, Progress, StageError, Task, work};
 use crate::store::{Claim, Guard, Store, StoreError, Timing, Waiting};
 use std::sync::Arc;
@@ -35,6 +38,8 @@ pub(super) struct Finished {
     pub(super) shared: bool,
     /// How long it took here, seconds.
     pub(super) seconds: f64,
+    /// What gathering takes from it, when it is a run that was computed here.
+    pub(super) brief: Option<Briefs>,
 }
 
 /// What became of a task that was started.
@@ -47,21 +52,44 @@ pub(super) enum Outcome {
 
 impl Order {
     /// Loads the inputs of an open node, or says which of them is lost.
-    pub(super) fn new(board: &mut Board, node: NodeId, store: &Store, again: bool) -> Result<Self, Box<Lost>> {
+    pub(super) fn new(
+        board: &mut Board,
+        node: NodeId,
+        store: &Store,
+        streamed: &Streamed,
+        again: bool,
+    ) -> Result<Self, Box<Lost>> {
         let known = (board.take_text(node), board.inputs(node), board.key_of(node));
         let (Some(text), Some(contents), Some(key)) = known else {
             panic!("BUG: a task was started before its inputs were known");
         };
         let task = Arc::clone(board.task(node));
-        let mut kept = task.kept.iter().flat_map(|kept| &kept.runs).map(|(place, ..)| *place).peekable();
-        let mut inputs = Vec::with_capacity(task.inputs.len());
+        let nothing = KeptRuns::default();
+        let old = task.kept.as_deref().unwrap_or(&nothing);
+        let mut kept = old.runs.iter().enumerate().map(|(run, (place, ..))| (run, *place)).peekable();
+        // Of the runs that a task gathers a brief is enough.
+        let gathers = task.work == GATHER.name;
+        let (mut inputs, mut places, mut briefs) = (Vec::new(), Vec::new(), Briefs::default());
         for (place, ((name, _), content)) in task.inputs.iter().zip(&contents).enumerate() {
-            if kept.next_if_eq(&place).is_none() {
-                let lost = |error| Box::new(Lost { content: *content, error });
-                inputs.push((name.to_string(), store.get(content).map_err(lost)?));
+            let lost = |error| Box::new(Lost { content: *content, error });
+            let known = match kept.next_if(|(_, kept)| *kept == place) {
+                Some((run, _)) => old.briefs.get(run),
+                None => streamed.get(content).filter(|_| gathers && name == RUN),
+            };
+            if let Some(brief) = known {
+                briefs.push(brief);
+                places.push(place);
+                continue;
+            }
+            let artifact = store.get(content).map_err(lost)?;
+            match gathers && name == RUN && briefs.push_run(&artifact) {
+                true => places.push(place),
+                false => inputs.push((name.to_string(), artifact)),
             }
         }
-        inputs.extend(task.kept.iter().map(|kept| ("kept".to_owned(), Arc::new(kept.artifact()))));
+        if !places.is_empty() {
+            inputs.push(("kept".to_owned(), Arc::new(briefs.artifact(&places))));
+        }
         Ok(Self { node, task, key, text, inputs, again })
     }
 
@@ -77,7 +105,7 @@ impl Order {
         let claim = if self.again { store.claim_again(&self.key) } else { store.claim(&self.key) };
         match claim.map_err(failure)? {
             Claim::Done(record) => {
-                Ok(Outcome::Finished(Finished { content: record.content, shared: true, seconds: 0.0 }))
+                Ok(Outcome::Finished(Finished { content: record.content, shared: true, seconds: 0.0, brief: None }))
             }
             Claim::Theirs(waiting) => Ok(Outcome::Elsewhere(waiting)),
             Claim::Mine(claim) => {
@@ -97,7 +125,7 @@ impl Order {
     ) -> Result<Finished, Failure> {
         let Some(work) = work(self.task.work) else { panic!("BUG: no work is called `{}`", self.task.work) };
         let job = Job {
-            params: &self.task.params,
+            params: &self.task.params.value(),
             seed: self.task.seed,
             inputs: &self.inputs,
             files: &self.task.files,
@@ -109,8 +137,9 @@ impl Order {
         let (started, clock) = (SystemTime::now(), Instant::now());
         let artifact = (work.run)(&job)?;
         let timing = Timing { started, seconds: clock.elapsed().as_secs_f64() };
-        let (record, _) = store.finish(claim, self.text, artifact, &timing).map_err(failure)?;
-        Ok(Finished { content: record.content, shared: false, seconds: timing.seconds })
+        let (record, artifact) = store.finish(claim, self.text, artifact, &timing).map_err(failure)?;
+        let brief = streamed::brief(&artifact);
+        Ok(Finished { content: record.content, shared: false, seconds: timing.seconds, brief })
     }
 }
 

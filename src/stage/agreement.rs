@@ -11,7 +11,7 @@
 use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names};
-use crate::artifact::statistics::{Agreement as Stored, Pairs, Ratios, Trends};
+use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -126,7 +126,7 @@ impl Stage for Calibrate {
             }
             return Ok(Step::Ask(wanted, note));
         }
-        task.params = json!(Params { history: course.into_histories(), ..params });
+        task.params = json!(Params { history: course.into_histories(), ..params }).into();
         Ok(Step::Finish(task))
     }
 

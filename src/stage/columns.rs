@@ -1,17 +1,23 @@
 //! From a table of runs to the statistician's sample and back: shared by every stage that analyses.
 
+use super::derived::Derived;
 use super::{Complaint, Context, StageError};
+use crate::artifact::groups::Groups;
 use crate::artifact::results::Results;
-use crate::artifact::{Artifact, Table};
+use crate::artifact::{Artifact, Table, Values};
 use serde::{Deserialize, Serialize};
 use stats::error::Faults;
 use stats::sample::{Factor, Response, Sample};
+use std::collections::BTreeMap;
 
 /// Which columns of a table are analysed, and in which units.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Columns {
     factors: Vec<FactorColumn>,
     responses: Vec<ResponseColumn>,
+    /// Formulas of factors that terms name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    derived: Vec<Derived>,
     /// Column with the number of replicates that a row is the mean of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<String>,
@@ -27,6 +33,9 @@ struct FactorColumn {
     /// Values of −1 and +1 in coded units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     coding: Option<(f64, f64)>,
+    /// Names of the levels of a category.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    labels: Vec<String>,
 }
 
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +47,7 @@ struct ResponseColumn {
 /// What a stage asks of a table.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wanted<'a> {
-    /// Factors; empty takes all that the table has.
+    /// Factors, or formulas of factors; empty takes all factors that the table has.
     pub factors: &'a [String],
     /// Responses; empty takes all that the table has.
     pub responses: &'a [String],
@@ -48,9 +57,9 @@ pub(super) struct Wanted<'a> {
     pub levels: bool,
 }
 
-/// The table `runs` of an artifact.
+/// The table `runs` of an artifact, or the table `groups` of fits by groups.
 pub(super) fn runs(artifact: &Artifact) -> Result<&Table, StageError> {
-    Ok(Results::table(artifact)?)
+    Ok(if artifact.is(Groups::KIND) { Groups::table(artifact)? } else { Results::table(artifact)? })
 }
 
 impl Columns {
@@ -58,7 +67,13 @@ impl Columns {
     pub(super) fn of(table: &Table, context: &Context, wanted: Wanted) -> Result<Self, StageError> {
         let present = |name: &&String| table.column(name).is_some();
         let known: Vec<&String> = table.columns.iter().map(|c| &c.name).collect();
-        if let Some(name) = wanted.factors.iter().chain(wanted.responses).find(|name| !present(name)) {
+        let unit_of = |name: &str| context.factors.get(name).map(|factor| factor.unit.clone());
+        let formulas = wanted.factors.iter().filter(|name| !present(name) && !context.factors.contains_key(*name));
+        let derived = formulas.map(|name| Derived::of(name, unit_of)).collect::<Result<Vec<_>, _>>()?;
+        let is_derived = |name: &String| derived.iter().any(|d| d.name == *name);
+        let parts = derived.iter().flat_map(|d| d.factors.iter().map(|(name, _)| name));
+        let plain = wanted.factors.iter().filter(|name| !is_derived(name)).chain(wanted.responses);
+        if let Some(name) = plain.chain(parts).find(|name| !present(name)) {
             let names = known.iter().map(|n| n.as_str()).collect::<Vec<_>>().join(", ");
             return Err(StageError::new(format!("the table has no column `{name}`")).hint(format!("it has {names}")));
         }
@@ -71,11 +86,16 @@ impl Columns {
                 .copied()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| (low.min(level), high.max(level)));
             let coding = factor.range.map(|[low, high]| (low, high)).or((!factor.levels.is_empty()).then_some(ends));
+            let seen = table.column(name).map(|column| labels(&column.values)).unwrap_or_default();
+            // the order of the workflow, if it names the levels: the first is the reference of dummy coding
+            let labels = if seen.is_empty() || factor.names.is_empty() { seen } else { factor.names.clone() };
+            let is_number = labels.is_empty();
             Some(FactorColumn {
                 name: (*name).clone(),
                 unit: factor.unit.clone(),
-                levels: if wanted.levels { factor.levels.clone() } else { Vec::new() },
-                coding: coding.filter(|_| !wanted.levels),
+                levels: if wanted.levels && is_number { factor.levels.clone() } else { Vec::new() },
+                coding: coding.filter(|_| !wanted.levels && is_number),
+                labels,
             })
         };
         let response = |name: &&String| {
@@ -85,9 +105,10 @@ impl Columns {
         let columns = Self {
             factors: known.iter().filter_map(factor).collect(),
             responses: known.iter().filter_map(response).collect(),
+            derived,
             weights: wanted.weights.map(str::to_owned),
         };
-        if columns.factors.is_empty() || columns.responses.is_empty() {
+        if (columns.factors.is_empty() && columns.derived.is_empty()) || columns.responses.is_empty() {
             let message = "the table has no column that is a [factor], or none that is a [response]";
             return Err(StageError::new(message).hint("declare its columns under [factor] and [response]"));
         }
@@ -99,6 +120,22 @@ impl Columns {
         self.factors.iter().map(|f| f.name.clone()).collect()
     }
 
+    /// Categories among the factors, each with its first level: the reference of dummy coding.
+    pub(super) fn categories(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.factors.iter().filter_map(|f| Some((f.name.as_str(), f.labels.first()?.as_str())))
+    }
+
+    /// The value of a factor or a formula at a point that gives values of factors in their units.
+    pub(super) fn value_at(&self, name: &str, point: &BTreeMap<String, f64>) -> Option<f64> {
+        let formula = || {
+            let derived = self.derived.iter().find(|d| d.name == name)?;
+            let values: Option<Vec<Vec<f64>>> =
+                derived.factors.iter().map(|(factor, _)| Some(vec![*point.get(factor)?])).collect();
+            derived.values(&values?).ok()?.first().copied()
+        };
+        point.get(name).copied().or_else(formula)
+    }
+
     /// Names of the responses, in the table's order.
     pub(super) fn response_names(&self) -> Vec<String> {
         self.responses.iter().map(|r| r.name.clone()).collect()
@@ -106,32 +143,64 @@ impl Columns {
 
     /// Unit of a factor.
     pub(super) fn unit_of(&self, factor: &str) -> &str {
-        self.factors.iter().find(|f| f.name == factor).map_or("", |f| f.unit.as_str())
+        let plain = self.factors.iter().map(|f| (&f.name, &f.unit));
+        let mut all = plain.chain(self.derived.iter().map(|d| (&d.name, &d.unit)));
+        all.find(|(name, _)| *name == factor).map_or("", |(_, unit)| unit.as_str())
     }
 
     /// The sample that the columns of `table` make. A response without a number is a missing row.
     pub(super) fn sample(&self, table: &Table) -> Result<Sample, StageError> {
         let factor = |own: &FactorColumn| {
+            if !own.labels.is_empty() {
+                return named(table, own);
+            }
             let values = table.numbers(&own.name, &own.unit)?;
-            Ok(Factor {
-                name: own.name.clone(),
-                values,
-                levels: own.levels.clone(),
-                coding: own.coding,
-                labels: Vec::new(),
-            })
+            Ok(Factor { levels: own.levels.clone(), coding: own.coding, ..Factor::new(&own.name, values) })
         };
+        let derived = |own: &Derived| {
+            let parts = own.factors.iter().map(|(name, unit)| Ok(table.numbers(name, unit)?));
+            let values = own.values(&parts.collect::<Result<Vec<_>, StageError>>()?)?;
+            Ok(Factor::new(&own.name, values))
+        };
+        let plain = self.factors.iter().map(factor);
         let response = |own: &ResponseColumn| {
             let values = table.numbers(&own.name, &own.unit)?;
             let values = values.into_iter().map(|v| (!v.is_nan()).then_some(v)).collect();
             Ok(Response { name: own.name.clone(), values })
         };
         Ok(Sample {
-            factors: self.factors.iter().map(factor).collect::<Result<_, StageError>>()?,
+            factors: plain.chain(self.derived.iter().map(derived)).collect::<Result<_, StageError>>()?,
             responses: self.responses.iter().map(response).collect::<Result<_, StageError>>()?,
             weights: self.weights.as_ref().map(|name| table.numbers(name, "")).transpose()?,
         })
     }
+}
+
+/// Names of the levels of a column whose cells are words, in alphabetical order; empty for a column of numbers.
+fn labels(values: &Values) -> Vec<String> {
+    let Values::Texts(texts) = values else { return Vec::new() };
+    let number = |text: &String| text.is_empty() || text.parse().is_ok_and(f64::is_finite);
+    if texts.iter().all(number) {
+        return Vec::new();
+    }
+    let mut found: Vec<String> = texts.iter().filter(|text| !text.is_empty()).cloned().collect();
+    found.sort();
+    found.dedup();
+    found
+}
+
+/// A factor whose levels are names.
+fn named(table: &Table, own: &FactorColumn) -> Result<Factor, StageError> {
+    let texts = table.texts(&own.name)?;
+    if let Some(row) = texts.iter().position(String::is_empty) {
+        let message = format!("row {}: `{}` is empty, where other rows name a level", row + 1, own.name);
+        return Err(StageError::new(message).hint("name the level, or leave out the row"));
+    }
+    if let Some(row) = texts.iter().position(|text| !own.labels.contains(text)) {
+        let message = format!("row {}: `{}` is `{}`, which is none of its levels", row + 1, own.name, texts[row]);
+        return Err(StageError::new(message).hint(format!("its levels are {}", own.labels.join(", "))));
+    }
+    Ok(Factor::of_labels(&own.name, texts, own.labels.clone()))
 }
 
 /// The faults of a sample or a model as one error.
@@ -141,15 +210,12 @@ pub(super) fn refused(Faults(faults): Faults) -> StageError {
 
 /// Complaints about names that the workflow does not declare.
 pub(super) fn check_names(context: &Context, factors: &[String], responses: &[String]) -> Vec<Complaint> {
-    let unknown = |key: &str, what: &str, name: &String, known: Vec<&String>| {
-        let known = known.iter().map(|n| n.as_str()).collect::<Vec<_>>().join(", ");
-        Complaint::new(key, format!("there is no [{what}.{name}]")).hint(format!("known are {known}"))
+    let unknown = |name: &String| {
+        let known = context.responses.keys().cloned().collect::<Vec<_>>().join(", ");
+        Complaint::new("responses", format!("there is no [response.{name}]")).hint(format!("known are {known}"))
     };
-    let factors = factors.iter().filter(|name| !context.factors.contains_key(*name));
-    let responses = responses.iter().filter(|name| !context.responses.contains_key(*name));
-    let factors = factors.map(|name| unknown("factors", "factor", name, context.factors.keys().collect()));
-    let responses = responses.map(|name| unknown("responses", "response", name, context.responses.keys().collect()));
-    factors.chain(responses).collect()
+    let factors = factors.iter().flat_map(|name| super::derived::check(name, context));
+    factors.chain(responses.iter().filter(|name| !context.responses.contains_key(*name)).map(unknown)).collect()
 }
 
 /// A complaint about a probability outside (0, 1).

@@ -83,8 +83,10 @@ pub struct Factor {
     pub symbol: String,
     /// How its range is divided.
     pub scale: Scale,
-    /// Levels, in `unit`; empty when only a range is given.
+    /// Levels, in `unit`; empty when only a range is given. Of a category 0, 1, 2 ….
     pub levels: Vec<f64>,
+    /// Names of the levels of a category, such as the kind of cement; empty for a factor of numbers.
+    pub names: Vec<String>,
     /// Low and high end, in `unit`; from the levels when not given.
     pub range: Option<[f64; 2]>,
 }

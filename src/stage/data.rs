@@ -1,27 +1,56 @@
-//! `kind = "data"`: a CSV file with units stands wherever a simulated table stands.
+//! `kind = "data"`: a table from a CSV file or a workbook stands wherever a simulated table stands.
 //!
-//! How a file is written stands in `sheet.rs`: comments (`#`) above the line of names only, units in brackets after the
-//! names, `sigma_c [MPa]`. A column whose cells are all numbers (or empty: missing) holds reals, any other holds texts. The
-//! result is an artifact `results` with the table `runs`, as
-//! `simulate` gives it.
+//! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or `sigma_c/MPa`.
+//! A column whose cells are all numbers (or missing) holds reals, any other holds texts. Comments (`#`) stand above the
+//! line of names only. The result is an artifact `results` with the table `runs`, as `simulate` gives it, and the table
+//! `notes`, which says how the file was read where that was detected and is not the plain way (UTF-8, commas between
+//! cells, decimal points).
+
+mod cells;
+mod dialect;
+mod workbook;
 
 use super::beside::Beside;
+use super::notes::Notes;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::results::Results;
-use crate::artifact::{Artifact, ArtifactKind, Column, Table, Values};
-use crate::unit::Unit;
+use crate::artifact::{Artifact, ArtifactKind, Table};
+use cells::Cells;
+use dialect::Dialect;
+pub use dialect::{Decimal, Delimiter, Encoding};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::collections::HashSet;
 
 /// Settings of a `data` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Data {
-    /// The CSV file, relative to the workflow.
+    /// The file, relative to the workflow: CSV, or a workbook of Excel or LibreOffice (xlsx, xls, ods).
     pub file: String,
+    /// What stands between cells; detected when not given.
+    pub delimiter: Option<Delimiter>,
+    /// What stands before decimals; detected when not given.
+    pub decimal: Option<Decimal>,
+    /// How letters are written as bytes; detected when not given.
+    pub encoding: Option<Encoding>,
+    /// Words that stand for no value; `NA`, `N/A`, `n/a`, `NaN`, `nan`, `null`, `-` and `–` when not given.
+    pub missing: Option<Vec<String>>,
+    /// The sheet of a workbook; its only one when not given.
+    pub sheet: Option<String>,
+}
+
+impl Data {
+    fn dialect(&self) -> Dialect {
+        Dialect {
+            delimiter: self.delimiter,
+            decimal: self.decimal,
+            encoding: self.encoding,
+            missing: self.missing.clone(),
+            sheet: self.sheet.clone(),
+        }
+    }
 }
 
 impl Stage for Data {
@@ -43,7 +72,7 @@ impl Stage for Data {
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
-        let mut task = Task::new("data", json!({}));
+        let mut task = Task::new("data", json!(self.dialect()));
         task.files.push(known.library.file("table", &self.file)?);
         Ok(Step::Finish(task))
     }
@@ -51,85 +80,61 @@ impl Stage for Data {
 
 impl Kind for Data {
     const NAME: &'static str = "data";
-    const ABOUT: &'static str = "a table from a CSV file with units";
+    const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    const WORKS: &'static [Work] = &[Work { name: "data", version: 1, run: read }];
+    // 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    const WORKS: &'static [Work] = &[Work { name: "data", version: 2, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
-    let table = parse(&job.file("table")?)?;
-    Ok(Results { runs: table }.to_artifact())
+    let (table, said) = parse_as(&job.file("table")?, &job.params()?)?;
+    let notes = said.map(|said| {
+        let mut notes = Notes::default();
+        notes.add("", said);
+        notes.table()
+    });
+    Ok(Results { runs: table, notes }.to_artifact())
 }
 
-/// Reads the whole table.
+/// Reads the whole table in whatever way it is written, or says what is wrong with it.
 ///
 /// # Errors
 /// What is wrong with it, and where.
 pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
-    let sheet = Sheet::read(bytes)?;
+    parse_as(bytes, &Dialect::default()).map(|(table, _)| table)
+}
+
+/// Reads the table as `how` fixes it; the second is what was detected, where that is not plain CSV.
+fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), StageError> {
+    let (sheet, decimal, said) = if workbook::is_workbook(bytes) {
+        (workbook::sheet(bytes, how.sheet.as_deref())?, Decimal::Point, None)
+    } else {
+        text(bytes, how)?
+    };
     if sheet.rows() == 0 {
         return Err(StageError::new("the file has no rows below its first line"));
     }
-    let mut names = HashSet::new();
-    let mut table = Table::default();
-    for (head, cells) in sheet.heads.iter().zip(sheet.columns) {
-        let (name, unit) = named(head)?;
-        if name.is_empty() || !names.insert(name) {
-            return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
-        }
-        Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
-        table.columns.push(column(name, unit, cells));
-    }
-    Ok(table)
+    let how = Cells { decimal, missing: how.missing.as_deref() };
+    let add = |table, (head, cells): (&String, _)| cells::column(table, head, cells, &how);
+    let table = sheet.heads.iter().zip(sheet.columns).try_fold(Table::default(), add)?;
+    Ok((table, said))
 }
 
-/// Name and unit of a column.
-fn named(head: &str) -> Result<(&str, &str), StageError> {
-    let Some((name, rest)) = head.split_once('[') else { return Ok((head, "")) };
-    match rest.trim_end().strip_suffix(']') {
-        Some(unit) if !unit.contains(['[', ']']) => Ok((name.trim(), unit.trim())),
-        Some(_) | None => {
-            Err(StageError::new(format!("column `{head}`: the unit must stand alone in brackets at the end"))
-                .hint("write for example `Ec [GPa]`"))
-        }
-    }
-}
-
-/// Numbers where every cell is one or empty, else texts.
-fn column(name: &str, unit: &str, cells: Vec<String>) -> Column {
-    let number = |cell: &String| {
-        if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|value: &f64| value.is_finite()) }
-    };
-    let numbers: Option<Vec<f64>> = cells.iter().map(number).collect();
-    let (unit, values) = match numbers {
-        Some(values) => (unit.to_owned(), Values::Reals(values)),
-        None => (String::new(), Values::Texts(cells)),
-    };
-    Column { name: name.to_owned(), unit, about: String::new(), values }
+/// The cells of a text file, its decimal sign, and what was detected.
+fn text(bytes: &[u8], how: &Dialect) -> Result<(Sheet, Decimal, Option<String>), StageError> {
+    let (text, encoding) = dialect::decode(bytes, how.encoding)?;
+    let delimiter = how.delimiter.unwrap_or_else(|| dialect::delimiter(&text));
+    let sheet = Sheet::of(&text, delimiter.byte(), |_| Ok(()))?;
+    let cells = sheet.columns.iter().flatten().map(String::as_str);
+    let decimal = how.decimal.map_or_else(|| dialect::decimal(cells), Ok)?;
+    let said = dialect::said(
+        encoding,
+        Some(delimiter).filter(|_| how.delimiter.is_none()),
+        Some(decimal).filter(|_| how.decimal.is_none()),
+    );
+    Ok((sheet, decimal, said))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn units_numbers_and_missing_cells_are_read() {
-        let table = parse(b"run,Ec [GPa],remark\n1,20,a\n2,,b\n").unwrap();
-        assert_eq!(table.column("Ec").unwrap().unit, "GPa");
-        let moduli = table.shown("Ec").unwrap().0;
-        assert!(moduli[0] == 20.0 && moduli[1].is_nan());
-        assert!(table.shown("remark").is_err());
-    }
-
-    #[test]
-    fn faults_name_line_or_column() {
-        let message = |text: &[u8]| parse(text).unwrap_err().message;
-        assert!(message(b"a,b\n1\n").contains("line 2"), "{}", message(b"a,b\n1\n"));
-        assert!(message(b"a [MPa\n1\n").contains("brackets"));
-        assert!(message(b"a [MPa] x\n1\n").contains("brackets"));
-        assert!(message(b"a [ell]\n1\n").contains("`a [ell]`"));
-        assert!(message(b"a,a\n1,2\n").contains("name of its own"));
-        assert!(message(b"a\n").contains("no rows"));
-    }
-}
+mod tests;

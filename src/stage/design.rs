@@ -28,6 +28,7 @@ use design::report::power::Question;
 use design::{Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::BTreeMap;
 use valid::{Broken, InvalidRows, Rule};
 
 /// Parameters of the task: all that decides the table.
@@ -39,6 +40,9 @@ struct Params {
     layout: Layout,
     #[serde(default, skip_serializing_if = "is_default")]
     power: Question,
+    /// Names of the levels of factors that are categories.
+    #[serde(default, skip_serializing_if = "is_default")]
+    names: BTreeMap<String, Vec<String>>,
     #[serde(default, skip_serializing_if = "is_default")]
     valid: Vec<String>,
     #[serde(default, skip_serializing_if = "is_default")]
@@ -92,8 +96,8 @@ impl Stage for Design {
         let layout = self.layout();
         let draws = design.draws() || layout.order == Order::Random;
         let factors = self.factors(known.context);
-        let (valid, invalid_rows) = (self.valid.clone(), self.invalid_rows);
-        let params = Params { design, factors, layout, power: self.power, valid, invalid_rows };
+        let (valid, invalid_rows, names) = (self.valid.clone(), self.invalid_rows, self.names(known.context));
+        let params = Params { design, factors, layout, power: self.power, names, valid, invalid_rows };
         let mut task = Task::new("design", json!(params));
         if draws {
             task = task.seed(known.context.seed);
@@ -102,6 +106,14 @@ impl Stage for Design {
             task.files.push(known.library.file("rows", file)?);
         }
         Ok(Step::Finish(task))
+    }
+}
+
+impl Design {
+    /// Names of the levels of the factors that are categories.
+    fn names(&self, context: &Context) -> BTreeMap<String, Vec<String>> {
+        let names = |name: &String| Some((name.clone(), context.factors.get(name)?.names.clone()));
+        self.factors.iter().filter_map(names).filter(|(_, names)| !names.is_empty()).collect()
     }
 }
 
@@ -158,9 +170,9 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
     }
     let report = report(if broken.is_empty() { &table } else { &left }, params.power);
     Ok(if broken.is_empty() {
-        tables::artifact(&table, &report)
+        tables::artifact(&table, &report, &params.names)?
     } else {
-        tables::shortened(&left, &report, &table, &broken)
+        tables::shortened(&left, &report, &params.names, (&table, &broken))?
     })
 }
 

@@ -4,10 +4,11 @@
 use super::columns::{Columns, Rows, refused, runs};
 use super::notes::Notes;
 use super::published::{Computed, beside, prints};
+use super::regression::origin::Beside;
 use super::{Failure, Job, StageError};
 use crate::artifact::Artifact;
 use crate::artifact::statistics::{
-    Coefficients, Domains, Fits, PrincipalAxes, Residuals, Selections, Stationary, Surfaces,
+    Coefficients, Domains, Fits, PrincipalAxes, Residuals, Selections, Stationary, Surfaces, WithConstant,
 };
 use serde::{Deserialize, Serialize};
 use stats::canonical::canonical;
@@ -37,6 +38,9 @@ pub(super) struct Fitting {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Params {
     pub fittings: Vec<Fitting>,
+    /// Every model is through the origin, and stands beside the same terms with a constant.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub through_origin: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub select: Option<Direction>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -62,11 +66,17 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         selection: params.select.map(|direction| Selection { direction, alpha }),
     };
     let mut found: Vec<(&Fitting, Regression)> = Vec::new();
+    let mut with_constant: Vec<(&str, Beside)> = Vec::new();
     let mut faults: Vec<StageError> = Vec::new();
     for fitting in &params.fittings {
         let sample = fitting.columns.sample(runs(job.input(&fitting.input)?)?)?;
         match regress(&sample, &fitting.response, &fitting.terms, &settings) {
-            Ok(regression) => found.push((fitting, regression)),
+            Ok(regression) => {
+                let beside =
+                    params.through_origin.then(|| Beside::of(&sample, &fitting.response, &fitting.terms, &settings));
+                with_constant.extend(beside.flatten().map(|beside| (fitting.response.as_str(), beside)));
+                found.push((fitting, regression));
+            }
             Err(error) => faults.push(refused(error)),
         }
     }
@@ -103,6 +113,7 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         selection: selection_table(&found),
         notes: notes(&found, params.predict.as_ref()).table(),
         models: found.iter().map(|(f, r)| (f.response.clone(), keep::stored(&r.model))).collect(),
+        with_constant: params.through_origin.then(|| constant_table(&with_constant)),
         predictions: params.predict.as_ref().map(|points| predict::prediction_table(&found, points)),
     };
     Ok(surfaces.to_artifact())
@@ -114,6 +125,12 @@ fn notes(found: &[(&Fitting, Regression)], points: Option<&Predict>) -> Notes {
     for (fitting, regression) in found {
         let response = fitting.response.as_str();
         notes.fit(&regression.fit);
+        for (factor, reference) in fitting.columns.categories() {
+            let text = format!(
+                "`{factor}` has names for levels and enters by dummy coding: `{factor}[…]` is the difference from `{reference}`"
+            );
+            notes.add(response, text);
+        }
         notes.residuals(response, &regression.residuals);
         notes.inflation(response, if regression.coded.is_empty() { &regression.natural } else { &regression.coded });
         if let Some(place) = canonical(&regression.model).filter(|place| !place.inside) {
@@ -150,9 +167,29 @@ fn coefficient_table(
     }
 }
 
+/// The same terms with a constant, for fits through the origin.
+fn constant_table(found: &[(&str, Beside)]) -> WithConstant {
+    let all: Vec<(&str, f64, &Coefficient)> = found
+        .iter()
+        .flat_map(|(response, b)| std::iter::once(&b.constant).chain(&b.rest).map(|c| (*response, b.r2, c)))
+        .collect();
+    let rows = Rows(&all);
+    WithConstant {
+        response: rows.texts(|(response, ..)| *response),
+        term: rows.texts(|(.., c)| c.term.as_str()),
+        estimate: rows.reals(|(.., c)| Some(c.estimate)),
+        std_error: rows.reals(|(.., c)| c.std_error),
+        t: rows.reals(|(.., c)| c.t),
+        p: rows.reals(|(.., c)| c.p),
+        r2: rows.reals(|(_, r2, _)| Some(*r2)),
+    }
+}
+
 /// Quality of fits, one row each.
 pub(super) fn fit_table(fits: &[&Fit]) -> Fits {
     let rows = Rows(fits);
+    let through_origin = fits.iter().any(|f| !f.constant);
+    let about = |f: &&Fit| if f.constant { "with a constant" } else { "through the origin: r2 about zero" };
     Fits {
         response: rows.texts(|f| f.response.as_str()),
         n: rows.ints(|f| f.n),
@@ -168,6 +205,8 @@ pub(super) fn fit_table(fits: &[&Fit]) -> Fits {
         df_pure_error: rows.ints(|f| f.df_pure_error),
         lack_of_fit_f: rows.reals(|f| f.lack_of_fit_f),
         lack_of_fit_p: rows.reals(|f| f.lack_of_fit_p),
+        model: through_origin.then(|| rows.texts(about)),
+        r2_about_mean: through_origin.then(|| rows.reals(|f| f.r2_about_mean)),
         pooled: None,
         not_estimable: None,
         published: None,

@@ -39,14 +39,6 @@ impl KeptRuns {
         self.runs.push((place, row, kept.key, kept.content));
         self.briefs.push(kept.brief);
     }
-
-    /// As the input `kept` of a job: places and briefs.
-    pub fn artifact(&self) -> Artifact {
-        let places = self.runs.iter().map(|(place, ..)| *place as i64).collect();
-        let places = Table::default().ints_column("place", "", places);
-        let briefs = Node::Bytes(self.briefs.to_bytes());
-        Artifact::new("kept", 1, Group::new().with("places", Node::Table(places)).with("briefs", briefs))
-    }
 }
 
 /// Failure of a run, empty when there is none, and name, unit and value of each response.
@@ -109,6 +101,14 @@ impl Briefs {
         let [failure, shape, first] = self.runs.get(run)?.map(|number| number as usize);
         let (failure, names) = (self.failures.get(failure)?, self.shapes.get(shape)?);
         Some(Brief { failure, names, values: self.values.get(first..first + names.len())? })
+    }
+
+    /// As the input `kept` of a job, with the place of each run among the inputs.
+    pub fn artifact(&self, places: &[usize]) -> Artifact {
+        let places = places.iter().map(|place| *place as i64).collect();
+        let places = Table::default().ints_column("place", "", places);
+        let briefs = Node::Bytes(self.to_bytes());
+        Artifact::new("kept", 1, Group::new().with("places", Node::Table(places)).with("briefs", briefs))
     }
 
     /// Length, texts as JSON, three numbers for each run, values; little-endian.

@@ -43,6 +43,7 @@ mod columns;
 pub mod command;
 mod context;
 pub mod data;
+mod derived;
 pub mod design;
 pub mod effort;
 pub mod figure;
@@ -52,6 +53,7 @@ pub mod ledger;
 pub mod material;
 mod memory;
 mod notes;
+mod packed;
 mod published;
 pub mod range;
 pub mod regression;
@@ -63,6 +65,7 @@ pub mod simulate;
 pub mod specimen;
 pub mod table;
 mod task;
+pub mod units;
 pub mod vary;
 pub mod verify;
 
@@ -71,6 +74,7 @@ pub use context::{
     Varier,
 };
 pub use memory::Memory;
+pub use packed::Packed;
 pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};

@@ -6,7 +6,7 @@
 use super::columns::{Columns, Rows, Wanted, check_names, refused, runs};
 use super::notes::Notes;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::statistics::{LevelValues, Range as Stored, Ranges};
+use crate::artifact::range::{LevelValues, Levels, Range as Stored, Ranges};
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Numbered};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -101,9 +101,16 @@ fn levels(columns: &Columns, lines: &[Line], most: usize) -> LevelValues {
     let first = lines.first().map(|line| line.response.clone());
     let own: Vec<&Line> = lines.iter().filter(|line| Some(&line.response) == first.as_ref()).collect();
     let rows = Rows(&own);
+    let named = columns.categories().next().is_some();
+    let numbers = |level: usize| rows.reals(|l| l.levels.get(level).copied());
+    let names = |level: usize| rows.texts(|l| l.names.get(level).cloned().unwrap_or_default());
     LevelValues {
         factor: rows.texts(|l| l.factor.as_str()),
         unit: rows.texts(|l| columns.unit_of(&l.factor)),
-        level: Numbered((0..most).map(|level| rows.reals(|l| l.levels.get(level).copied())).collect()),
+        level: if named {
+            Levels::Names(Numbered((0..most).map(names).collect()))
+        } else {
+            Levels::Numbers(Numbered((0..most).map(numbers).collect()))
+        },
     }
 }

@@ -1,8 +1,16 @@
-//! `kind = "regression"`: linear models of one table, one per response.
+//! `kind = "regression"`: linear models of one table, one per response, or one per response and group of rows.
+//!
+//! A term is a product of powers of factors, or holds a formula of factors such as `scn/(1+ratio)`. A factor whose values
+//! are names enters by dummy coding. With `through_origin` no model has a constant: R² is then a share of the squares about
+//! zero, and stands beside R² about the mean and the same terms with a constant. With `by` the result is an artifact
+//! `groups` ([`grouped`]).
 //!
 //! The result is an artifact `surfaces`: tables `coefficients` (natural units), `coded`, `fit`, `residuals`,
 //! `stationary`, `axes`, `path`, `domain`, `selection`, `predictions` where they are asked for, `notes` (what to look
 //! at), and the models that prediction needs.
+
+mod grouped;
+pub(super) mod origin;
 
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
@@ -27,6 +35,14 @@ pub struct Regression {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Vec<String>>")]
     pub terms: BTreeMap<String, Vec<Term>>,
+    /// Columns of the table: one fit for every set of rows with equal values in them.
+    #[serde(default)]
+    pub by: Vec<String>,
+    /// Leave the constant out of every model.
+    #[serde(default)]
+    pub through_origin: bool,
+    /// Coverage of the intervals of coefficients by groups, 0.95 when not given.
+    pub confidence: Option<f64>,
     /// Choose terms by significance, hierarchy kept.
     pub select: Option<Direction>,
     /// Level of the selection, 0.05 when not given.
@@ -83,11 +99,12 @@ pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
 
 impl Stage for Regression {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port { key: "table", stages: vec![self.table.clone()], accepts: Accepts::Only(&[ArtifactKind::RESULTS]) }]
+        let accepts = Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::GROUPS]);
+        vec![Port { key: "table", stages: vec![self.table.clone()], accepts }]
     }
 
     fn gives(&self) -> ArtifactKind {
-        ArtifactKind::SURFACES
+        if self.by.is_empty() { ArtifactKind::SURFACES } else { ArtifactKind::GROUPS }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -99,6 +116,7 @@ impl Stage for Regression {
             found.extend(own.into_iter().map(|c| Complaint { path: path.clone(), ..c }));
         }
         found.extend(check_predict(self.predict.as_ref(), context));
+        found.extend(self.check_groups());
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
     }
@@ -118,6 +136,8 @@ impl Stage for Regression {
             let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false };
             let columns = Columns::of(table, known.context, wanted)?;
             let terms = terms.map_or_else(|| Term::first_order(&columns.factor_names()), |terms| with_constant(terms));
+            let constant = |term: &Term| term.degree() == 0;
+            let terms = terms.into_iter().filter(|term| !(self.through_origin && constant(term))).collect();
             Ok(Fitting { response: response.to_owned(), input: "table".to_owned(), columns, terms })
         };
         let fittings: Result<Vec<Fitting>, StageError> = if self.terms.is_empty() {
@@ -126,7 +146,11 @@ impl Stage for Regression {
         } else {
             self.terms.iter().map(|(response, terms)| one(response, Some(terms))).collect()
         };
+        if !self.by.is_empty() {
+            return Ok(Step::Finish(self.grouped(fittings?).input("table", input.content)));
+        }
         let params = Params {
+            through_origin: self.through_origin,
             fittings: fittings?,
             select: self.select,
             select_alpha: self.select.map(|_| self.select_alpha.unwrap_or(fitted::SELECT_ALPHA)),
@@ -141,11 +165,46 @@ impl Stage for Regression {
     }
 }
 
+impl Regression {
+    fn check_groups(&self) -> Vec<Complaint> {
+        let idle = |key: &str| {
+            Complaint::new(key, format!("`{key}` has no effect with `by`")).hint(format!("leave out `{key}`"))
+        };
+        let mut found: Vec<Complaint> = Vec::new();
+        if self.by.is_empty() {
+            let without = self.confidence.is_some();
+            let message = "`confidence` has no effect without `by`";
+            found.extend(without.then(|| Complaint::new("confidence", message).hint("by = [\"a column\"]")));
+        } else {
+            found.extend(self.select.is_some().then(|| idle("select")));
+            found.extend(self.predict.is_some().then(|| idle("predict")));
+            found.extend(self.published.is_some().then(|| idle("published")));
+        }
+        let twice = self.by.iter().enumerate().filter(|(i, name)| self.by[..*i].contains(name));
+        let complaint = |name| Complaint::new("by", format!("`{name}` is named twice")).hint("name each column once");
+        found.extend(twice.map(|(_, name)| complaint(name)));
+        found.extend(self.confidence.and_then(|level| check_probability("confidence", level)));
+        found
+    }
+
+    fn grouped(&self, fittings: Vec<Fitting>) -> Task {
+        let params = grouped::Params {
+            fittings,
+            by: self.by.clone(),
+            through_origin: self.through_origin,
+            outlier_alpha: self.outlier_alpha,
+            confidence: self.confidence.unwrap_or(0.95),
+        };
+        Task::new("groups", json!(params))
+    }
+}
+
 impl Kind for Regression {
     const NAME: &'static str = "regression";
     const ABOUT: &'static str = "linear regression of responses on factors, from one table";
-    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES];
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES, ArtifactKind::GROUPS];
     const CLASS: Class = Class::Statistics;
     // 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "fit", version: 2, run: fit }];
+    const WORKS: &'static [Work] =
+        &[Work { name: "fit", version: 2, run: fit }, Work { name: "groups", version: 1, run: grouped::fit }];
 }

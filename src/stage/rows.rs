@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 /// The columns of a design that are factors, by name.
 fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a Column>, StageError> {
-    let table = Design::table(design)?;
+    let table = Design::table(design).or_else(|_| Results::table(design))?;
     Ok(table.columns.iter().filter(|column| context.factors.contains_key(&column.name)).collect())
 }
 

@@ -101,13 +101,14 @@ impl Stage for Rsm {
             task = task.input(response.clone(), input.content);
         }
         let params = Params {
+            through_origin: false,
             fittings,
             select: self.select,
             select_alpha: self.select.map(|_| self.select_alpha.unwrap_or(fitted::SELECT_ALPHA)),
             outlier_alpha: self.outlier_alpha,
             predict: self.predict.clone(),
         };
-        task.params = json!(params);
+        task.params = json!(params).into();
         if let Some(path) = &self.published {
             task.files.push(known.library.file("published", path)?);
         }

@@ -1,7 +1,7 @@
 //! `kind = "screening"`: effects of a two-level design, judged by Lenth's limits where nothing else estimates the noise.
 //!
 //! The result has the tables `effects` (one row per response and term, with the coordinates of normal, half-normal and
-//! Pareto plots), `limits` (pseudo standard error and margins), `fit`, `residuals` and `notes` (what stands out, and
+//! Pareto plots), `limits` (pseudo standard error and margins, critical value of the standardised effects), `fit`, `residuals` and `notes` (what stands out, and
 //! what to look at).
 
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
@@ -84,8 +84,8 @@ impl Kind for Screening {
     const ABOUT: &'static str = "effects of a two-level design with Lenth's limits";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SCREENING];
     const CLASS: Class = Class::Statistics;
-    // 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "screening", version: 2, run: analyse }];
+    // 3: standardised effects with their critical value. 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "screening", version: 3, run: analyse }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
@@ -128,6 +128,10 @@ fn notes(found: &[Found]) -> Notes {
             }
             Some(_) => {}
         }
+        let active = named(&|e| e.significant == Some(true));
+        if !active.is_empty() {
+            notes.add(response, format!("{active}: standardised effect beyond the critical value"));
+        }
         let fit = &screened.regression.fit;
         if fit.df_residual > 0 {
             notes.fit(fit);
@@ -148,11 +152,17 @@ fn effect_table(found: &[Found]) -> Effects {
         (true, false) => "beyond the margin of error",
         (false, _) => "",
     };
+    let significance = |(_, e): &(&str, &Effect)| match e.significant {
+        Some(true) => "significant",
+        Some(false) => "-",
+        None => "",
+    };
     Effects {
         response: rows.texts(|(response, _)| *response),
         term: rows.texts(|(_, e)| e.term.as_str()),
         effect: rows.reals(|(_, e)| Some(e.effect)),
         std_error: rows.reals(|(_, e)| e.std_error),
+        standardized: rows.reals(|(_, e)| e.standardized),
         p: rows.reals(|(_, e)| e.p),
         lenth_t: rows.reals(|(_, e)| e.lenth_t),
         rank: rows.ints(|(_, e)| e.rank),
@@ -161,6 +171,7 @@ fn effect_table(found: &[Found]) -> Effects {
         normal: rows.reals(|(_, e)| Some(e.normal)),
         half_normal: rows.reals(|(_, e)| Some(e.half_normal)),
         verdict: rows.texts(verdict),
+        significance: rows.texts(significance),
     }
 }
 
@@ -171,5 +182,6 @@ fn limit_table(found: &[Found]) -> Limits {
         pse: rows.reals(|s| s.pse),
         margin: rows.reals(|s| s.margin),
         simultaneous: rows.reals(|s| s.simultaneous),
+        critical: rows.reals(|s| s.critical),
     }
 }

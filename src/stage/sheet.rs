@@ -25,6 +25,18 @@ impl Sheet {
     pub(super) fn read(bytes: &[u8]) -> Result<Self, StageError> {
         let text = std::str::from_utf8(bytes).map_err(|e| not_text(bytes, e.valid_up_to()))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        Self::of(text, b',', separated_by_commas)
+    }
+
+    /// The cells of a text with this separator; `check` may refuse the names of its columns.
+    ///
+    /// # Errors
+    /// The names are refused, or a line has more or fewer cells than the first.
+    pub(super) fn of(
+        text: &str,
+        separator: u8,
+        check: impl Fn(&[String]) -> Result<(), StageError>,
+    ) -> Result<Self, StageError> {
         let (body, skipped) = below_comments(text);
         if let Some(line) = open_quote(body) {
             let message = format!("line {}: a double quote has no partner", skipped + line);
@@ -32,10 +44,11 @@ impl Sheet {
                 StageError::new(message).hint("all below it would be one cell; write a quote within quotes twice")
             );
         }
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(body.as_bytes());
+        let mut reader =
+            csv::ReaderBuilder::new().delimiter(separator).trim(csv::Trim::All).from_reader(body.as_bytes());
         let fail = |e: &csv::Error| unequal(e, skipped);
         let heads: Vec<String> = reader.headers().map_err(|e| fail(&e))?.iter().map(str::to_owned).collect();
-        separated_by_commas(&heads)?;
+        check(&heads)?;
         let mut columns = vec![Vec::new(); heads.len()];
         for (row, record) in reader.records().enumerate() {
             if row == MOST_RUNS {
@@ -65,7 +78,7 @@ impl Sheet {
 }
 
 /// The text from the line of names on, and how many lines of comment stand above it.
-fn below_comments(text: &str) -> (&str, usize) {
+pub(super) fn below_comments(text: &str) -> (&str, usize) {
     let mut rest = text;
     let mut skipped = 0;
     while rest.trim_start_matches([' ', '\t', '\r']).starts_with(['#', '\n']) {

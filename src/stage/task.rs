@@ -1,8 +1,8 @@
 //! The unit of work, and what runs it.
 
-use super::StageError;
 use super::beside::plain;
 use super::ledger::KeptRuns;
+use super::{Packed, StageError};
 use crate::artifact::{Artifact, ContentHash};
 use dem::Watch;
 use serde::de::DeserializeOwned;
@@ -18,7 +18,7 @@ pub struct Task {
     /// Name of its [`Work`].
     pub work: &'static str,
     /// Parameters it really uses, SI numbers; read back by [`Job::params`].
-    pub params: Value,
+    pub params: Packed,
     /// Its seed, when it draws random numbers.
     pub seed: Option<u64>,
     /// Named inputs in a fixed order.
@@ -38,7 +38,7 @@ impl Task {
     pub fn new(work: &'static str, params: Value) -> Self {
         Self {
             work,
-            params,
+            params: params.into(),
             seed: None,
             inputs: Vec::new(),
             files: Vec::new(),

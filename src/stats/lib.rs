@@ -11,6 +11,7 @@
 //! * [`categories`]: factors whose levels are names, as dummy terms of a regression
 //! * [`groups`]: rows by equal values of columns: one fit per group, and pivot tables
 //! * [`summary`]: quartiles, whiskers and bins of plain values
+//! * [`band`]: mean and scatter of many curves
 //! * [`agreement`]: how well two sets of values agree: ratios, ranks
 //! * [`canonical`]: stationary point of a second-order surface, its nature and axes, path of steepest ascent
 //! * [`screening`]: effects of an unreplicated two-level design, Lenth's limits
@@ -19,6 +20,7 @@
 
 pub mod agreement;
 pub mod anova;
+pub mod band;
 pub mod canonical;
 pub mod categories;
 pub mod diagnostics;

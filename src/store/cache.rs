@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 /// Memory for artifacts, bytes.
 const ROOM: usize = 64 << 20;
+/// What the names, units and tables of an artifact take beside its values, about, bytes.
+const AROUND: usize = 2 << 10;
 
 /// Two generations: what is used moves to the young one; when that is full it becomes the old one, and the old goes.
 #[derive(Default)]
@@ -27,7 +29,7 @@ impl Cache {
 
     pub(super) fn put(&mut self, content: ContentHash, artifact: Arc<Artifact>) {
         // What takes more than a generation would push out everything else.
-        let bytes = artifact.bytes();
+        let bytes = artifact.bytes() + AROUND;
         if bytes > ROOM / 2 {
             return;
         }

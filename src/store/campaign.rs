@@ -5,7 +5,6 @@
 use super::disk::Disk;
 use super::folder::{Folder, Strange};
 use super::mark::Mark;
-use super::object::is_hex;
 use super::{Origin, StoreError};
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
@@ -94,24 +93,27 @@ pub(super) fn is_ours(folder: &Folder, name: &str) -> bool {
 
 /// Records a campaign under the next free number, which is returned.
 pub(super) fn record(disk: &Disk, mark: &Mark, campaign: &Campaign) -> Result<u64, StoreError> {
+    let bare = Campaign { mark: String::new(), ..campaign.clone() };
+    let text = serde_json::to_string_pretty(&bare).unwrap_or_else(|error| panic!("BUG: a run record: {error}"));
     let mut number = numbers(disk)?.last().map_or(1, |last| last.saturating_add(1));
     loop {
-        let campaign = Campaign { mark: marked(mark, number, campaign), ..campaign.clone() };
-        if disk.write_new(FOLDER, &format!("{number}.json"), text(&campaign).as_bytes(), false)? {
+        let marked = with_mark(&text, "", &marked(mark, number, &text));
+        if disk.write_new(FOLDER, &format!("{number}.json"), marked.as_bytes(), false)? {
             return Ok(number);
         }
         number += 1;
     }
 }
 
-fn text(campaign: &Campaign) -> String {
-    serde_json::to_string_pretty(campaign).unwrap_or_else(|error| panic!("BUG: a run record: {error}"))
+/// The mark over the text of a campaign without one, and its number.
+fn marked(mark: &Mark, number: u64, text: &str) -> String {
+    mark.note(&number.to_le_bytes(), text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The mark over a campaign with its number.
-fn marked(mark: &Mark, number: u64, campaign: &Campaign) -> String {
-    let bare = Campaign { mark: String::new(), ..campaign.clone() };
-    mark.note(&number.to_le_bytes(), text(&bare).as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+/// The text with another mark. Numbers do not come back to the last digit from every reader, so the text itself is marked.
+fn with_mark(text: &str, old: &str, new: &str) -> String {
+    let field = |mark: &str| format!("\n  \"mark\": \"{mark}\"\n}}");
+    text.strip_suffix(&field(old)).map_or_else(String::new, |body| body.to_owned() + &field(new))
 }
 
 /// The campaign with this number; nothing when there is none or its file is not readable.
@@ -124,6 +126,7 @@ pub(super) fn read(disk: &Disk, mark: &Mark, number: u64) -> Result<Option<Campa
         Err(error) => return Err(disk.fail("read", &disk.path(FOLDER, &name), error)),
     };
     let Ok(campaign) = serde_json::from_slice::<Campaign>(&bytes) else { return Ok(None) };
-    let own = is_hex(&campaign.mark) && campaign.mark == marked(mark, number, &campaign);
+    let text = String::from_utf8_lossy(&bytes);
+    let own = campaign.mark == marked(mark, number, &with_mark(&text, &campaign.mark, ""));
     Ok(Some(Campaign { number, own, ..campaign }))
 }

@@ -142,8 +142,9 @@ impl Folder {
         }
     }
 
-    /// The state of the folder itself.
+    /// The state of the folder itself, asked anew where a network file system remembers it.
     pub(super) fn stat(&self) -> io::Result<Stat> {
+        ask_anew(&self.0);
         Ok(rustix::fs::fstat(&self.0)?)
     }
 
@@ -224,6 +225,13 @@ pub(super) fn bounded(file: &File, most: u64) -> io::Result<u64> {
         return Err(Strange::error("it is larger than anything that flow writes there"));
     }
     Ok(size)
+}
+
+/// Lets a network file system ask its server for the state of a file, which it may remember for seconds.
+pub(super) fn ask_anew(file: impl std::os::fd::AsFd) {
+    // Where this is not known, what is remembered is taken.
+    let flags = AtFlags::EMPTY_PATH | AtFlags::STATX_FORCE_SYNC;
+    let _ = rustix::fs::statx(file, "", flags, rustix::fs::StatxFlags::BASIC_STATS);
 }
 
 /// Writes all bytes.

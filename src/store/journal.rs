@@ -48,6 +48,11 @@ fn is_name(name: &str) -> bool {
     name.strip_suffix(".journal").is_some_and(|stem| stem.len() > 13 && stem.bytes().all(plain))
 }
 
+/// The process in the name of a segment.
+fn writer_of(name: &str) -> Option<u32> {
+    name.split('-').nth(1)?.parse().ok()
+}
+
 /// Whether the store has a segment.
 pub(super) fn is_there(disk: &Disk) -> Result<bool, StoreError> {
     let Some(folder) = disk.find_folder(FOLDER)? else { return Ok(false) };

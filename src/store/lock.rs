@@ -9,17 +9,27 @@
 //! costs one new file and not two. (ext4 does not hand out an inode again that was freed within the last seconds, and
 //! searches past all of these for each new file, so ten thousand lock files that come and go cost seconds.)
 //!
-//! Locks only save work. Without them (some network file systems have none, others have them for each node alone) two
+//! **Locks that do not reach all nodes** (some network file systems have them for each node alone) let a file look left
+//! behind whose holder is at work. So a file whose lock is free counts as held while its holder may be alive: a process of
+//! this machine that is there, or one of another machine. Others take other tasks meanwhile, and after [`PATIENCE`] by
+//! their own watch, in which a result would have come to be seen, the file counts as left behind.
+//!
+//! Locks only save work. Without them two
 //! runs may compute the same task, and each may find that the other took its file for one left behind and removed it:
 //! it then writes its result anew, and the store holds one of the two equal results.
 
-use super::StoreError;
 use super::disk::Disk;
 use super::folder::{Folder, Strange};
 use super::object::is_hex;
+use super::{StoreError, memo, object};
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// Longer than network file systems show old names, and than most tasks that are worth waiting for by nobody.
+const PATIENCE: Duration = Duration::from_secs(12);
+/// A claim's file that holds a result already is about to be let go of.
+const WRITING: Duration = Duration::from_secs(1);
 
 /// Folder of the claims.
 pub(super) const FOLDER: &str = "locks";
@@ -33,6 +43,8 @@ pub struct Holder {
     pub process: u32,
     /// Machine.
     pub machine: String,
+    /// Whether that is this one.
+    here: bool,
 }
 
 impl std::fmt::Display for Holder {
@@ -87,7 +99,11 @@ impl Drop for Claimed {
 /// A task that another process computes.
 #[derive(Debug)]
 pub struct Waiting {
+    folder: Folder,
+    name: String,
     file: File,
+    /// Since when its lock is known to be free though its holder may be alive.
+    unsure: Option<(Instant, Duration)>,
     /// Who computes it.
     pub holder: Holder,
 }
@@ -95,6 +111,14 @@ pub struct Waiting {
 impl Waiting {
     /// Whether the other process has let go of the task, finished or dead. Claim it again to know.
     pub fn is_over(&self) -> bool {
+        if let Some((since, patience)) = self.unsure {
+            let gone = !self.folder.names(&self.name, &self.file);
+            let over = gone || since.elapsed() > patience || is_dead(&self.holder);
+            if over && !gone {
+                let _ = self.folder.remove(&self.name);
+            }
+            return over;
+        }
         match self.file.try_lock_shared() {
             Err(TryLockError::WouldBlock) => false,
             Ok(()) | Err(TryLockError::Error(_)) => {
@@ -140,8 +164,10 @@ pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, Store
                     return Ok(Taken::Mine(Guard(Some(claimed))));
                 }
             }
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => match held(&folder, &name) {
-                Ok(Some(waiting)) => return Ok(Taken::Theirs(waiting)),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => match held(&folder, &name, machine) {
+                Ok(Some((file, unsure, holder))) => {
+                    return Ok(Taken::Theirs(Waiting { folder, name, file, unsure, holder }));
+                }
                 Ok(None) => {}
                 // A link or a pipe in its place says nothing about the task, and no lock is better than none of its work.
                 Err(error) if Strange::is(&error) => return Ok(Taken::Mine(Guard(None))),
@@ -152,21 +178,63 @@ pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, Store
     }
 }
 
+/// A lock that may be held: its file, since when and for how long that is not sure, who holds it.
+type Found = (File, Option<(Instant, Duration)>, Holder);
+
 /// Who holds an existing lock; nobody when it was left behind, and it is removed.
-fn held(folder: &Folder, name: &str) -> std::io::Result<Option<Waiting>> {
+fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<Found>> {
     let mut file = match folder.open(name, true).or_else(|_| folder.open(name, false)) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         other => other?,
     };
-    if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-        let holder = read_holder(&mut file);
-        return Ok(Some(Waiting { file, holder }));
+    let free = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+    let mut holder = read_holder(&mut file, machine);
+    for _ in 0..5 {
+        // Its maker may be about to say who it is.
+        if !free || holder.process != 0 || file.metadata()?.len() > 0 {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+        holder = read_holder(&mut file, machine);
+    }
+    if !free {
+        return Ok(Some((file, None, holder)));
+    }
+    let patience = match holder.process {
+        0 if memo::begins_with(folder, name, object::HEAD) => Some(WRITING),
+        _ => may_live(&holder).then_some(PATIENCE),
+    };
+    if let Some(patience) = patience.filter(|_| folder.names(name, &file)) {
+        file.unlock()?;
+        return Ok(Some((file, Some((Instant::now(), patience)), holder)));
     }
     let left_behind = Held(file);
     if folder.names(name, &left_behind.0) {
         folder.remove(name)?;
     }
     Ok(None)
+}
+
+/// Whether the holder of a file whose lock is free may be at work where the lock does not reach.
+fn may_live(holder: &Holder) -> bool {
+    match holder.process {
+        // Not yet said, or overwritten by the result.
+        0 => false,
+        process if holder.here => is_alive(process),
+        _ => true,
+    }
+}
+
+/// Whether the holder is known to have ended.
+fn is_dead(holder: &Holder) -> bool {
+    holder.process != 0 && !may_live(holder)
+}
+
+/// Whether another process of this machine with this number is there.
+pub(super) fn is_alive(process: u32) -> bool {
+    let pid = i32::try_from(process).ok().and_then(rustix::process::Pid::from_raw);
+    let there = |pid| !matches!(rustix::process::test_kill_process(pid), Err(rustix::io::Errno::SRCH));
+    process != std::process::id() && pid.is_some_and(there)
 }
 
 /// Whether a name in the folder of locks is one of a claim.
@@ -185,12 +253,12 @@ pub(super) fn share(disk: &Disk) -> Option<Held> {
     Some(Held(file))
 }
 
-fn read_holder(file: &mut File) -> Holder {
+fn read_holder(file: &mut File, here: &str) -> Holder {
     let mut text = Vec::new();
     let _ = file.take(256).read_to_end(&mut text);
     let text = String::from_utf8_lossy(&text);
     let (process, machine) = text.lines().next().and_then(|line| line.split_once(' ')).unwrap_or_default();
     // The file may hold half of a result by now.
-    let machine: String = machine.chars().filter(|c| c.is_ascii_graphic()).take(64).collect();
-    Holder { process: process.parse().unwrap_or(0), machine }
+    let machine: String = machine.chars().filter(|c| c.is_ascii_graphic()).take(100).collect();
+    Holder { process: process.parse().unwrap_or(0), here: machine == here, machine }
 }

@@ -34,6 +34,8 @@ pub struct ObjectId {
 
 /// Folder of damaged files.
 pub(super) const ASIDE: &str = "aside";
+/// How the file of an object begins.
+pub(super) const HEAD: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Length of the name of an object's file.
 const NAME: usize = 64 + 1 + KEY_DIGITS + 3;
 const KEY_DIGITS: usize = 16;
@@ -71,7 +73,7 @@ pub(super) fn is_name(shard: &str, name: &str) -> bool {
 
 /// Whether a file in a folder of objects is one that flow wrote.
 pub(super) fn is_ours(at: &Folder, shard: &str, name: &str) -> bool {
-    is_name(shard, name) && super::memo::begins_with(at, name, b"\x89HDF\r\n\x1a\n")
+    is_name(shard, name) && super::memo::begins_with(at, name, HEAD)
 }
 
 /// Lower-case hexadecimal digits.

@@ -112,10 +112,8 @@ fn mark(disk: &Disk) -> Result<(), StoreError> {
 /// Makes the folder of a new store, with a note that keeps its files out of version control.
 fn create(disk: &Disk) -> Result<(), StoreError> {
     let root = &disk.root;
-    if root.exists() {
-        return Err(refuse(root, "it is not a folder".to_owned()));
-    }
     std::fs::create_dir_all(root).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => refuse(root, "it is not a folder".to_owned()),
         ErrorKind::NotADirectory => refuse(root, "a part of the path is a file".to_owned()),
         // The folder that is missing cannot have vanished.
         _ => StoreError::io("make the folder", root, Path::new("/"), error),

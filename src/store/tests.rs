@@ -58,3 +58,4 @@ fn one_of_two_claims_waits() {
 }
 
 mod faults;
+mod fuzz;

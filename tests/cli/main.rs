@@ -4,10 +4,12 @@
 
 mod calibrate;
 mod cases;
+mod columns;
 mod command;
 mod export;
 mod faults;
 mod kill;
+mod nodes;
 mod readme;
 mod report;
 mod reruns;

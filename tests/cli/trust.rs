@@ -194,3 +194,70 @@ fn gc_and_verify_leave_alone_what_lies_outside_and_what_flow_did_not_write() {
     assert_eq!(fs::read_dir(space.path("project")).expect("a folder").count(), 1);
     assert!(space.path("project/objects/parts/mesh.stl").exists());
 }
+
+/// All files of a store, sorted.
+fn everything(folder: &std::path::Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder").flatten() {
+        let path = entry.path();
+        if path.is_dir() { files.extend(everything(&path)) } else { files.push(path) }
+    }
+    files.sort();
+    files
+}
+
+/// As many flips as `FLOW_TEST_FLIPS` says, each of one byte of one file of a finished campaign's store. Whatever it hits, the
+/// next run comes to the right results, all commands agree on them, and after that nothing is left to say.
+#[test]
+fn flips_of_any_byte_of_a_store_end_in_the_right_results() {
+    let flips: u64 = std::env::var("FLOW_TEST_FLIPS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    let first = campaign();
+    let wanted = first.run(&[]).objects;
+    let shown = first.stdout(&["show", "w.toml", "sim", "--table", "runs", "--csv", "--quiet"]);
+    let (mut number, mut refused) = (0x9e37_79b9_7f4a_7c15_u64, 0);
+    for _ in 0..flips {
+        let space = Space::new();
+        space.write("w.toml", CAMPAIGN);
+        copy(&first.path("store"), &space.path("store"));
+        let mut next = |below: usize| {
+            number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (number >> 33) as usize % below
+        };
+        // In-use locks and notes are empty or not read.
+        let files: Vec<PathBuf> = everything(&space.path("store"))
+            .into_iter()
+            .filter(|path| fs::read(path).is_ok_and(|b| !b.is_empty()))
+            .collect();
+        let path = &files[next(files.len())];
+        let mut bytes = fs::read(path).expect("a file");
+        let (place, bit) = (next(bytes.len()), next(8));
+        bytes[place] ^= 1 << bit;
+        fs::remove_file(path).expect("a file");
+        fs::write(path, bytes).expect("a file");
+        let output = space.flow(&["run", "w.toml", "--json", "--quiet"]);
+        if path.ends_with("flow.store") {
+            // What makes it a store: refused, or a letter of the note was hit.
+            refused += i32::from(output.status.code() == Some(3));
+            continue;
+        }
+        assert!(output.status.success(), "{}, byte {place}: {}", path.display(), told(&output));
+        assert_eq!(crate::space::Ran::read(&output).objects, wanted, "{}, byte {place}", path.display());
+        // A result that no stage had to read is found when it is read, and the next run computes it.
+        space.flow(&["store", "verify"]);
+        space.run(&[]);
+        assert!(!space.stdout(&["store", "verify"]).contains("damaged"), "{}, byte {place}", path.display());
+        all_agree(&space, &shown);
+    }
+    eprintln!("{flips} flips, {refused} of them refused the store");
+}
+
+fn copy(from: &std::path::Path, to: &std::path::Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder").flatten() {
+        let target = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => assert!(fs::copy(entry.path(), target).is_ok(), "{}", entry.path().display()),
+        }
+    }
+}

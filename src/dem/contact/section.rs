@@ -192,6 +192,20 @@ impl Section {
         }
     }
 
+    /// What one contact has spent.
+    pub(crate) fn spent(&self, c: usize) -> [f64; LEDGER] {
+        let (chunk, block, lane) = place(c);
+        std::array::from_fn(|row| self.chunks[chunk].ledger[block * LEDGER + row].0[lane])
+    }
+
+    /// Writes what one contact has spent.
+    pub(crate) fn book(&mut self, c: usize, spent: [f64; LEDGER]) {
+        let (chunk, block, lane) = place(c);
+        for (row, energy) in spent.into_iter().enumerate() {
+            self.chunks[chunk].ledger[block * LEDGER + row].0[lane] = energy;
+        }
+    }
+
     /// Adds one row of the ledger of some contacts to `sum`, one by one: the order of the list decides the bits.
     pub(crate) fn add_spent(&self, row: usize, contacts: Range<usize>, sum: &mut f64) {
         for (chunk, block, lane) in contacts.map(place) {

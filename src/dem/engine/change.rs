@@ -209,7 +209,11 @@ impl<S: Space> Engine<S> {
     /// Threads of a run from now on: at least one, at most one for every 64 particles. Results do not depend on it.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
+        let ledgers = self.ledgers();
         self.rewrite(&[], |_, _, _| ());
+        if let Some(ledgers) = ledgers {
+            self.reopen(ledgers);
+        }
     }
 
     /// Threads of a run.

@@ -44,9 +44,10 @@ impl Laboratory {
     }
 
     fn run(&self, task: &Task) -> Outcome {
-        let point: Point = serde_json::from_value(task.params["point"].clone()).unwrap();
-        let number = task.params["number"].as_u64().unwrap();
-        let lab = task.params["lab"].as_str().unwrap();
+        let point: Point = serde_json::from_value(task.params.value()["point"].clone()).unwrap();
+        let number = task.params.value()["number"].as_u64().unwrap();
+        let params = task.params.value();
+        let lab = params["lab"].as_str().unwrap();
         let (responses, failure) = match (self.model)(lab, &point, number) {
             Ok(responses) => (responses, String::new()),
             Err(failure) if failure == "crash" => return Outcome::Failed(failure),
@@ -169,7 +170,7 @@ fn finished(laboratory: &Laboratory, task: &Task) -> Result<Artifact, String> {
         })
         .collect();
     let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: Progress| ());
-    let (params, seed) = (&task.params, task.seed);
+    let (params, seed) = (&task.params.value(), task.seed);
     let job =
         Job { params, seed, inputs: &inputs, files: &[], threads: &|| 1, time_limit: None, say: &say, stop: &stop };
     solve::solve(&job).map_err(|failure| failure.to_string())

@@ -1,12 +1,22 @@
 //! The artifact of a design.
 
+use super::super::StageError;
 use super::valid::Broken;
 use crate::artifact::design::{Design, DesignReport, DesignRows};
 use crate::artifact::{Artifact, Table};
 use design::{DesignTable, Report};
+use std::collections::BTreeMap;
+
+/// Names of the levels of categories, by factor.
+type Names = BTreeMap<String, Vec<String>>;
 
 /// As [`artifact`], with the rows of the `whole` table that were left out and the rules that they break.
-pub(super) fn shortened(table: &DesignTable, report: &Report, whole: &DesignTable, broken: &[Broken]) -> Artifact {
+pub(super) fn shortened(
+    table: &DesignTable,
+    report: &Report,
+    names: &Names,
+    (whole, broken): (&DesignTable, &[Broken]),
+) -> Result<Artifact, StageError> {
     let mut left = Table { about: "rows left out, with the rules that they break".to_owned(), columns: Vec::new() }
         .ints_column(
             "standard_order",
@@ -19,23 +29,24 @@ pub(super) fn shortened(table: &DesignTable, report: &Report, whole: &DesignTabl
         left =
             left.reals_column(&factor.name, &factor.unit, "", broken.iter().map(|b| whole.natural[b.row][j]).collect());
     }
-    Design { left_out: Some(left), ..stored(table, report) }.to_artifact()
+    Ok(Design { left_out: Some(left), ..stored(table, report, names)? }.to_artifact())
 }
 
 /// The storable form.
-pub(super) fn artifact(table: &DesignTable, report: &Report) -> Artifact {
-    stored(table, report).to_artifact()
+pub(super) fn artifact(table: &DesignTable, report: &Report, names: &Names) -> Result<Artifact, StageError> {
+    Ok(stored(table, report, names)?.to_artifact())
 }
 
-fn stored(table: &DesignTable, report: &Report) -> Design {
-    Design { design: design(table), coded: coded(table), report: lines(table, report), left_out: None }
+fn stored(table: &DesignTable, report: &Report, names: &Names) -> Result<Design, StageError> {
+    let design = design(table, names)?;
+    Ok(Design { design, coded: coded(table), report: lines(table, report), left_out: None })
 }
 
 fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
     numbers.into_iter().map(|n| n as i64).collect()
 }
 
-fn design(table: &DesignTable) -> Table {
+fn design(table: &DesignTable, names: &Names) -> Result<Table, StageError> {
     let rows = DesignRows {
         run: counted(1..=table.runs()),
         standard_order: counted(table.standard_order.clone()),
@@ -45,9 +56,17 @@ fn design(table: &DesignTable) -> Table {
     let mut found = Table { about: table.construction.clone(), ..rows.to_table() };
     for (j, factor) in table.factors.iter().enumerate() {
         let values = table.natural.iter().map(|row| row[j]).collect();
+        if let Some(names) = names.get(&factor.name) {
+            let name = |row: &Vec<f64>| names.get(row[j] as usize).filter(|_| row[j].fract() == 0.0).cloned();
+            let all: Option<Vec<String>> = table.natural.iter().map(name).collect();
+            let message = || format!("the design sets `{}` between its levels, which are names", factor.name);
+            let hint = "leave out centre points, or take a factorial or orthogonal design";
+            found = found.texts_column(&factor.name, "", all.ok_or_else(|| StageError::new(message()).hint(hint))?);
+            continue;
+        }
         found = found.reals_column(&factor.name, &factor.unit, "", values);
     }
-    found
+    Ok(found)
 }
 
 fn coded(table: &DesignTable) -> Table {

@@ -53,7 +53,7 @@ fn task(text: &str) -> Task {
 
 fn ran(text: &str) -> Artifact {
     let task = task(text);
-    let job = Job { params: &task.params, seed: task.seed, inputs: &[], files: &[], ..blank() };
+    let job = Job { params: &task.params.value(), seed: task.seed, inputs: &[], files: &[], ..blank() };
     run(&job).unwrap_or_else(|_| panic!("the design failed"))
 }
 
@@ -109,9 +109,9 @@ fn only_what_decides_the_table_is_in_the_task() {
     assert_eq!(task("method = \"sobol\"\nruns = 8\nscramble = false\nfactors = [\"Ec\"]").seed, None);
     let factor = |name: &str, unit: &str, levels: [f64; 3]| json!({ "name": name, "unit": unit, "domain": { "levels": levels } });
     let factors = json!([factor("Ec", "GPa", [10.0, 20.0, 30.0]), factor("kn_ks", "", [1.0, 2.5, 4.0])]);
-    assert_eq!(task(plain).params, json!({ "design": { "method": "orthogonal" }, "factors": factors }));
+    assert_eq!(task(plain).params.value(), json!({ "design": { "method": "orthogonal" }, "factors": factors }));
     let alpha = |text: &str| {
-        task(&format!("method = \"central-composite\"\nalpha = {text}\nfactors = [\"Ec\", \"kn_ks\"]")).params["design"]
+        task(&format!("method = \"central-composite\"\nalpha = {text}\nfactors = [\"Ec\", \"kn_ks\"]")).params.value()["design"]
             .clone()
     };
     assert_eq!(alpha("\"rotatable\""), json!({ "method": "central-composite" }));

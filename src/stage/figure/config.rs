@@ -1,5 +1,6 @@
 //! Settings of a `figure` stage, and what each figure takes.
 
+use super::plot::{Bars, Direction, Fit};
 use crate::artifact::{Accepts, ArtifactKind as Of};
 use crate::unit::Length;
 use figure::palette::Map;
@@ -34,6 +35,35 @@ pub struct Figure {
     pub names: BTreeMap<String, String>,
     /// Half width of the band around the line of equality, as a share of the value.
     pub band: Option<f64>,
+    /// Column along the page (`xy`, `curves`, `heat-map`), or the quantity of a `histogram`.
+    pub x: Option<String>,
+    /// Column up the page (`xy`, `curves`, `box`), or down a `heat-map`.
+    pub y: Option<String>,
+    /// Column in the cells of a `heat-map`.
+    pub value: Option<String>,
+    /// Column by whose values points, curves or boxes are grouped.
+    pub by: Option<String>,
+    /// Table of the result that the columns are in; its main table when not given.
+    pub table: Option<String>,
+    /// Only rows in which these columns have these values.
+    #[serde(default, rename = "where")]
+    pub only: BTreeMap<String, String>,
+    /// Line through the points of each group of an `xy`, with its confidence band.
+    pub fit: Option<Fit>,
+    /// Mean and bars in place of the points of an `xy` that share their `x`.
+    pub bars: Option<Bars>,
+    /// Coverage of bands and bars, 0.95 when not given.
+    pub confidence: Option<f64>,
+    /// Axes with equal ratios: `["x"]`, `["y"]` or both.
+    #[serde(default)]
+    pub log: Vec<Direction>,
+    /// Join the points of each group of an `xy`.
+    #[serde(default)]
+    pub joined: bool,
+    /// CSV or workbook, beside the workflow, whose columns `x` and `y` are drawn over the others (`xy`, `curves`).
+    pub overlay: Option<String>,
+    /// Number of bins of a `histogram`; chosen from the scatter when not given.
+    pub bins: Option<usize>,
     /// `single` (90 mm), `double` (190 mm) or a length.
     #[serde(default)]
     pub width: Width,
@@ -165,6 +195,16 @@ pub enum Show {
     Solutions,
     /// Targets against verified values.
     Verification,
+    /// Two columns against each other, by groups.
+    Xy,
+    /// Curves of many runs with their mean.
+    Curves,
+    /// How often values of a column occur.
+    Histogram,
+    /// Median, quartiles and single values of a column, by groups.
+    Box,
+    /// A column over two others as a matrix of colours and numbers.
+    HeatMap,
     /// The stages that lead to those named, and what flows between them.
     Dag,
 }
@@ -208,8 +248,17 @@ impl Show {
             Show::Convergence => needs(&[Of::SOLUTION], &[], [0, 0], [0, 0]),
             Show::Solutions => needs(&[Of::SOLUTION], &[], [0, 0], [0, MANY]),
             Show::Verification => needs(&[Of::VERIFICATION], &[], [0, MANY], [0, 0]),
+            Show::Curves => needs(&[Of::RUN, Of::RESULTS], &[], [0, 0], [0, 0]),
+            Show::Xy | Show::Histogram | Show::Box | Show::HeatMap => {
+                Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) }
+            }
             Show::Dag => Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) },
         }
+    }
+
+    /// Whether it draws columns that the stage names.
+    pub(super) fn is_plot(self) -> bool {
+        matches!(self, Show::Xy | Show::Curves | Show::Histogram | Show::Box | Show::HeatMap)
     }
 
     pub(super) fn name(self) -> String {

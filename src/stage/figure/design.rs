@@ -4,7 +4,7 @@ use super::super::StageError;
 use super::source::{Rows, Source, Sources, rows_of};
 use super::{Label, Params};
 use crate::artifact::design::DesignRows;
-use crate::artifact::statistics::Range as Stored;
+use crate::artifact::range::Range as Stored;
 use figure::agreement::{Agreement, Cloud, Pair};
 use figure::axis::fixed;
 use figure::bars::{Bar, RankedBars};
@@ -19,7 +19,8 @@ fn one_response(params: &Params) -> Result<&Label, StageError> {
 /// Range analysis of one factor for one response.
 struct Range {
     factor: String,
-    levels: Vec<f64>,
+    /// `None` where levels are names.
+    levels: Option<Vec<f64>>,
     means: Vec<f64>,
     range: f64,
 }
@@ -33,7 +34,7 @@ fn ranges(source: Source, params: &Params, response: &Label) -> Result<Vec<Range
         let row = mine.iter().copied().find(|&row| range.factor[row] == label.key);
         let own = levels.factor.iter().position(|factor| *factor == label.key);
         if let (Some(row), Some(own)) = (row, own) {
-            let (levels, means) = (levels.level.row(own), range.level.row(row));
+            let (levels, means) = (levels.level.numbers(own), range.level.row(row));
             found.push(Range { factor: label.key.clone(), levels, means, range: range.range[row] });
         }
     }
@@ -59,11 +60,13 @@ pub(super) fn main_effects(params: &Params, sources: &Sources) -> Result<MainEff
     let mut factors = Vec::new();
     for range in computed {
         let label = label_of(params, &range)?;
+        let named =
+            || StageError::new(format!("the levels of `{}` are names, which have no place on an axis", label.key));
         factors.push(FactorMeans {
             factor: label.quantity(),
             group: if some_set && label.group.is_empty() { "empty column".into() } else { label.group.clone() },
             published: published.iter().find(|r| r.factor == label.key).map(|r| r.means.clone()).unwrap_or_default(),
-            levels: range.levels,
+            levels: range.levels.ok_or_else(|| named().hint("show = \"range\" compares its means"))?,
             means: range.means,
             half_width: Vec::new(),
         });

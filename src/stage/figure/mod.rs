@@ -17,19 +17,25 @@
 //! | `half-normal` | a screening, or an anova | `effects`, `limits`, or `anova` and `fit` |
 //! | `convergence`, `solutions` | solutions | `history`; `solution`, `solution_set` |
 //! | `verification` | a verification | `summary`, `runs` |
+//! | `xy`, `histogram`, `box`, `heat-map` | any result | the columns named by `x`, `y`, `by`, `value` of the table `table` |
+//! | `curves` | runs, or the results of a simulator on a design | `curve` of every run |
 //! | `dag` | the last stages to be shown | nothing: it shows the workflow |
 //!
 //! A picture depends on the numbers it draws, on its labels (symbols and units of the factors and responses it draws)
 //! and on its style: on nothing else, so it is drawn anew when, and only when, one of these changed.
 
 mod config;
+mod curves;
 mod design;
 mod flow;
 mod model;
+mod own;
+mod plot;
 mod run;
 mod solution;
 mod source;
 
+use super::beside::Beside;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::presentation::Picture as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
@@ -40,6 +46,8 @@ use serde_json::json;
 use std::collections::BTreeMap;
 
 pub use config::{Figure, Names, Show, Width};
+pub use plot::{Bars, Direction, Fit};
+use plot::{Labels, Plot};
 
 /// A factor or response as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -86,6 +94,14 @@ struct Params {
     series: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     band: Option<f64>,
+    /// Which columns are drawn, by figures of a user's own columns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    plot: Option<Plot>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    labels: Labels,
+    /// The group of each curve: its number and name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    groups: Vec<(usize, String)>,
     /// The stages of a graph.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     outline: Vec<Outline>,
@@ -130,14 +146,27 @@ impl Stage for Figure {
         if !(4.0..=30.0).contains(&points) {
             found.push(Complaint::new("points", format!("{points} points is no size of text")).hint("4 to 30"));
         }
+        found.extend(Plot::of(self).check(self.show, &|key| self.without_effect(key)));
         if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
             found.push(self.without_effect("band"));
         }
         found
     }
 
+    fn beside(&self, _context: &Context, found: &mut Beside) {
+        if let Some(path) = &self.overlay {
+            found.file("overlay", path);
+        }
+    }
+
     fn next(&self, known: &Known) -> Result<Step, StageError> {
+        let plot = self.show.is_plot().then(|| Plot::of(self));
+        let labels = plot.as_ref().map(|plot| plot.labels(self.show, known.context, &self.names)).unwrap_or_default();
+        let runs = if self.show == Show::Curves { curves::runs(self, known)? } else { curves::Runs::default() };
         let params = Params {
+            plot,
+            labels,
+            groups: runs.groups,
             show: self.show,
             width: self.width.millimetres(),
             points: self.points.unwrap_or(8.0),
@@ -153,6 +182,13 @@ impl Stage for Figure {
             return Ok(Step::Finish(Task::new(Self::WORKS[0].name, json!(params))));
         }
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
+        if let Some(path) = &self.overlay {
+            task.files.push(known.library.file("overlay", path)?);
+        }
+        if self.show == Show::Curves {
+            task.inputs = runs.inputs;
+            return Ok(Step::Finish(task));
+        }
         for port in ["of", "compare"] {
             for input in known.port(port) {
                 task = task.input(port, input.content);
@@ -268,8 +304,10 @@ impl Kind for Figure {
     /// 5: several targets of a solution set one below the other; circles of PNG files without the system's cosines.
     /// 6: descriptions in plain letters, without stray blanks. 7: a stage named after its kind says it once; force
     /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
-    /// units than their factors and responses are converted and no longer taken as they stand; the numbers of curves stand below one another.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 8, run: draw }];
+    /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
+    /// where a screening has an error to test against; discs in a round outline; the numbers of curves stand below one
+    /// another.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 9, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -295,6 +333,11 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Convergence => Box::new(solution::convergence(&params, &sources)?),
         Show::Solutions => Box::new(solution::solutions(&params, &sources)?),
         Show::Verification => Box::new(solution::verification(&params, &sources)?),
+        Show::Xy => Box::new(own::xy(&params, &sources, job)?),
+        Show::Curves => Box::new(own::curves(&params, &sources, job)?),
+        Show::Histogram => Box::new(own::histogram(&params, &sources)?),
+        Show::Box => Box::new(own::boxes(&params, &sources)?),
+        Show::HeatMap => Box::new(own::heat_map(&params, &sources)?),
         Show::Dag => Box::new(flow::dag(&params.outline)),
     };
     let style = Style { points: params.points, map: params.colors, ..Style::wide(params.width) };

@@ -207,8 +207,10 @@ struct Effects {
     normal: Vec<f64>,
     half_normal: Vec<f64>,
     error: f64,
-    margin: Option<f64>,
+    margin: Option<(String, f64)>,
     simultaneous: Option<f64>,
+    /// Effects over their standard errors, with the critical value as the margin.
+    standardized: bool,
 }
 
 fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
@@ -217,14 +219,29 @@ fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
     let which = rows_of(&effects.response, &response.key)?;
     let mine = rows_of(&limits.response, &response.key)?;
     let limit = |values: &[f64]| pick(values, &mine).first().copied().filter(|value| value.is_finite());
+    let names = pick(&effects.term, &which).iter().map(|t| term_label(t, params)).collect();
+    let (normal, half_normal) = (pick(&effects.normal, &which), pick(&effects.half_normal, &which));
+    if let Some(critical) = limit(&limits.critical) {
+        return Ok(Effects {
+            names,
+            values: pick(&effects.standardized, &which),
+            normal,
+            half_normal,
+            error: 1.0,
+            margin: Some(("critical value".to_owned(), critical)),
+            simultaneous: None,
+            standardized: true,
+        });
+    }
     Ok(Effects {
-        names: pick(&effects.term, &which).iter().map(|t| term_label(t, params)).collect(),
+        names,
         values: pick(&effects.effect, &which),
-        normal: pick(&effects.normal, &which),
-        half_normal: pick(&effects.half_normal, &which),
+        normal,
+        half_normal,
         error: limit(&limits.pse).unwrap_or(f64::NAN),
-        margin: limit(&limits.margin),
+        margin: limit(&limits.margin).map(|margin| ("margin of error".to_owned(), margin)),
         simultaneous: limit(&limits.simultaneous),
+        standardized: false,
     })
 }
 
@@ -273,6 +290,7 @@ fn chi_plot(params: &Params, source: Source) -> Result<EffectPlot, StageError> {
         coordinates: if degrees == 1 { Coordinates::HalfNormal } else { Coordinates::Chi(degrees as usize) },
         effects: effects.iter().map(effect).collect(),
         error: residual.map_or(f64::NAN, |i| (squares[i] / df[i] as f64).sqrt()),
+        standardized: false,
         margin: None,
     })
 }
@@ -299,7 +317,7 @@ fn effect_plot(
     coordinates: Coordinates,
     places: Vec<(f64, f64)>,
 ) -> Result<EffectPlot, StageError> {
-    let active = found.values.iter().map(|e| found.margin.is_some_and(|m| e.abs() > m));
+    let active = found.values.iter().map(|e| found.margin.as_ref().is_some_and(|(_, m)| e.abs() > *m));
     let effects = places.into_iter().zip(found.names).zip(active);
     let effect = |(((size, quantile), name), active)| Effect { name, size, quantile, active };
     Ok(EffectPlot {
@@ -307,7 +325,8 @@ fn effect_plot(
         coordinates,
         effects: effects.map(effect).collect(),
         error: found.error,
-        margin: found.margin.map(|m| ("margin of error".to_owned(), m)),
+        margin: found.margin,
+        standardized: found.standardized,
     })
 }
 
@@ -360,11 +379,17 @@ pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, S
         value: found.values[i].abs(),
         published: None,
     };
-    let limits = [("margin of error", found.margin), ("simultaneous margin", found.simultaneous)];
+    let simultaneous = found.simultaneous.map(|limit| ("simultaneous margin".to_owned(), limit));
+    let plain = || Quantity { unit: String::new(), ..response.quantity() };
+    let quantity = if found.standardized {
+        plain().worded("Standardized effect on")
+    } else {
+        response.quantity().worded("Absolute effect on")
+    };
     Ok(RankedBars {
         title: format!("Effects on {}", response.key),
-        quantity: response.quantity().worded("Absolute effect on"),
+        quantity,
         bars: (0..found.values.len()).map(bar).collect(),
-        references: limits.into_iter().filter_map(|(name, v)| v.map(|v| (name.to_owned(), v))).collect(),
+        references: found.margin.into_iter().chain(simultaneous).collect(),
     })
 }

@@ -10,7 +10,7 @@ use figure::chains::{Chains, Link};
 use figure::cracks::{Crack, Cracks, Moment};
 use figure::curve::{Curve, StressStrain};
 use figure::rose::Rose;
-use figure::specimen::Specimen;
+use figure::specimen::{Outline, Specimen};
 use math::elementary::atan2;
 
 /// Metres to millimetres.
@@ -76,6 +76,11 @@ fn domain(specimen: &StoredSpecimen) -> ([f64; 2], [f64; 2]) {
     ([-w, -h], [w, h])
 }
 
+/// Shape of a specimen.
+fn outline(specimen: &StoredSpecimen) -> Outline {
+    if specimen.outline == "disc" { Outline::Disc } else { Outline::Rectangle }
+}
+
 /// Polygons of the aggregate in mm.
 fn outlines(specimen: &StoredSpecimen) -> Vec<Vec<[f64; 2]>> {
     let corners: Vec<(&i64, &[f64; 2])> = specimen.polygon_of.iter().zip(&specimen.vertices).collect();
@@ -96,6 +101,7 @@ pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
     let groups = used.iter().map(|&number| stored.groups[number as usize].clone()).collect();
     let (low, high) = domain(&stored);
     Ok(Specimen {
+        outline: outline(&stored),
         low,
         high,
         centres: stored.centres.rows().into_iter().map(|c| [c[0] * MM, c[1] * MM]).collect(),
@@ -106,19 +112,28 @@ pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
     })
 }
 
-/// Lower left and upper right corner of a domain, and the polygons in it.
-type Ground = ([f64; 2], [f64; 2], Vec<Vec<[f64; 2]>>);
+/// What cracks and forces are drawn in.
+struct Ground {
+    outline: Outline,
+    /// Lower left corner in mm.
+    low: [f64; 2],
+    /// Upper right corner in mm.
+    high: [f64; 2],
+    /// Outlines of the aggregate in mm.
+    polygons: Vec<Vec<[f64; 2]>>,
+}
 
 /// Domain and polygons: of the specimen when it is given, else around the points.
 fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
     if let Some(specimen) = sources.compare.first() {
         let specimen = StoredSpecimen::from_artifact(specimen.0)?;
         let (low, high) = domain(&specimen);
-        return Ok((low, high, outlines(&specimen)));
+        return Ok(Ground { outline: outline(&specimen), low, high, polygons: outlines(&specimen) });
     }
     let around = figure::scene::Rect::around(points.iter().copied());
     let r = around.ok_or_else(|| StageError::new("there is nothing to draw").hint("the run has no cracks"))?;
-    Ok(([r.left, r.top], [r.right, r.bottom], Vec::new()))
+    let (low, high) = ([r.left, r.top], [r.right, r.bottom]);
+    Ok(Ground { outline: Outline::Rectangle, low, high, polygons: Vec::new() })
 }
 
 /// Names of the modes, and the cracks with the strain at which they opened.
@@ -163,9 +178,9 @@ pub(super) fn cracks(sources: &Sources) -> Result<Cracks, StageError> {
     ];
     let until = |strain: f64| list.iter().filter(|(s, _)| *s <= strain).map(|(_, c)| *c).collect::<Vec<_>>();
     let points: Vec<[f64; 2]> = list.iter().map(|(_, c)| c.at).collect();
-    let (low, high, outlines) = ground(sources, &points)?;
+    let Ground { outline, low, high, polygons } = ground(sources, &points)?;
     let moments = moments.into_iter().map(|(title, strain)| Moment { title, cracks: until(strain) }).collect();
-    Ok(Cracks { low, high, modes: names, moments, outlines })
+    Ok(Cracks { outline, low, high, modes: names, moments, outlines: polygons })
 }
 
 pub(super) fn rose(sources: &Sources) -> Result<Rose, StageError> {
@@ -199,7 +214,7 @@ pub(super) fn chains(sources: &Sources) -> Result<Chains, StageError> {
     let links: Option<Vec<Link>> = (0..force.len()).filter(|&i| forces.state[i] == peak).map(link).collect();
     let links = links.ok_or_else(|| StageError::new("the forces name discs that the run does not have"))?;
     let points: Vec<[f64; 2]> = links.iter().flat_map(|l| [l.from, l.to]).collect();
-    let (low, high, _) = ground(sources, &points)?;
+    let Ground { outline, low, high, .. } = ground(sources, &points)?;
     let when = "at the greatest stress of the states kept".into();
-    Ok(Chains { low, high, links, when, unit: "kN/m".into(), least: 1.0 })
+    Ok(Chains { outline, low, high, links, when, unit: "kN/m".into(), least: 1.0 })
 }

@@ -2,14 +2,14 @@ use super::*;
 use crate::artifact::calibration::{
     Alternatives, Evaluations, Prediction, Solution, Solved, Summary, Verification, VerifiedRuns,
 };
+use crate::artifact::range::{LevelValues, Levels, Range, Ranges};
 use crate::artifact::run::{CrackMode, Cracks, Curve, Forces, Responses, Run, States};
 use crate::artifact::specimen::Specimen;
 use crate::artifact::statistics::{
-    Anova, Coefficients, Domains, Effects, Fits, LevelValues, Limits, Paths, PrincipalAxes, Range, Ranges, Remarks,
-    Residuals, Screening, Selections, Stationary, Surfaces, Variances,
+    Anova, Coefficients, Domains, Effects, Fits, Limits, Paths, PrincipalAxes, Remarks, Residuals, Screening,
+    Selections, Stationary, Surfaces, Variances,
 };
-use crate::artifact::{ContentHash, Numbered};
-use crate::artifact::{Group, Node};
+use crate::artifact::{ContentHash, Group, Node, Numbered, Values};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use ndarray::{Array2, Array3};
 use std::sync::Arc;
@@ -39,7 +39,7 @@ fn range_analysis() -> Artifact {
         missing: vec![0; 3],
     };
     let level = Numbered(vec![vec![10.0, 0.5, 1.0], vec![20.0, 1.0, 2.0], vec![f64::NAN, 1.5, 3.0]]);
-    let levels = LevelValues { factor, unit: words(["GPa", "", ""]), level };
+    let levels = LevelValues { factor, unit: words(["GPa", "", ""]), level: Levels::Numbers(level) };
     Range { range, levels, notes: Remarks::default() }.to_artifact()
 }
 
@@ -144,6 +144,7 @@ fn surfaces() -> Artifact {
         selection: Selections::default(),
         notes: Remarks::default(),
         models: BTreeMap::new(),
+        with_constant: None,
         predictions: None,
     };
     surfaces.to_artifact()
@@ -172,6 +173,7 @@ fn screening() -> Artifact {
         term: words(["Ec", "mu", "Ec*mu"]),
         effect: vec![9.0, -3.0, 0.4],
         std_error: vec![f64::NAN; 3],
+        standardized: vec![f64::NAN; 3],
         p: vec![f64::NAN; 3],
         lenth_t: vec![1.0; 3],
         rank: vec![1, 2, 3],
@@ -180,8 +182,15 @@ fn screening() -> Artifact {
         normal: vec![0.97, -0.97, 0.0],
         half_normal: vec![1.38, 0.67, 0.21],
         verdict: words(["", "", ""]),
+        significance: words(["", "", ""]),
     };
-    let limits = Limits { response: words(["UCS"]), pse: vec![0.6], margin: vec![2.3], simultaneous: vec![f64::NAN] };
+    let limits = Limits {
+        response: words(["UCS"]),
+        pse: vec![0.6],
+        margin: vec![2.3],
+        simultaneous: vec![f64::NAN],
+        critical: vec![f64::NAN],
+    };
     let (fit, notes) = (Fits::default(), Remarks::default());
     Screening { effects, limits, fit, notes, residuals: residuals() }.to_artifact()
 }
@@ -316,7 +325,7 @@ fn made(text: &str, from: &[Artifact], compare: &[Artifact]) -> Result<Artifact,
         .collect();
     let (stop, say) = (AtomicBool::new(false), |_: crate::stage::Progress| ());
     draw(&Job {
-        params: &task.params,
+        params: &task.params.value(),
         seed: None,
         inputs: &inputs,
         files: &[],
@@ -470,4 +479,84 @@ fn what_an_input_lacks_is_named() {
     assert_eq!(said(residuals, empty), "anova.anova: wanted table, found nothing ()");
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec', 'null']";
     assert_eq!(said(contour, surfaces()), "the surface of `UCS` does not depend on `null` (it depends on Ec, mu)");
+}
+
+/// A sweep: five strengths, two ratios, three packings each.
+fn sweep() -> Artifact {
+    let rows: Vec<(f64, f64, f64)> = [1.0, 4.0]
+        .into_iter()
+        .flat_map(|ratio| [1.0, 5.0, 15.0, 20.0, 30.0].map(|s| (ratio, s)))
+        .flat_map(|(ratio, s)| [-1.0, 0.0, 1.0].map(|packing| (ratio, s, packing)))
+        .collect();
+    let pick = |f: fn(&(f64, f64, f64)) -> f64| rows.iter().map(f).collect::<Vec<f64>>();
+    let runs = table()
+        .reals_column("Ec", "GPa", "", pick(|r| r.1))
+        .reals_column("mu", "", "", pick(|r| r.0))
+        .reals_column("UCS", "MPa", "", pick(|r| r.1 / (1.0 + r.0) * (1.0 + 0.02 * r.2)))
+        .texts_column("cement", "", rows.iter().map(|r| if r.2 > 0.0 { "slag" } else { "OPC" }.to_owned()).collect())
+        .reals_column("stiffness", "Pa", "", pick(|r| 1e9 * r.1));
+    artifact("results", vec![("runs", runs)])
+}
+
+#[test]
+fn plots_of_own_columns_hold_the_numbers_of_the_table() {
+    let numbers = |picture: &Artifact, name: &str| picture.table("data").unwrap().shown(name).unwrap().0;
+    let text = "show = 'xy'\nof = 'a'\nx = 'Ec'\ny = 'UCS'\nby = 'mu'\nfit = 'through-origin'\nbars = 'deviation'";
+    let xy = made(text, &[sweep()], &[]).unwrap();
+    // Means of the three packings, bars of one deviation: 2 % of the mean.
+    let (y, low) = (numbers(&xy, "UCS"), numbers(&xy, "low"));
+    assert!((y[0] - 0.5).abs() < 1e-12 && (low[0] - 0.49).abs() < 1e-12, "{} {}", y[0], low[0]);
+    let kinds = |p: &Artifact| match &p.table("data").unwrap().column("kind").unwrap().values {
+        Values::Texts(kinds) => kinds.clone(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(kinds(&xy).iter().filter(|k| *k == "point").count(), 10);
+    // The lines start at the origin and have the slopes 1/2 and 1/5.
+    let lines: Vec<usize> = (0..y.len()).filter(|&i| kinds(&xy)[i] == "line").collect();
+    let x = numbers(&xy, "Ec");
+    assert_eq!((x[lines[0]], y[lines[0]]), (0.0, 0.0));
+    let end = lines[lines.len() - 1];
+    assert!((y[end] / x[end] - 0.2).abs() < 1e-3, "{}", y[end] / x[end]);
+
+    let heat = made("show = 'heat-map'\nof = 'a'\nx = 'Ec'\ny = 'mu'\nvalue = 'UCS'", &[sweep()], &[]).unwrap();
+    assert_eq!((numbers(&heat, "UCS").len(), numbers(&heat, "mu")[0], numbers(&heat, "Ec")[1]), (10, 1.0, 5.0));
+    assert!((numbers(&heat, "scatter")[0] - 0.01).abs() < 1e-12);
+
+    let boxes = made("show = 'box'\nof = 'a'\ny = 'UCS'\nby = 'cement'", &[sweep()], &[]).unwrap();
+    assert_eq!(boxes.table("data").unwrap().shown("n").unwrap().0, [20.0, 10.0]);
+    let bins = made("show = 'histogram'\nof = 'a'\nx = 'stiffness'\nbins = 5", &[sweep()], &[]).unwrap();
+    assert_eq!(numbers(&bins, "count").iter().sum::<f64>(), 30.0);
+    // Pascal are told in the unit that the field uses.
+    assert_eq!(bins.table("data").unwrap().column("stiffness_to").unwrap().unit, "GPa");
+
+    let curves = made("show = 'curves'\nof = ['a', 'b']", &[run(), run()], &[]).unwrap();
+    // Two equal runs under one name: their mean is the curve itself, without scatter.
+    let mean: Vec<usize> = (0..kinds(&curves).len()).filter(|&i| kinds(&curves)[i] == "line").collect();
+    let (low, high) = (numbers(&curves, "low"), numbers(&curves, "high"));
+    assert!(mean.len() > 100 && mean.iter().all(|&i| low[i] == high[i]), "{}", mean.len());
+    assert_eq!(curves.table("data").unwrap().column("stress").unwrap().unit, "MPa");
+    assert_eq!(numbers(&curves, "axial_strain")[1], 5e-3);
+}
+
+#[test]
+fn plots_say_what_they_lack() {
+    let said =
+        |text: &str| settings(text).check(&context()).into_iter().map(|c| c.message).collect::<Vec<_>>().join("; ");
+    assert_eq!(said("show = 'xy'\nof = 'a'\nx = 'Ec'"), "`xy` needs `y`, the name of a column");
+    assert_eq!(
+        said("show = 'histogram'\nof = 'a'\nx = 'Ec'\nby = 'mu'\nfit = 'line'"),
+        "`by` has no effect on a figure that shows `histogram`; `fit` has no effect on a figure that shows `histogram`"
+    );
+    assert_eq!(
+        said("show = 'range'\nof = 'a'\nresponse = 'UCS'\nx = 'Ec'"),
+        "`x` has no effect on a figure that shows `range`"
+    );
+    assert!(said("show = 'xy'\nof = 'a'\nx = 'Ec'\ny = 'UCS'\nconfidence = 0.9").contains("without `fit`"));
+    let fails = |text: &str| match made(text, &[sweep()], &[]) {
+        Err(Failure::Failed(e)) => e.message,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(fails("show = 'xy'\nof = 'a'\nx = 'Ec'\ny = 'UCT'"), "the table has no column `UCT`");
+    assert!(fails("show = 'xy'\nof = 'a'\nx = 'cement'\ny = 'UCS'").contains("holds words"));
+    assert!(fails("show = 'box'\nof = 'a'\ny = 'UCS'\nwhere = { cement = 'gypsum' }").contains("no row"));
 }

@@ -42,8 +42,12 @@ pub(in super::super) fn check_predict(predict: Option<&Predict>, context: &Conte
 /// Every response at every point that gives all its factors.
 fn asked(found: &[(&Fitting, Regression)], predict: &Predict) -> Vec<(String, usize, Prediction)> {
     let ask = |(fitting, regression): &'_ (&Fitting, Regression), number: usize| {
-        let point: Option<Vec<f64>> =
-            regression.model.axes.iter().map(|axis| predict.at[number].get(&axis.name).copied()).collect();
+        let point: Option<Vec<f64>> = regression
+            .model
+            .axes
+            .iter()
+            .map(|axis| fitting.columns.value_at(&axis.name, &predict.at[number]))
+            .collect();
         Some((fitting.response.clone(), number, regression.model.predict(&point?, predict.confidence)))
     };
     found.iter().flat_map(|own| (0..predict.at.len()).filter_map(move |number| ask(own, number))).collect()

@@ -27,7 +27,10 @@ impl Rows {
             return Err(StageError::new("the design has no rows of known factors"));
         }
         if let Some(column) = columns.iter().find(|column| matches!(column.values, Values::Texts(_))) {
-            return Err(StageError::new(format!("factor `{}` holds texts", column.name)));
+            let message = format!("factor `{}` has names for levels, which no simulator can set", column.name);
+            return Err(
+                StageError::new(message).hint("export the design, run it, and read the results with kind = \"data\"")
+            );
         }
         let value = |column: &Column, index: usize| match &column.values {
             Values::Reals(values) => values[index] + 0.0,

@@ -1,8 +1,9 @@
 //! Quantities told row by row (`value,unit`, in SI units) in the units that people read them in.
 //!
-//! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`; another quantity in pascal the
-//! prefix that leaves one to three digits before the point, a length below a decimetre millimetres.
+//! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`, another quantity that of the
+//! field ([`super::super::units`]).
 
+use super::super::units::shown_unit;
 use crate::unit::Conversion;
 use figure::column::{Column, Digits, Values};
 use std::collections::BTreeMap;
@@ -47,16 +48,7 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
 
 /// The unit to show a value in, and the conversion to it; its own where it cannot be shown in the one that is wanted.
 fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, Conversion) {
-    let prefixed = match value.abs() {
-        size if unit == "Pa" && (1e3..1e6).contains(&size) => "kPa",
-        size if unit == "Pa" && (1e6..1e9).contains(&size) => "MPa",
-        size if unit == "Pa" && size >= 1e9 => "GPa",
-        size if unit == "m" && size < 0.1 => "mm",
-        _ => unit,
-    };
-    let shown = wanted.map_or(prefixed, String::as_str);
-    match Conversion::between(unit, shown) {
-        Ok(conversion) => (shown.to_owned(), conversion),
-        Err(_) => (unit.to_owned(), Conversion::NONE),
-    }
+    let shown = shown_unit(wanted, unit, value);
+    let conversion = Conversion::between(unit, &shown).unwrap_or(Conversion::NONE);
+    (shown, conversion)
 }

@@ -1,10 +1,11 @@
 //! The journals as read so far.
 
 use super::record::{CONTENT, KEY, RECORD, from_version_1, pack, unpack, word};
-use super::{FOLDER, HEAD, MOST, Segments, is_name, read_head};
+use super::{FOLDER, HEAD, MOST, Segments, is_name, read_head, writer_of};
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::store::disk::Disk;
 use crate::store::folder::{self, Folder, Strange};
+use crate::store::lock::is_alive;
 use crate::store::mark::Mark;
 use crate::store::{Origin, Record, StoreError};
 use std::collections::HashMap;
@@ -18,8 +19,10 @@ use std::time::{Duration, Instant};
 const MOST_ALIKE: usize = 8;
 /// Longer than the step of any file system's times.
 const TIME_STEP: Duration = Duration::from_secs(2);
-/// Segments of other machines whose locks do not reach here are looked at as often.
+/// Segments whose writers may be alive where locks do not reach are looked at as often.
 const LOOK_EACH: Duration = Duration::from_millis(500);
+/// A segment that has grown so lately is looked at each time.
+const BUSY: Duration = Duration::from_secs(12);
 /// Bytes of a segment that are read at once.
 const BLOCK: usize = RECORD << 13;
 
@@ -49,6 +52,8 @@ struct Seen {
     origin: u32,
     version: u32,
     writer: Writer,
+    /// When it was last seen to have grown.
+    grew: Option<Instant>,
 }
 
 /// Who may still append to a segment.
@@ -58,7 +63,7 @@ enum Writer {
     Ended,
     /// It holds the lock, so it is alive.
     Near,
-    /// Its lock is free, which says nothing about another machine.
+    /// Its lock is free, which says nothing where locks do not reach all nodes: its writer may be alive.
     Far,
 }
 
@@ -117,7 +122,11 @@ impl Index {
         if far {
             self.far = Some(Instant::now());
         }
-        let looks = |seen: &Seen| seen.writer == Writer::Near || (far && seen.writer == Writer::Far);
+        let looks = |seen: &Seen| match seen.writer {
+            Writer::Near => true,
+            Writer::Far => far || seen.grew.is_some_and(|when| when.elapsed() < BUSY),
+            Writer::Ended => false,
+        };
         let growing: Vec<String> =
             self.segments.iter().filter(|(_, seen)| looks(seen)).map(|(name, _)| name.clone()).collect();
         for name in growing.into_iter().chain(self.new_segments(disk, &folder)?) {
@@ -157,10 +166,12 @@ impl Index {
     /// Reads a segment from where it was left.
     fn read_on(&mut self, folder: &Folder, name: &str, own: bool) -> io::Result<()> {
         let mut file = folder.open(name, false)?;
+        folder::ask_anew(&file);
         folder::bounded(&file, MOST)?;
-        let mut seen = match self.segments.get(name) {
-            Some(seen) => *seen,
-            None => match self.begin(&mut file, own)? {
+        let known = self.segments.get(name).copied();
+        let mut seen = match known {
+            Some(seen) => seen,
+            None => match self.begin(&mut file, name, own)? {
                 Some(seen) => seen,
                 // Its head is not there yet.
                 None => return Ok(()),
@@ -169,13 +180,14 @@ impl Index {
         if file.metadata()?.len() >= seen.end + RECORD as u64 {
             file.seek(SeekFrom::Start(seen.end))?;
             seen.end += self.read_records(&mut file, &seen)?;
+            seen.grew = known.map(|_| Instant::now());
         }
         self.segments.insert(name.to_owned(), seen);
         Ok(())
     }
 
     /// Reads the head of a new segment.
-    fn begin(&mut self, file: &mut File, own: bool) -> io::Result<Option<Seen>> {
+    fn begin(&mut self, file: &mut File, name: &str, own: bool) -> io::Result<Option<Seen>> {
         // Asked before reading: what a dead process has written is all there is.
         let alive = file.try_lock_shared().is_err();
         let mut head = [0; HEAD];
@@ -187,11 +199,11 @@ impl Index {
         let writer = match () {
             () if own => Writer::Ended,
             () if alive => Writer::Near,
-            () if origin.machine != self.machine => Writer::Far,
+            () if origin.machine != self.machine || writer_of(name).is_some_and(is_alive) => Writer::Far,
             () => Writer::Ended,
         };
         self.origins.push(Arc::new(origin));
-        Ok(Some(Seen { end: HEAD as u64, origin: (self.origins.len() - 1) as u32, version, writer }))
+        Ok(Some(Seen { end: HEAD as u64, origin: (self.origins.len() - 1) as u32, version, writer, grew: None }))
     }
 
     /// Takes in the whole records that follow in a file; returns their length.

@@ -21,11 +21,11 @@ impl Packing {
             Self::Porosity { sizes, porosity, floaters } => {
                 porosity_faults::<S>("porosity", *porosity, &mut faults);
                 share_fault("floaters", *floaters, &mut faults);
-                size_faults::<S>(sizes, &mut faults);
+                size_faults(sizes, &mut faults);
             }
             Self::Stress { sizes, target } => {
                 target_faults::<S>(target, &mut faults);
-                size_faults::<S>(sizes, &mut faults);
+                size_faults(sizes, &mut faults);
             }
             Self::Lattice { lattice, radius } => {
                 need(&mut faults, *radius > 0.0, "radius", *radius, "a positive length");
@@ -112,7 +112,7 @@ fn target_faults<S: Space>(target: &StressTarget, faults: &mut Vec<PackingError>
     need(faults, (1e-6..=0.1).contains(&equilibrium), "equilibrium", equilibrium, "between 1e-6 and 0.1");
 }
 
-fn size_faults<S: Space>(sizes: &Sizes, faults: &mut Vec<PackingError>) {
+fn size_faults(sizes: &Sizes, faults: &mut Vec<PackingError>) {
     match sizes.size {
         Size::Mean(mean) => need(faults, mean > 0.0, "mean_radius", mean, "a positive length"),
         Size::Smallest(smallest) => need(faults, smallest > 0.0, "smallest_radius", smallest, "a positive length"),

@@ -86,3 +86,24 @@ fn the_books_do_not_depend_on_threads() {
     };
     assert_eq!(run(1), run(3));
 }
+
+/// A run that is granted more threads and loses them again, in the middle of a stretch, has the books of one that has one.
+#[test]
+fn the_books_do_not_depend_on_when_the_threads_change() {
+    let model = block::<D2>(20, 28, 2.0);
+    let run = |threads: [usize; 4]| {
+        let mut engine = Engine::new(&model).unwrap();
+        engine.install_bonds(1e-5, 7).unwrap();
+        engine.keep_books();
+        for threads in threads {
+            engine.set_threads(threads);
+            engine.advance(331).unwrap();
+        }
+        measure::energy(&engine)
+    };
+    let alone = run([1; 4]);
+    assert!(alone.damping > 0.0 && alone.boundary != 0.0);
+    for threads in [[1, 3, 3, 1], [2, 1, 4, 3]] {
+        assert_eq!(run(threads), alone, "{threads:?}");
+    }
+}

@@ -41,6 +41,7 @@ fn families() -> Vec<Family> {
         crate::energy::family(),
         crate::curve::family(),
         crate::genesis::family(),
+        crate::moduli::family(),
     ]
 }
 

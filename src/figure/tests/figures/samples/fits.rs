@@ -29,6 +29,7 @@ pub(super) fn effect_plot(coordinates: Coordinates) -> EffectPlot {
         active: effects[i].abs() > 6.7,
     };
     EffectPlot {
+        standardized: false,
         response: Quantity::new("Filtration rate", "", "gal/h"),
         coordinates,
         effects: order.iter().enumerate().map(effect).collect(),

@@ -3,7 +3,8 @@
 use figure::chains::{Chains, Link};
 use figure::cracks::{Crack, Cracks, Moment};
 use figure::rose::Rose;
-use figure::specimen::Specimen;
+use figure::solid::{Cut, Penny, Solid};
+use figure::specimen::{Outline, Specimen};
 use math::random::Stream;
 
 type Polygon = Vec<[f64; 2]>;
@@ -68,6 +69,7 @@ pub(super) fn specimen(ratio: f64) -> Specimen {
         row += 1;
     }
     Specimen {
+        outline: Outline::Rectangle,
         low: [0.0, 0.0],
         high: [w, h],
         centres,
@@ -100,6 +102,7 @@ pub(super) fn cracks() -> Cracks {
         moment("70 % after the peak", 2400, 0.8),
     ];
     Cracks {
+        outline: Outline::Rectangle,
         low: [0.0, 0.0],
         high: [100.0, 200.0],
         modes: vec!["tensile crack".into(), "shear crack".into()],
@@ -134,5 +137,109 @@ pub(super) fn chains() -> Chains {
             }
         }
     }
-    Chains { low: s.low, high: s.high, links, when: String::new(), unit: "kN".into(), least: 0.5 }
+    Chains {
+        outline: Outline::Rectangle,
+        low: s.low,
+        high: s.high,
+        links,
+        when: String::new(),
+        unit: "kN".into(),
+        least: 0.5,
+    }
+}
+
+/// A Brazilian disc of 50 mm that splits along its diameter.
+pub(super) fn disc_cracks() -> Cracks {
+    let mut random = Stream::new(6, "disc", 0);
+    let mut moment = |title: &str, n: usize| {
+        let crack = |_| {
+            let along = random.uniform() < 0.9;
+            let y = random.uniform_in(-24.0, 24.0);
+            let x = if along { 0.6 * random.normal() } else { random.uniform_in(-12.0, 12.0) };
+            let angle = 1.57 + if along { 0.3 } else { 0.9 } * random.normal();
+            Crack { at: [x, y], angle, length: 0.5, mode: usize::from(y.abs() > 21.0 && random.uniform() < 0.6) }
+        };
+        Moment { title: title.into(), cracks: (0..n).map(crack).collect() }
+    };
+    let moments = vec![moment("80 % of the peak", 30), moment("peak", 110), moment("after the peak, 60 %", 420)];
+    let modes = vec!["tensile crack".into(), "shear crack".into()];
+    Cracks { outline: Outline::Disc, low: [-25.0; 2], high: [25.0; 2], modes, moments, outlines: Vec::new() }
+}
+
+/// The disc itself.
+pub(super) fn disc() -> Specimen {
+    let (mut centres, mut radii) = (Vec::new(), Vec::new());
+    let mut random = Stream::new(6, "grains", 0);
+    for row in -40..=40 {
+        for column in -40..=40 {
+            let x = 0.64 * (f64::from(column) + 0.5 * f64::from(row & 1)) + 0.05 * random.normal();
+            let y = 0.56 * f64::from(row);
+            if x.hypot(y) < 24.7 {
+                centres.push([x, y]);
+                radii.push(0.3 + 0.02 * random.uniform());
+            }
+        }
+    }
+    let group = vec![0; radii.len()];
+    let (outline, groups) = (Outline::Disc, vec!["rock".into()]);
+    Specimen { outline, low: [-25.0; 2], high: [25.0; 2], centres, radii, group, groups, outlines: Vec::new() }
+}
+
+/// A cube of 150 mm of mortar with large and small aggregate.
+pub(super) fn cube(cut: Option<f64>) -> Solid {
+    let mut random = Stream::new(8, "cube", 0);
+    let (mut centres, mut radii, mut group) = (Vec::new(), Vec::new(), Vec::new());
+    let mut stones: Vec<([f64; 3], f64)> = Vec::new();
+    for radius in [16.0, 12.0, 8.0] {
+        for _ in 0..400 {
+            let at: [f64; 3] = std::array::from_fn(|_| random.uniform_in(radius, 150.0 - radius));
+            let apart = |(other, r): &([f64; 3], f64)| distance(at, *other) > r + radius + 2.0;
+            if stones.len() < 60 && stones.iter().all(apart) {
+                stones.push((at, radius));
+            }
+        }
+    }
+    for k in 0..30_usize.pow(3) {
+        let cell = [k % 30, k / 30 % 30, k / 900];
+        let at = cell.map(|c| 5.0 * c as f64 + 2.5 + 0.6 * random.normal());
+        if stones.iter().all(|(stone, r)| distance(at, *stone) > *r) {
+            centres.push(at);
+            radii.push(2.4 + 0.3 * random.normal());
+            group.push(0);
+        }
+    }
+    for (at, radius) in stones {
+        centres.push(at);
+        radii.push(radius);
+        group.push(1);
+    }
+    Solid {
+        low: [0.0; 3],
+        high: [150.0; 3],
+        centres,
+        radii,
+        group,
+        groups: vec!["mortar".into(), "aggregate".into()],
+        cut: cut.map(|at| Cut { axis: 1, at }),
+        ..Solid::default()
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+/// Two inclined bands of cracks in a prism.
+pub(super) fn prism_cracks() -> Solid {
+    let mut random = Stream::new(8, "prism", 0);
+    let crack = |k: usize| {
+        let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let (x, y) = (random.uniform_in(2.0, 48.0), random.uniform_in(2.0, 48.0));
+        let z = 50.0 + side * 1.4 * (x - 25.0) + 3.0 * random.normal();
+        let normal = [1.0, 0.4 * random.normal(), -side * 0.6 + 0.3 * random.normal()];
+        Penny { at: [x, y, z.clamp(1.0, 99.0)], normal, radius: 1.1, mode: usize::from(random.uniform() < 0.25) }
+    };
+    let cracks = (0..700).map(crack).collect();
+    let modes = vec!["tensile crack".into(), "shear crack".into()];
+    Solid { low: [0.0; 3], high: [50.0, 50.0, 100.0], cracks, modes, ..Solid::default() }
 }

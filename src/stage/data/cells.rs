@@ -1,0 +1,155 @@
+//! Heads and cells of a table of text: names with units, numbers, words for missing values.
+
+use super::super::StageError;
+use super::dialect::{Decimal, is_number};
+use crate::artifact::Table;
+use crate::unit::Unit;
+
+/// Words that stand for no value where the workflow names none.
+const MISSING: [&str; 8] = ["NA", "N/A", "n/a", "NaN", "nan", "null", "-", "–"];
+
+/// How cells are read.
+pub(super) struct Cells<'a> {
+    pub decimal: Decimal,
+    pub missing: Option<&'a [String]>,
+}
+
+/// Adds one column to the table.
+pub(super) fn column(table: Table, head: &str, cells: Vec<String>, how: &Cells) -> Result<Table, StageError> {
+    let (name, unit) = name_and_unit(head)?;
+    if name.is_empty() || table.column(name).is_some() {
+        return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
+    }
+    let numbers: Option<Vec<f64>> = cells.iter().map(|cell| how.number(cell)).collect();
+    if let Some(values) = numbers {
+        return Ok(table.reals_column(name, unit, "", values));
+    }
+    how.check_words(name, unit, &cells)?;
+    let words = cells.into_iter().map(|cell| if how.is_missing(&cell) { String::new() } else { cell });
+    Ok(table.texts_column(name, "", words.collect()))
+}
+
+/// `UCS [MPa]`, `UCS (MPa)`, `UCS/MPa` or `UCS`. A bracket or stroke that holds no unit, as in `kn/ks`, is part of the name.
+fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
+    if let Some((name, unit)) = head.split_once('[') {
+        let alone = unit.trim_end().strip_suffix(']').filter(|unit| !unit.contains(['[', ']']));
+        let unit = alone.map(str::trim).ok_or_else(|| {
+            StageError::new(format!("column `{head}`: the unit must stand alone in brackets at the end"))
+                .hint("write for example `Ec [GPa]`")
+        })?;
+        Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
+        return Ok((name.trim(), unit));
+    }
+    let known = |unit: &str| !unit.is_empty() && unit != "1" && Unit::parse(unit).is_ok();
+    let round = head.strip_suffix(')').and_then(|rest| rest.split_once('(')).filter(|(name, _)| !name.ends_with('/'));
+    // the first stroke: a unit may hold another, as in `v / m/s`
+    let stroke = head.split_once('/').filter(|(_, unit)| is_plain_unit(bare(unit.trim())));
+    let both = [round, stroke].into_iter().flatten().map(|(name, unit)| (name.trim(), unit.trim()));
+    let found = both.into_iter().find(|(name, unit)| !name.is_empty() && known(bare(unit)));
+    Ok(found.map_or((head, ""), |(name, unit)| (name, bare(unit))))
+}
+
+/// Whether a text behind a stroke is surely a unit: `ks` and `t` are units too, but `kn/ks` and `R/t` are ratios.
+fn is_plain_unit(unit: &str) -> bool {
+    let marked = unit.contains(|c: char| c.is_uppercase() || c.is_ascii_digit() || "%°µ/".contains(c));
+    marked || ["m", "cm", "mm", "g", "kg", "s", "ms", "min", "rad", "deg"].contains(&unit)
+}
+
+/// `(kg/m^3)` of the head `density/(kg/m^3)`.
+fn bare(unit: &str) -> &str {
+    unit.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).unwrap_or(unit)
+}
+
+impl Cells<'_> {
+    fn is_missing(&self, cell: &str) -> bool {
+        match self.missing {
+            Some(words) => cell.is_empty() || words.iter().any(|word| word == cell),
+            None => cell.is_empty() || MISSING.contains(&cell),
+        }
+    }
+
+    /// The number of a cell, NaN for a missing one.
+    fn number(&self, cell: &str) -> Option<f64> {
+        if self.is_missing(cell) {
+            return Some(f64::NAN);
+        }
+        let text = match self.decimal {
+            Decimal::Point => cell.to_owned(),
+            Decimal::Comma if cell.contains('.') => return None,
+            Decimal::Comma => cell.replacen(',', ".", 1),
+        };
+        // a true minus sign, as word processors write it
+        let text = text.replacen('−', "-", 1);
+        is_number(&text).then(|| text.parse().ok()).flatten()
+    }
+
+    /// Cells that keep a column of numbers from being one: thousands separators, and words in a column with a unit.
+    fn check_words(&self, name: &str, unit: &str, cells: &[String]) -> Result<(), StageError> {
+        let wrong = cells.iter().enumerate().find(|(_, cell)| self.number(cell).is_none());
+        let Some((row, cell)) = wrong else { return Ok(()) };
+        if let Some((row, cell)) =
+            cells.iter().enumerate().find(|(_, cell)| self.number(cell).is_none() && grouped(cell))
+        {
+            let message = format!("row {}: `{name}` is `{cell}`, a number with a thousands separator", row + 1);
+            let hint = "remove the separators from the file: the same signs stand for decimals elsewhere, and a guess would \
+                        be wrong by a thousand";
+            return Err(StageError::new(message).hint(hint));
+        }
+        let numbers = cells.iter().filter(|cell| !self.is_missing(cell) && self.number(cell).is_some()).count();
+        if unit.is_empty() || numbers == 0 {
+            return Ok(());
+        }
+        let message = format!("row {}: `{name}` [{unit}] is `{cell}`, which is no number", row + 1);
+        Err(StageError::new(message)
+            .hint(format!("correct it, or say `missing = [\"{cell}\"]` if it stands for no value")))
+    }
+}
+
+/// `1.234,5`, `1,234.5`, `1 234`, `1'234`: digits in groups of three, with signs between them.
+fn grouped(cell: &str) -> bool {
+    let separator = |c: char| matches!(c, ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '’' | ',' | '.');
+    let body = cell.strip_prefix(['-', '+', '−']).unwrap_or(cell);
+    let parts: Vec<&str> = body.split(separator).collect();
+    let digits = |part: &&str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    let [first, rest @ ..] = parts.as_slice() else { return false };
+    // the last part may be decimals
+    let groups = &rest[..rest.len().saturating_sub(1)];
+    let last = rest.last().is_some_and(digits);
+    !rest.is_empty()
+        && (1..=3).contains(&first.len())
+        && digits(first)
+        && last
+        && groups.iter().all(|g| g.len() == 3)
+        && groups.iter().all(digits)
+        && (!groups.is_empty() || rest.last().is_some_and(|last| last.len() == 3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_stand_in_three_ways() {
+        let read = |head| name_and_unit(head).unwrap();
+        assert_eq!(read("UCS [MPa]"), ("UCS", "MPa"));
+        assert_eq!(read("UCS (MPa)"), ("UCS", "MPa"));
+        assert_eq!(read("UCS/MPa"), ("UCS", "MPa"));
+        assert_eq!(read("v / m/s"), ("v", "m/s"));
+        assert_eq!(read("density/(kg/m^3)"), ("density", "kg/m^3"));
+        assert_eq!(read("d/mm"), ("d", "mm"));
+        assert_eq!(read("kn/ks"), ("kn/ks", ""));
+        assert_eq!(read("R/t"), ("R/t", ""));
+        assert_eq!(read("strength (mean)"), ("strength (mean)", ""));
+        assert_eq!(read("nu"), ("nu", ""));
+    }
+
+    #[test]
+    fn separators_of_thousands_are_told_from_decimals() {
+        for cell in ["1.234,5", "1,234.5", "12 345", "1'234", "-1.234.567"] {
+            assert!(grouped(cell), "{cell}");
+        }
+        for cell in ["1.5", "12.34", "A1", "2024-01-01", "1234.567", "CEM I", "1..234"] {
+            assert!(!grouped(cell), "{cell}");
+        }
+    }
+}

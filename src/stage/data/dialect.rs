@@ -1,0 +1,196 @@
+//! How a text file writes its table: encoding, delimiter, decimal sign; detected from the bytes, or fixed by settings.
+
+use super::super::StageError;
+use super::super::sheet::below_comments;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What stands between two cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Delimiter {
+    /// `,`
+    Comma,
+    /// `;`
+    Semicolon,
+    /// A tabulator.
+    Tab,
+    /// `|`
+    Bar,
+}
+
+/// What stands before the decimals of a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Decimal {
+    /// `1.5`
+    #[default]
+    Point,
+    /// `1,5`
+    Comma,
+}
+
+/// How letters are written as bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Encoding {
+    /// Unicode in one to four bytes.
+    #[serde(rename = "utf-8")]
+    Utf8,
+    /// Unicode in pairs of bytes, the lower one first.
+    #[serde(rename = "utf-16")]
+    Utf16,
+    /// The Windows code page of western Europe, which holds ISO 8859-1.
+    #[serde(rename = "windows-1252")]
+    Windows1252,
+}
+
+/// How a file is read; what is `None` is detected.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Dialect {
+    /// What stands between cells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delimiter: Option<Delimiter>,
+    /// What stands before decimals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decimal: Option<Decimal>,
+    /// How letters are written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub encoding: Option<Encoding>,
+    /// Words that stand for no value, beside an empty cell; `None` takes the usual ones.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missing: Option<Vec<String>>,
+    /// The sheet of a workbook.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sheet: Option<String>,
+}
+
+impl Delimiter {
+    const ALL: [Self; 4] = [Self::Comma, Self::Semicolon, Self::Tab, Self::Bar];
+
+    /// The byte.
+    pub fn byte(self) -> u8 {
+        match self {
+            Self::Comma => b',',
+            Self::Semicolon => b';',
+            Self::Tab => b'\t',
+            Self::Bar => b'|',
+        }
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Comma => "comma",
+            Self::Semicolon => "semicolon",
+            Self::Tab => "tab",
+            Self::Bar => "bar",
+        }
+    }
+}
+
+/// The text of a file, and what was detected that is not plain UTF-8.
+pub(super) fn decode(bytes: &[u8], fixed: Option<Encoding>) -> Result<(String, Option<String>), StageError> {
+    let marked = |mark: &[u8]| bytes.strip_prefix(mark);
+    let (encoding, body, mark) = match (marked(b"\xEF\xBB\xBF"), marked(b"\xFF\xFE"), marked(b"\xFE\xFF")) {
+        (Some(body), ..) => (encoding_rs::UTF_8, body, true),
+        (_, Some(body), _) => (encoding_rs::UTF_16LE, body, true),
+        (.., Some(body)) => (encoding_rs::UTF_16BE, body, true),
+        _ if fixed.is_none() && std::str::from_utf8(bytes).is_err() => (encoding_rs::WINDOWS_1252, bytes, false),
+        _ => (encoding_rs::UTF_8, bytes, false),
+    };
+    let asked = match fixed {
+        None => encoding,
+        Some(Encoding::Utf8) => encoding_rs::UTF_8,
+        Some(Encoding::Utf16) if encoding == encoding_rs::UTF_16BE => encoding,
+        Some(Encoding::Utf16) => encoding_rs::UTF_16LE,
+        Some(Encoding::Windows1252) => encoding_rs::WINDOWS_1252,
+    };
+    // a mark of another encoding than asked for is part of the text, and its letters show that
+    let body = if asked == encoding { body } else { bytes };
+    let text = asked.decode_without_bom_handling_and_without_replacement(body).ok_or_else(|| {
+        StageError::new(format!("the file is not written in {}", asked.name()))
+            .hint("encoding = \"utf-8\", \"utf-16\" or \"windows-1252\"; leave the key out to have it detected")
+    })?;
+    let detected = (fixed.is_none() && (encoding != encoding_rs::UTF_8 || mark))
+        .then(|| format!("encoding {}{}", encoding.name(), if mark { " (its mark stands at the start)" } else { "" }));
+    Ok((text.into_owned(), detected))
+}
+
+/// The delimiter under which all lines have the same number of cells, the greatest such number.
+pub(super) fn delimiter(text: &str) -> Delimiter {
+    let (body, _) = below_comments(text);
+    let score = |delimiter: Delimiter| {
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter.byte())
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(body.as_bytes());
+        let widths: Vec<usize> = reader.records().take(200).flatten().map(|record| record.len()).collect();
+        let first = widths.first().copied().unwrap_or(1);
+        let even = first > 1 && widths.iter().all(|w| *w == first);
+        // where no delimiter is even, the one that parts the first line most is the one whose lines are at fault
+        (even, first)
+    };
+    let best = Delimiter::ALL.into_iter().reduce(|a, b| if score(b) > score(a) { b } else { a });
+    best.unwrap_or(Delimiter::Comma)
+}
+
+/// The decimal sign that the cells use.
+pub(super) fn decimal<'a>(cells: impl Iterator<Item = &'a str> + Clone) -> Result<Decimal, StageError> {
+    let with = |sign: char, other: char| {
+        let number = move |cell: &&str| {
+            let body = cell.strip_prefix(['-', '+']).unwrap_or(cell);
+            !body.contains(other) && body.contains(sign) && is_number(&body.replacen(sign, ".", 1))
+        };
+        cells.clone().filter(number).collect::<Vec<_>>()
+    };
+    let (commas, points) = (with(',', '.'), with('.', ','));
+    match (commas.first(), points.first()) {
+        (None, _) => Ok(Decimal::Point),
+        (Some(comma), Some(point)) => Err(StageError::new(format!(
+            "`{comma}` has a decimal comma and `{point}` a decimal point; one of them may be a thousands separator"
+        ))
+        .hint("write all numbers in one way, or say `decimal = \"comma\"` or `decimal = \"point\"`")),
+        (Some(first), None) if commas.iter().all(|cell| could_be_thousands(cell)) => Err(StageError::new(format!(
+            "`{first}` may be a number with three decimals or one with a thousands separator, and no cell settles it"
+        ))
+        .hint("say `decimal = \"comma\"` if the comma stands before decimals, and remove thousands separators")),
+        (Some(_), None) => Ok(Decimal::Comma),
+    }
+}
+
+/// `1,234` or `12,345`: one to three digits without a leading zero, then three.
+fn could_be_thousands(cell: &str) -> bool {
+    let body = cell.strip_prefix(['-', '+']).unwrap_or(cell);
+    let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+    body.split_once(',').is_some_and(|(before, after)| {
+        (1..=3).contains(&before.len())
+            && !before.starts_with('0')
+            && after.len() == 3
+            && digits(before)
+            && digits(after)
+    })
+}
+
+/// Whether a text is a finite number in plain notation.
+pub(super) fn is_number(text: &str) -> bool {
+    let sane = text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b));
+    sane && text.parse::<f64>().is_ok_and(f64::is_finite)
+}
+
+/// What a reader of a table is told of the way it was read; nothing where that is the usual way.
+pub(super) fn said(encoding: Option<String>, delimiter: Option<Delimiter>, decimal: Option<Decimal>) -> Option<String> {
+    let cells = delimiter.filter(|d| *d != Delimiter::Comma).map(|d| {
+        format!(
+            "cells parted by {}",
+            match d {
+                Delimiter::Tab => "tabulators".to_owned(),
+                d => format!("{}s `{}`", d.word(), char::from(d.byte())),
+            }
+        )
+    });
+    let comma = decimal.filter(|d| *d == Decimal::Comma).map(|_| "decimal commas".to_owned());
+    let all: Vec<String> = [encoding, cells, comma].into_iter().flatten().collect();
+    let keys = "the keys `encoding`, `delimiter` and `decimal` fix it";
+    (!all.is_empty()).then(|| format!("detected: {}; {keys}", all.join(", ")))
+}

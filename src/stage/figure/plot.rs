@@ -1,0 +1,207 @@
+//! Settings of plots of a user's own columns: `xy`, `curves`, `histogram`, `box`, `heat-map`.
+
+use super::super::{Complaint, Context};
+use super::{Figure, Label, Show};
+use figure::axis::Scale;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A line through the points of a plot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fit {
+    /// Least squares with a constant.
+    Line,
+    /// Least squares through the origin.
+    ThroughOrigin,
+}
+
+/// What the bars of a plot show, over the rows that agree in `x` and `by`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bars {
+    /// One standard deviation to both sides of the mean.
+    Deviation,
+    /// The confidence interval of the mean.
+    Interval,
+}
+
+/// Which columns of a table are drawn, and how. Every key has its own figures; where it has no effect it is refused.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Plot {
+    /// Column along the page (`xy`, `curves`, `heat-map`), or the quantity of a `histogram`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x: Option<String>,
+    /// Column up the page (`xy`, `curves`, `box`), or down a `heat-map`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y: Option<String>,
+    /// Column in the cells of a `heat-map`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<String>,
+    /// Column by whose values points, curves or boxes are grouped.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
+    /// Table of the result that the columns are in; its main table when not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table: Option<String>,
+    /// Only rows in which these columns have these values.
+    #[serde(rename = "where", skip_serializing_if = "BTreeMap::is_empty")]
+    pub only: BTreeMap<String, String>,
+    /// Line through the points of each group of an `xy`, with its confidence band.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fit: Option<Fit>,
+    /// Mean and bars in place of the points of an `xy` that share their `x`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bars: Option<Bars>,
+    /// Coverage of bands and bars, 0.95 when not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<f64>,
+    /// Axes with equal ratios: `["x"]`, `["y"]` or both.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub log: Vec<Direction>,
+    /// Join the points of each group of an `xy`.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub joined: bool,
+    /// CSV or workbook, beside the workflow, whose columns `x` and `y` are drawn over the others (`xy`, `curves`).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overlay: Option<String>,
+    /// Number of bins of a `histogram`; chosen from the scatter when not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bins: Option<usize>,
+}
+
+/// One of the two axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Direction {
+    /// Along the page.
+    X,
+    /// Up the page.
+    Y,
+}
+
+/// Columns as they are drawn: by their key in [`Plot`].
+pub(super) type Labels = BTreeMap<String, Label>;
+
+impl Plot {
+    /// The keys of a stage that describe a plot.
+    pub(super) fn of(figure: &Figure) -> Self {
+        Self {
+            x: figure.x.clone(),
+            y: figure.y.clone(),
+            value: figure.value.clone(),
+            by: figure.by.clone(),
+            table: figure.table.clone(),
+            only: figure.only.clone(),
+            fit: figure.fit,
+            bars: figure.bars,
+            confidence: figure.confidence,
+            log: figure.log.clone(),
+            joined: figure.joined,
+            overlay: figure.overlay.clone(),
+            bins: figure.bins,
+        }
+    }
+
+    /// Names and values of the keys that were given.
+    fn given(&self) -> Vec<&'static str> {
+        let keys = [
+            ("x", self.x.is_some()),
+            ("y", self.y.is_some()),
+            ("value", self.value.is_some()),
+            ("by", self.by.is_some()),
+            ("table", self.table.is_some()),
+            ("where", !self.only.is_empty()),
+            ("fit", self.fit.is_some()),
+            ("bars", self.bars.is_some()),
+            ("confidence", self.confidence.is_some()),
+            ("log", !self.log.is_empty()),
+            ("joined", self.joined),
+            ("overlay", self.overlay.is_some()),
+            ("bins", self.bins.is_some()),
+        ];
+        keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
+    }
+
+    /// Keys that a figure needs, and keys that it can have beside them.
+    fn keys(show: Show) -> (&'static [&'static str], &'static [&'static str]) {
+        match show {
+            Show::Xy => {
+                (&["x", "y"], &["by", "table", "where", "fit", "bars", "confidence", "log", "joined", "overlay"])
+            }
+            Show::Curves => (&[], &["x", "y", "by", "overlay"]),
+            Show::Histogram => (&["x"], &["table", "where", "bins"]),
+            Show::Box => (&["y"], &["by", "table", "where", "log"]),
+            Show::HeatMap => (&["x", "y", "value"], &["table", "where"]),
+            _ => (&[], &[]),
+        }
+    }
+
+    /// Complaints about keys without effect, and keys that are missing.
+    pub(super) fn check(&self, show: Show, idle: &dyn Fn(&str) -> Complaint) -> Vec<Complaint> {
+        let (needs, takes) = Self::keys(show);
+        let given = self.given();
+        let without = given.iter().filter(|key| !needs.contains(key) && !takes.contains(key)).map(|key| idle(key));
+        let missing = needs.iter().filter(|key| !given.contains(key)).map(|key| {
+            Complaint::new("show", format!("`{}` needs `{key}`, the name of a column", show.name()))
+                .hint(format!("{key} = \"UCS\""))
+        });
+        let mut found: Vec<Complaint> = without.chain(missing).collect();
+        if self.confidence.is_some() && self.fit.is_none() && self.bars != Some(Bars::Interval) {
+            let message = "`confidence` has no effect without `fit` or `bars = \"interval\"`";
+            found.push(Complaint::new("confidence", message).hint("leave out `confidence`"));
+        }
+        found.extend(self.confidence.and_then(|c| super::super::columns::check_probability("confidence", c)));
+        found.extend(
+            self.bins
+                .filter(|bins| !(1..=200).contains(bins))
+                .map(|bins| Complaint::new("bins", format!("{bins} bins cannot be drawn")).hint("1 to 200")),
+        );
+        found
+    }
+
+    pub(super) fn scale(&self, direction: Direction) -> Scale {
+        if self.log.contains(&direction) { Scale::Log } else { Scale::Linear }
+    }
+
+    pub(super) fn coverage(&self) -> f64 {
+        self.confidence.unwrap_or(0.95)
+    }
+
+    /// Labels of the columns that are drawn.
+    pub(super) fn labels(&self, show: Show, context: &Context, names: &BTreeMap<String, String>) -> Labels {
+        let curve = |key: &str| match (show, key) {
+            (Show::Curves, "x") => Some("axial_strain".to_owned()),
+            (Show::Curves, "y") => Some("stress".to_owned()),
+            _ => None,
+        };
+        let columns = [("x", &self.x), ("y", &self.y), ("value", &self.value), ("by", &self.by)];
+        let label = |(key, column): (&str, &Option<String>)| {
+            let column = column.clone().or_else(|| curve(key))?;
+            Some((key.to_owned(), label(&column, context, names)))
+        };
+        columns.into_iter().filter_map(label).collect()
+    }
+}
+
+/// Words for columns that runs always have.
+const KNOWN: [(&str, &str, &str); 4] = [
+    ("axial_strain", "Axial strain", r"\varepsilon_1"),
+    ("lateral_strain", "Lateral strain", r"\varepsilon_3"),
+    ("volumetric_strain", "Volumetric strain", r"\varepsilon_v"),
+    ("stress", "Axial stress", r"\sigma"),
+];
+
+/// A column as it is drawn: a factor or response with its symbol and unit, any other by its name.
+fn label(column: &str, context: &Context, names: &BTreeMap<String, String>) -> Label {
+    let factor = context.factors.get(column).map(|f| (f.symbol.clone(), f.unit.clone()));
+    let response = context.responses.get(column).map(|r| (r.symbol.clone(), r.unit.clone()));
+    let known = KNOWN.iter().find(|(name, ..)| *name == column);
+    let declared = factor.or(response);
+    let words = known.filter(|_| declared.is_none()).map(|(_, words, symbol)| (*words, *symbol));
+    let (symbol, unit) = declared.unwrap_or_else(|| (words.map_or("", |w| w.1).to_owned(), String::new()));
+    let name = names.get(column).cloned().or_else(|| words.map(|w| w.0.to_owned())).unwrap_or_default();
+    Label { key: column.to_owned(), name, symbol, unit, ..Label::default() }
+}
