@@ -81,7 +81,7 @@ impl Cells for Array2<f64> {
     }
     fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread> {
         let there = |axis: &&str| table.column(&format!("{name}_{axis}")).is_some();
-        let axes = if AXES.iter().all(|axis| there(&axis)) { &AXES[..] } else { &AXES[..2] };
+        let axes = if AXES.iter().all(there) { &AXES[..] } else { &AXES[..2] };
         let columns = axes.iter().map(|axis| table.numbers(&format!("{name}_{axis}"), unit));
         let columns = columns.collect::<Result<Vec<_>, _>>()?;
         Ok(Array2::from_shape_fn((table.rows(), axes.len()), |(row, axis)| columns[axis][row]))

@@ -48,7 +48,7 @@ pub enum Unread {
         /// The unit that was wanted.
         wanted: String,
         /// What is wrong.
-        why: UnitError,
+        why: Box<UnitError>,
     },
 }
 
@@ -126,7 +126,7 @@ impl Column {
             name: self.name.clone(),
             found: if self.unit.is_empty() { "no unit".to_owned() } else { format!("`{}`", self.unit) },
             wanted: if unit.is_empty() { "as a pure number".to_owned() } else { format!("in `{unit}`") },
-            why,
+            why: Box::new(why),
         })?;
         Ok(conversion.of_all(values))
     }

@@ -24,7 +24,8 @@ impl Sheet {
     /// It is no text, has other separators, or a line has more or fewer cells than the first.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, StageError> {
         let text = std::str::from_utf8(bytes).map_err(|e| not_text(bytes, e.valid_up_to()))?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        // Programs that add a mark to a file may find one there.
+        let text = text.trim_start_matches('\u{feff}');
         Self::of(text, b',', separated_by_commas)
     }
 

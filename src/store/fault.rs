@@ -35,6 +35,8 @@ mod disk {
     }
 }
 
+pub(super) use disk::*;
+
 #[cfg(test)]
 mod disk {
     use super::{Step, io};
@@ -115,5 +117,3 @@ mod disk {
         sync()
     }
 }
-
-pub(super) use disk::*;

@@ -173,7 +173,7 @@ fn short_names(objects: &Folder, shard: &str) -> Vec<Short> {
 }
 
 fn state(stat: &Stat) -> [u64; 3] {
-    [stat.st_ino, stat.st_ctime as u64, stat.st_ctime_nsec as u64]
+    [stat.st_ino, stat.st_ctime as u64, stat.st_ctime_nsec]
 }
 
 fn pack(mark: &Mark, shards: &[Shard<'_>]) -> Vec<u8> {

@@ -117,11 +117,14 @@ fn table(text: &str) {
     assert_eq!(again.columns, table.columns, "{written:?}");
 }
 
+/// A reader under test: its name, the texts to mutate, and what reads them.
+type Target = (&'static str, Vec<&'static str>, fn(&str));
+
 #[test]
 fn texts() {
     let number = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u64>().unwrap());
     let lines = |text: &'static str| text.lines().collect::<Vec<&str>>();
-    let targets: [(&str, Vec<&str>, fn(&str)); 3] = [
+    let targets: [Target; 3] = [
         ("unit", lines(include_str!("corpus/units.txt")), unit),
         ("formula", lines(include_str!("corpus/formulas.txt")), formula),
         ("table", include_str!("corpus/tables.txt").split("=====\n").collect(), table),

@@ -19,7 +19,7 @@ const PLATEN: Group = Group(1);
 fn block(columns: usize, rows: usize) -> Vec<Particle<D2>> {
     let pitch = 3.0_f64.sqrt() * RADIUS;
     let centre = |row: usize, column: usize| {
-        let shift = if row % 2 == 0 { 0.0 } else { RADIUS };
+        let shift = if row.is_multiple_of(2) { 0.0 } else { RADIUS };
         [2.0 * RADIUS * column as f64 + shift, RADIUS + pitch * row as f64]
     };
     let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));

@@ -20,7 +20,7 @@ fn block(cubes: [usize; 3]) -> Vec<Particle<D3>> {
     let half = 2.0_f64.sqrt() * RADIUS;
     let [x, y, z] = cubes.map(|count| 2 * count + 1);
     let sites = (0..x).flat_map(move |i| (0..y).flat_map(move |j| (0..z).map(move |k| [i, j, k])));
-    let occupied = sites.filter(|[i, j, k]| (i + j + k) % 2 == 0);
+    let occupied = sites.filter(|[i, j, k]| (i + j + k).is_multiple_of(2));
     let centre = |[i, j, k]: [usize; 3]| [half * i as f64, half * j as f64, RADIUS + half * k as f64];
     occupied.map(|site| Particle::ball(centre(site), RADIUS, 2500.0, GRAIN)).collect()
 }

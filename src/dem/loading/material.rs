@@ -217,9 +217,8 @@ impl Contact {
         let mut needed = if direct { vec![Kn, Ks] } else { vec![Modulus, Ratio] };
         needed.push(Parameter::Friction);
         if self.bond == BondKind::Parallel {
-            if self.has(BondKn) || self.has(BondKs) {
-                needed.extend([BondKn, BondKs]);
-            } else if direct && !self.has(BondModulus) {
+            let bond_direct = self.has(BondKn) || self.has(BondKs);
+            if bond_direct || (direct && !self.has(BondModulus)) {
                 needed.extend([BondKn, BondKs]);
             } else if direct && !self.has(Ratio) {
                 needed.push(BondRatio);

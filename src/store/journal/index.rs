@@ -143,13 +143,7 @@ impl Index {
     fn new_segments(&mut self, disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> {
         let fail = |error| disk.fail("list", &disk.root.join(FOLDER), error);
         let stat = folder.stat().map_err(fail)?;
-        let state = [
-            stat.st_ino,
-            stat.st_mtime as u64,
-            stat.st_mtime_nsec as u64,
-            stat.st_ctime as u64,
-            stat.st_ctime_nsec as u64,
-        ];
+        let state = [stat.st_ino, stat.st_mtime as u64, stat.st_mtime_nsec, stat.st_ctime as u64, stat.st_ctime_nsec];
         // Times of files move in steps, so what has not been seen for a while may change again without showing it.
         let since = self.looked.filter(|(before, _)| *before == state).map(|(_, since)| since);
         if since.is_some_and(|since| since.elapsed() > TIME_STEP) {
