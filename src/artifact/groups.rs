@@ -2,7 +2,7 @@
 
 use super::field::table_of;
 use super::statistics::Remarks;
-use super::{Artifact, ArtifactKind, Table, Wanted};
+use super::{Artifact, ArtifactKind, Field, Table, Wanted};
 
 crate::artifact! {
     /// One fit for each group of rows. The tables `groups` and `residuals` have, after the column of the response, the
@@ -24,6 +24,14 @@ impl Groups {
     /// The artifact holds no fits by groups.
     pub fn table(artifact: &Artifact) -> Result<&Table, Wanted> {
         table_of(artifact, "groups")
+    }
+
+    /// The residuals of an artifact, without the columns that the groups were made by.
+    ///
+    /// # Errors
+    /// The artifact holds no residuals of fits by groups.
+    pub fn residuals(artifact: &Artifact) -> Result<GroupResiduals, Wanted> {
+        Field::take(&artifact.root, "residuals", "")
     }
 }
 

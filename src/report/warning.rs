@@ -3,6 +3,7 @@
 
 use super::paper::Part;
 use crate::artifact::calibration::{Prediction, Solution, Summary, Verification};
+use crate::artifact::groups::{GroupResiduals, Groups};
 use crate::artifact::results::Results;
 use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
 use crate::artifact::{Artifact, Node, Wanted};
@@ -48,6 +49,9 @@ fn judged(artifact: &Artifact) -> Result<Vec<String>, Wanted> {
     } else if artifact.is(Surfaces::KIND) {
         let Surfaces { fit, residuals, coefficients, .. } = Surfaces::from_artifact(artifact)?;
         found.extend(fits(&fit).into_iter().chain(flags(&residuals)).chain(inflation(&coefficients)));
+    } else if artifact.is(Groups::KIND) {
+        let GroupResiduals { response, row, flag, .. } = Groups::residuals(artifact)?;
+        found.extend(flags(&Residuals { response, row, flag, ..Residuals::default() }));
     } else if artifact.is(Solution::KIND) {
         found.extend(reach(&Solution::from_artifact(artifact)?.prediction));
     } else if artifact.is(Verification::KIND) {

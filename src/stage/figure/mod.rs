@@ -305,9 +305,9 @@ impl Kind for Figure {
     /// 6: descriptions in plain letters, without stray blanks. 7: a stage named after its kind says it once; force
     /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
-    /// where a screening has an error to test against; discs in a round outline; the numbers of curves stand below one
-    /// another.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 9, run: draw }];
+    /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
+    /// one another.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 10, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
