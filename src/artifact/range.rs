@@ -87,3 +87,21 @@ impl Cells for Levels {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_come_back_as_numbers_or_as_names() {
+        let texts = |values: [&str; 2]| values.map(String::from).to_vec();
+        let numbers = Levels::Numbers(Numbered(vec![vec![1.0, 10.0], vec![2.5, f64::NAN]]));
+        let names = Levels::Names(Numbered(vec![texts(["OPC", "10"]), texts(["slag", ""])]));
+        for (level, rows) in [(numbers, [Some(vec![1.0, 2.5]), Some(vec![10.0])]), (names, [None, Some(vec![10.0])])] {
+            let (factor, unit) = (texts(["a", "b"]), texts(["", "mm"]));
+            let table = LevelValues { factor, unit, level }.to_table();
+            let back = LevelValues::from_table(&table).unwrap();
+            assert_eq!([0, 1].map(|row| back.level.numbers(row)), rows);
+        }
+    }
+}

@@ -128,14 +128,14 @@ const DATA: &str = "a [GPa],b,y [MPa]\n1,10,11\n3,10,17\n1,30,19\n3,30,25.5\n";
 /// Stage and the first digits of the hash of its result, then work and version.
 const PINS: &str = "\
 specimen 3dc1aee5970f
-simulate 05d57011304d
+simulate 216b9c27fbe6
 design 4707cd1886b9
 formula c57272d7c660
 command ab7cb869a592
 data 76fbb067e6c6
 range c56236dde0d0
 anova 2a92fd32596a
-screening 3597a986b589
+screening a2868be9d3d3
 regression 5bbcfc4bea7d
 rsm 592833ad92f1
 calibrate e38b40d330ef
@@ -148,16 +148,17 @@ agreement 1
 anova 2
 calibrate 3
 command 1
-data 1
+data 2
 design 2
 effort 1
-figure 8
+figure 10
 fit 2
 formula 2
 gather 1
+groups 1
 range 2
-screening 2
-simulate 2
+screening 3
+simulate 3
 specimen 2
 table 4
 verify 1
