@@ -88,6 +88,33 @@ impl Cells for Array2<f64> {
     }
 }
 
+/// Numbered columns `NAME_1`, `NAME_2`, …, as many as there are: one list per column.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Numbered<T = f64>(pub Vec<Vec<T>>);
+
+impl<T> Cells for Numbered<T>
+where
+    Vec<T>: Cells,
+{
+    fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str) {
+        for (values, number) in self.0.iter().zip(1..) {
+            values.put(table, &format!("{name}_{number}"), unit, about);
+        }
+    }
+    fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread> {
+        let names = (1..).map(|number| format!("{name}_{number}"));
+        let there = names.take_while(|name| table.column(name).is_some());
+        there.map(|name| Cells::take(table, &name, unit)).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl Numbered {
+    /// The values of a row up to the first that is missing.
+    pub fn row(&self, row: usize) -> Vec<f64> {
+        self.0.iter().map(|column| column[row]).take_while(|value| value.is_finite()).collect()
+    }
+}
+
 /// Columns that only some tables have.
 impl<C: Cells> Cells for Option<C> {
     fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str) {

@@ -122,6 +122,49 @@ macro_rules! table {
     };
 }
 
+/// Declares a group of an artifact: a struct whose fields stand together below one name.
+///
+/// ```
+/// flow::group! {
+///     /// A law.
+///     pub struct Law {
+///         /// its coefficient
+///         pub coefficient: f64, "MPa";
+///     }
+/// }
+/// let mut root = flow::artifact::Group::new();
+/// flow::artifact::Field::put(&Law { coefficient: 2.0 }, &mut root, "law", "", "");
+/// assert_eq!(flow::artifact::Field::take(&root, "law", ""), Ok(Law { coefficient: 2.0 }));
+/// ```
+#[macro_export]
+macro_rules! group {
+    ($(#[$attribute:meta])* $visible:vis struct $name:ident {
+        $($(#[doc = $about:literal])* $field_visible:vis $field:ident : $type:ty, $unit:literal;)*
+    }) => {
+        $(#[$attribute])*
+        #[derive(Clone, Debug, PartialEq)]
+        $visible struct $name { $($(#[doc = $about])* $field_visible $field: $type,)* }
+
+        impl $crate::artifact::Field for $name {
+            fn put(&self, group: &mut $crate::artifact::Group, name: &str, _unit: &str, _about: &str) {
+                let mut own = $crate::artifact::Group::new();
+                $($crate::artifact::Field::put(
+                    &self.$field, &mut own, stringify!($field), $unit, concat!($($about),*).trim());)*
+                group.put(name, $crate::artifact::Node::Group(own));
+            }
+            fn take(
+                group: &$crate::artifact::Group,
+                name: &str,
+                unit: &str,
+            ) -> Result<Self, $crate::artifact::Wanted> {
+                let own = <$crate::artifact::Group as $crate::artifact::Field>::take(group, name, unit)?;
+                Ok(Self { $($field: $crate::artifact::Field::take(&own, stringify!($field), $unit)
+                    .map_err(|wanted| wanted.within(name))?,)* })
+            }
+        }
+    };
+}
+
 /// Checks kind and version; used by [`artifact!`](crate::artifact!).
 ///
 /// # Errors

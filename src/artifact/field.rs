@@ -1,8 +1,9 @@
 //! Values of typed artifacts: one [`Field`] per type of value, read back in the unit that the declaration names.
 
-use super::{Array, Group, Node, Table, Values};
+use super::{Array, Artifact, Group, Node, Table, Values};
 use crate::unit::Conversion;
 use ndarray::{Dimension, IxDyn};
+use std::collections::BTreeMap;
 
 /// Why a value could not be read as what was declared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -97,6 +98,28 @@ impl<F: Field> Field for Option<F> {
     }
     fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted> {
         group.get(name).map(|_| F::take(group, name, unit)).transpose()
+    }
+}
+
+/// Values by name, in the order of the names.
+impl<F: Field> Field for BTreeMap<String, F> {
+    fn put(&self, group: &mut Group, name: &str, unit: &str, about: &str) {
+        let mut own = Group::new();
+        self.iter().for_each(|(key, value)| value.put(&mut own, key, unit, about));
+        group.put(name, Node::Group(own));
+    }
+    fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted> {
+        let own = <Group as Field>::take(group, name, unit)?;
+        let one = |(key, _): (&str, &Node)| Ok((key.to_owned(), F::take(&own, key, unit)?));
+        own.iter().map(one).collect::<Result<_, Wanted>>().map_err(|wanted| wanted.within(name))
+    }
+}
+
+/// The table called `name` of an artifact, without a copy.
+pub(super) fn table_of<'a>(artifact: &'a Artifact, name: &str) -> Result<&'a Table, Wanted> {
+    match node(&artifact.root, name, "a table")? {
+        Node::Table(table) => Ok(table),
+        other => Err(Wanted::new(name, "a table", other.type_name())),
     }
 }
 

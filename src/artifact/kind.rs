@@ -30,6 +30,8 @@ impl ArtifactKind {
     pub const SCREENING: Self = Self::new("screening", 1).main("effects");
     /// Fitted models.
     pub const SURFACES: Self = Self::new("surfaces", 1).main("fit");
+    /// One fit for each group of rows.
+    pub const GROUPS: Self = Self::new("groups", 1).main("groups");
     /// Calibrated parameters.
     pub const SOLUTION: Self = Self::new("solution", 1).main("solution");
     /// Calibrated parameters on fresh specimens.

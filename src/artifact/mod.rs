@@ -6,17 +6,25 @@
 //!
 //! Typed artifacts are declared with [`artifact!`](crate::artifact!), one type per file, and convert to and from the tree.
 
+pub mod agreement;
+pub mod calibration;
 mod cells;
 mod declare;
+pub mod design;
 mod field;
+pub mod groups;
 mod key;
 mod kind;
 mod node;
+pub mod presentation;
+pub mod range;
 mod read;
+pub mod results;
 pub mod run;
 pub mod specimen;
+pub mod statistics;
 
-pub use cells::Cells;
+pub use cells::{Cells, Numbered};
 pub use declare::expect_kind;
 pub use field::{Field, Wanted};
 pub use key::{FirstBytes, Key};

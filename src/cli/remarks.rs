@@ -1,7 +1,8 @@
 //! What a reader must not miss at the end of a run: notes of the statistics, and runs that gave no result.
 
 use super::common::Campaign;
-use crate::artifact::{Artifact, Node, Table, Values};
+use crate::artifact::results::Results;
+use crate::artifact::{Artifact, Node, Table};
 use crate::run::{Report, StageStatus};
 use crate::store::Store;
 
@@ -42,7 +43,7 @@ fn notes(artifact: &Artifact) -> Option<String> {
 }
 
 fn failures(artifact: &Artifact) -> Option<String> {
-    let Values::Texts(failures) = &artifact.table("runs")?.column("failure")?.values else { return None };
+    let failures = Results::failures(Results::table(artifact).ok()?);
     let count = failures.iter().filter(|why| !why.is_empty()).count();
     (count > 0).then(|| format!("{count} of {} runs gave no result", failures.len()))
 }

@@ -75,17 +75,31 @@ impl Figure for StressStrain {
     }
 
     fn data(&self) -> Vec<Column> {
-        let mut columns = Vec::new();
-        for (i, c) in self.curves.iter().enumerate() {
-            let tag = if self.curves.len() == 1 { String::new() } else { format!("_{}", i + 1) };
-            columns.push(Column::reals(&format!("axial_strain{tag}"), c.axial.clone()));
-            if !c.lateral.is_empty() {
-                columns.push(Column::reals(&format!("lateral_strain{tag}"), c.lateral.clone()));
+        let all = |pick: &dyn Fn(&Curve) -> Vec<f64>| self.curves.iter().flat_map(pick).collect::<Vec<f64>>();
+        let padded =
+            |values: &[f64], rows: usize| (0..rows).map(|i| values.get(i).copied().unwrap_or(f64::NAN)).collect();
+        let number = |(i, c): (usize, &Curve)| vec![i as i64 + 1; c.axial.len()];
+        let mut columns = vec![
+            Column::whole("curve", self.curves.iter().enumerate().flat_map(number).collect()),
+            Column::reals("axial_strain", all(&|c| c.axial.clone())),
+            Column::reals("axial_stress", all(&|c| padded(&c.stress, c.axial.len()))).with_unit("MPa"),
+        ];
+        if self.has_lateral() {
+            columns.push(Column::reals("lateral_strain", all(&|c| padded(&c.lateral, c.axial.len()))));
+        }
+        let mut modes: Vec<&String> = Vec::new();
+        for (mode, _) in self.curves.iter().flat_map(|c| &c.cracks) {
+            if !modes.contains(&mode) {
+                modes.push(mode);
             }
-            columns.push(Column::reals(&format!("axial_stress{tag}"), c.stress.clone()).with_unit("MPa"));
-            for (mode, counts) in &c.cracks {
-                columns.push(Column::reals(&format!("cracks_{mode}{tag}"), counts.clone()));
-            }
+        }
+        // A column of counts is named after its mode.
+        for mode in modes {
+            let counts = |c: &Curve| {
+                let own = c.cracks.iter().find(|(own, _)| own == mode).map_or(&[][..], |(_, counts)| counts);
+                padded(own, c.axial.len())
+            };
+            columns.push(Column::reals(mode, all(&counts)));
         }
         columns
     }

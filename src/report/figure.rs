@@ -2,7 +2,7 @@
 
 use super::paper::{Paper, Part, capital};
 use super::{svg, values};
-use crate::artifact::{Artifact, Node};
+use crate::artifact::presentation::Picture;
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeMap;
 
@@ -47,16 +47,15 @@ const LARGE: usize = 600_000;
 /// A figure in the section of the stage that it shows.
 pub(super) fn figure(paper: &Paper, part: &Part, glyphs: &mut Glyphs) -> Markup {
     let Some(artifact) = part.artifact() else { return super::stage::missing(paper, part) };
-    let (title, description) = (text(artifact, "title"), text(artifact, "description"));
-    let description = capital(description.trim_start_matches([':', ' ']));
-    let label = if description.is_empty() { title.to_owned() } else { format!("{title}. {description}") };
+    let Ok(drawn) = Picture::from_artifact(artifact) else { return unshown(part) };
+    let title = &drawn.title;
+    let description = capital(drawn.description.trim_start_matches([':', ' ']));
+    let label = if description.is_empty() { title.clone() } else { format!("{title}. {description}") };
     let show = part.settings["show"].as_str().unwrap_or_default();
     // Fields of colour with labels in them are shown on paper in both themes.
     let ground = if matches!(show, "contour" | "surface") { "paper" } else { "ink" };
-    let Some((picture, width, vector)) = picture(artifact, &label, glyphs) else {
-        return html! { p.missing { "The picture of " code { (part.name) } " cannot be shown." } };
-    };
-    let numbers = artifact.table("data").filter(|_| vector).and_then(|data| values::of(show, data, &paper.context));
+    let Some((picture, width, vector)) = picture(&drawn, &label, glyphs) else { return unshown(part) };
+    let numbers = Some(&drawn.data).filter(|_| vector).and_then(|data| values::of(show, data, &paper.context));
     html! {
         figure id={ "stage-" (part.name) } class=(if width > SINGLE { "double" } else { "single" }) {
             div class={ "plot " (ground) } { (picture) }
@@ -71,20 +70,13 @@ pub(super) fn figure(paper: &Paper, part: &Part, glyphs: &mut Glyphs) -> Markup 
     }
 }
 
-fn text<'a>(artifact: &'a Artifact, name: &str) -> &'a str {
-    match artifact.root.get(name) {
-        Some(Node::Text(text)) => text,
-        _ => "",
-    }
+fn unshown(part: &Part) -> Markup {
+    html! { p.missing { "The picture of " code { (part.name) } " cannot be shown." } }
 }
 
 /// The picture, its width in mm, and whether it is drawn in lines.
-fn picture(artifact: &Artifact, label: &str, glyphs: &mut Glyphs) -> Option<(Markup, f64, bool)> {
-    let svg = text(artifact, "svg");
-    let png = match artifact.root.get("png") {
-        Some(Node::Bytes(bytes)) => bytes.as_slice(),
-        _ => &[],
-    };
+fn picture(drawn: &Picture, label: &str, glyphs: &mut Glyphs) -> Option<(Markup, f64, bool)> {
+    let (svg, png) = (drawn.svg.as_str(), drawn.png.as_slice());
     let small = svg.len() <= LARGE || png.is_empty() || png.len() / 3 * 4 >= svg.len();
     if let Some((markup, [width, _])) = Some(svg).filter(|_| small).and_then(|svg| glyphs.inline(svg, label)) {
         return Some((markup, width, true));

@@ -1,5 +1,6 @@
 //! What the page shows, as plain data.
 
+use crate::artifact::results::Results;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash};
 use crate::stage::{Class, Context};
 use crate::store::{Campaign, Origin};
@@ -140,7 +141,7 @@ impl Part {
             return Some(1);
         }
         let many = artifact.is(ArtifactKind::RESULTS) || artifact.is(ArtifactKind::VERIFICATION);
-        let table = artifact.table("runs").filter(|_| many && self.class.computes());
+        let table = Results::table(artifact).ok().filter(|_| many && self.class.computes());
         table.map(crate::artifact::Table::rows)
     }
 }

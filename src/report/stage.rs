@@ -5,7 +5,7 @@ use super::paper::{Paper, Part, State, capital};
 use super::table::Sheet;
 use super::time::{duration, moment};
 use super::warning::warnings;
-use crate::artifact::{ArtifactKind, Table};
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::stage::calibrate::parameters_in_words;
 use crate::stage::figure::Figure as Picture;
 use crate::stage::table::Table as PrintedTable;
@@ -103,7 +103,7 @@ fn own(paper: &Paper, index: usize, members: &[usize]) -> Markup {
     let part = &paper.parts[index];
     let Some(artifact) = part.artifact() else { return html! {} };
     let all: Vec<(String, &Table)> = artifact.tables().into_iter().filter(|(_, table)| table.rows() > 0).collect();
-    let main = artifact_kind(artifact).and_then(ArtifactKind::main_table).unwrap_or_default();
+    let main = main_of(artifact);
     let printed = |name: &str| members.iter().any(|&member| prints(&paper.parts[member], index, name, main));
     let rest: Vec<&(String, &Table)> = all.iter().filter(|(name, _)| !printed(name) && !name.contains('/')).collect();
     let is_open =
@@ -125,6 +125,11 @@ fn own(paper: &Paper, index: usize, members: &[usize]) -> Markup {
             }
         }
     }
+}
+
+/// The name of the table of an artifact that people look at first; empty where there is none.
+fn main_of(artifact: &Artifact) -> &'static str {
+    artifact_kind(artifact).and_then(ArtifactKind::main_table).unwrap_or_default()
 }
 
 fn names(tables: &[&&(String, &Table)]) -> String {
@@ -161,7 +166,9 @@ fn member(paper: &Paper, index: usize, glyphs: &mut Glyphs) -> Markup {
 }
 
 fn printed(paper: &Paper, part: &Part) -> Markup {
-    let Some(table) = part.artifact().and_then(|artifact| artifact.table("table")) else { return missing(paper, part) };
+    let Some(table) = part.artifact().and_then(|artifact| artifact.table(main_of(artifact))) else {
+        return missing(paper, part);
+    };
     let caption = part.settings["caption"].as_str().unwrap_or_default();
     let caption = html! { b { (part.words()) } " " (caption) };
     let command = paper.command("show", &format!("{} --table table", part.name));

@@ -2,6 +2,7 @@
 
 use super::page::STYLE;
 use super::{Cost, Paper, Part, State, page};
+use crate::artifact::presentation::Picture;
 use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use crate::stage::Context;
 use figure::dag::{Dag, Stage};
@@ -38,9 +39,15 @@ fn hostile() -> Paper {
     };
     let results = Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table())));
     let printed = Artifact::of(ArtifactKind::TABLE, Group::new().with("table", Node::Table(table())));
-    let text = |text: &str| Node::Text(text.to_owned());
     let svg = format!("<svg viewBox=\"0 0 9 9\"><title>{HOSTILE}</title></svg>");
-    let picture = Group::new().with("title", text(HOSTILE)).with("description", text(HOSTILE)).with("svg", text(&svg));
+    let picture = Picture {
+        title: HOSTILE.to_owned(),
+        description: HOSTILE.to_owned(),
+        svg,
+        pdf: Vec::new(),
+        png: Vec::new(),
+        data: Table::default(),
+    };
     Paper {
         title: HOSTILE.to_owned(),
         about: HOSTILE.to_owned(),
@@ -53,7 +60,7 @@ fn hostile() -> Paper {
         parts: vec![
             part("first", "simulate", &[], Some(results)),
             part("printed", "table", &[0], Some(printed)),
-            part("picture", "figure", &[0], Some(Artifact::of(ArtifactKind::PICTURE, picture))),
+            part("picture", "figure", &[0], Some(picture.to_artifact())),
             part("later", "anova", &[0], None),
         ],
         runs: Vec::new(),

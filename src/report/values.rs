@@ -61,25 +61,33 @@ fn name_of(context: &Context, key: &str) -> String {
     super::symbol::raw(context, key).map_or_else(|| key.to_owned(), |s| Line::new(&format!("${s}$"), 1.0).plain)
 }
 
+/// The columns of curves that are no counts of cracks.
+const CURVE: [&str; 4] = ["curve", "axial_strain", "axial_stress", "lateral_strain"];
+
 fn curves(data: &Table) -> Option<Value> {
+    let numbers = data.ints(CURVE[0]).ok()?;
+    let (strain, stress) = (data.numbers(CURVE[1], "").ok()?, data.numbers(CURVE[2], "MPa").ok()?);
+    let lateral = data.numbers(CURVE[3], "").ok();
+    let modes = data.columns.iter().filter(|column| !CURVE.contains(&column.name.as_str()));
+    let modes: Vec<(&str, Vec<f64>)> =
+        modes.filter_map(|mode| Some((mode.name.as_str(), mode.numbers("").ok()?))).collect();
+    let several = numbers.last().is_some_and(|&last| last > 1);
     let mut curves = Vec::new();
-    for number in 0..data.columns.len() {
-        let tag = if number == 0 { String::new() } else { format!("_{number}") };
-        let Some(strain) = data.numbers(&format!("axial_strain{tag}"), "").ok() else { continue };
+    let mut first = 0;
+    for rows in numbers.chunk_by(|a, b| a == b) {
+        let own = |values: &[f64]| values[first..first + rows.len()].to_vec();
+        let there = |values: &[f64]| Some(own(values)).filter(|own| own.iter().any(|value| value.is_finite()));
         let percent = |values: Vec<f64>| short(values.into_iter().map(|e| 100.0 * e));
-        let counted = data.columns.iter().filter_map(|column| {
-            let mode = column.name.strip_prefix("cracks_")?.strip_suffix(tag.as_str())?;
-            // Of another curve: its number is still there.
-            let other = mode.rsplit_once('_').is_some_and(|(_, end)| end.parse::<u32>().is_ok());
-            Some(json!({ "name": mode, "values": short(data.shown(&column.name).ok()?.0) })).filter(|_| !other)
-        });
+        let counted =
+            modes.iter().filter_map(|(name, counts)| Some(json!({ "name": name, "values": short(there(counts)?) })));
         curves.push(json!({
-            "name": if number == 0 { String::new() } else { format!("curve {number}") },
-            "strain": percent(strain),
-            "stress": short(data.numbers(&format!("axial_stress{tag}"), "MPa").ok()?),
-            "lateral": data.numbers(&format!("lateral_strain{tag}"), "").ok().map(percent),
+            "name": if several { format!("curve {}", rows[0]) } else { String::new() },
+            "strain": percent(own(&strain)),
+            "stress": short(own(&stress)),
+            "lateral": lateral.as_deref().and_then(there).map(percent),
             "cracks": counted.collect::<Vec<_>>(),
         }));
+        first += rows.len();
     }
     (!curves.is_empty()).then(|| json!({ "form": "curve", "curves": curves }))
 }
@@ -234,11 +242,10 @@ mod tests {
     #[test]
     fn curves_have_their_own_cracks() {
         let data = Table::default()
-            .reals_column("axial_strain_1", "", "", vec![0.0, 0.001])
-            .reals_column("axial_stress_1", "MPa", "", vec![0.0, 10.0])
-            .reals_column("cracks_tension_1", "", "", vec![0.0, 1.0])
-            .reals_column("axial_strain_2", "", "", vec![0.0, f64::NAN])
-            .reals_column("axial_stress_2", "MPa", "", vec![0.0, 20.0]);
+            .ints_column("curve", "", vec![1, 1, 2, 2])
+            .reals_column("axial_strain", "", "", vec![0.0, 0.001, 0.0, f64::NAN])
+            .reals_column("axial_stress", "MPa", "", vec![0.0, 10.0, 0.0, 20.0])
+            .reals_column("tension", "", "", vec![0.0, 1.0, f64::NAN, f64::NAN]);
         let value = of("stress-strain", &data, &Context::default()).unwrap();
         assert_eq!(value["curves"].as_array().unwrap().len(), 2);
         assert_eq!(value["curves"][0]["cracks"][0], json!({ "name": "tension", "values": [0.0, 1.0] }));

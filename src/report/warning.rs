@@ -2,7 +2,11 @@
 //! show by the rules of the field.
 
 use super::paper::Part;
-use crate::artifact::{Artifact, Node, Table, Values};
+use crate::artifact::calibration::{Prediction, Solution, Summary, Verification};
+use crate::artifact::groups::{GroupResiduals, Groups};
+use crate::artifact::results::Results;
+use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
+use crate::artifact::{Artifact, Node, Wanted};
 
 /// Adjusted and predicted R² of a sound model differ by less than this (a rule of thumb of designed experiments).
 const GAP: f64 = 0.2;
@@ -11,9 +15,6 @@ const GAP: f64 = 0.2;
 const INFLATION: f64 = 10.0;
 /// Level of significance of the lack of fit.
 const LEVEL: f64 = 0.05;
-
-/// What a table says that a reader must not miss.
-type Rule = fn(&Table) -> Vec<String>;
 
 /// The warnings of a stage.
 pub(super) fn warnings(part: &Part) -> Vec<String> {
@@ -24,17 +25,8 @@ pub(super) fn warnings(part: &Part) -> Vec<String> {
     {
         found.push(format!("the run failed: {why}"));
     }
-    let rules: [(&str, Rule); 6] = [
-        ("runs", failures),
-        ("fit", fits),
-        ("residuals", flags),
-        ("coefficients", inflation),
-        ("prediction", reach),
-        ("summary", outside),
-    ];
-    for (name, rule) in rules {
-        found.extend(artifact.table(name).into_iter().flat_map(rule));
-    }
+    // A result of another version says nothing here; whoever shows its tables tells.
+    found.extend(judged(artifact).unwrap_or_default());
     found
 }
 
@@ -43,23 +35,34 @@ fn own(artifact: &Artifact) -> Vec<String> {
     artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default().to_vec()
 }
 
-fn texts<'a>(table: &'a Table, name: &str) -> &'a [String] {
-    match table.column(name).map(|column| &column.values) {
-        Some(Values::Texts(texts)) => texts,
-        _ => &[],
+/// What the numbers of a result warn of.
+fn judged(artifact: &Artifact) -> Result<Vec<String>, Wanted> {
+    let mut found = Vec::new();
+    if artifact.is(Results::KIND) {
+        found.extend(failures(Results::failures(Results::table(artifact)?)));
+    } else if artifact.is(Anova::KIND) {
+        let Anova { fit, residuals, .. } = Anova::from_artifact(artifact)?;
+        found.extend(fits(&fit).into_iter().chain(flags(&residuals)));
+    } else if artifact.is(Screening::KIND) {
+        let Screening { fit, residuals, .. } = Screening::from_artifact(artifact)?;
+        found.extend(fits(&fit).into_iter().chain(flags(&residuals)));
+    } else if artifact.is(Surfaces::KIND) {
+        let Surfaces { fit, residuals, coefficients, .. } = Surfaces::from_artifact(artifact)?;
+        found.extend(fits(&fit).into_iter().chain(flags(&residuals)).chain(inflation(&coefficients)));
+    } else if artifact.is(Groups::KIND) {
+        let GroupResiduals { response, row, flag, .. } = Groups::residuals(artifact)?;
+        found.extend(flags(&Residuals { response, row, flag, ..Residuals::default() }));
+    } else if artifact.is(Solution::KIND) {
+        found.extend(reach(&Solution::from_artifact(artifact)?.prediction));
+    } else if artifact.is(Verification::KIND) {
+        let Verification { summary, runs } = Verification::from_artifact(artifact)?;
+        found.extend(failures(Results::failures(&runs)).into_iter().chain(outside(&summary)));
     }
+    Ok(found)
 }
 
-/// Responses with a number, where it is known.
-fn by_response<'a>(table: &'a Table, name: &str) -> Vec<(&'a str, f64)> {
-    let values = table.numbers(name, "").unwrap_or_default();
-    let pairs = texts(table, "response").iter().map(String::as_str).zip(values);
-    pairs.filter(|(_, value)| value.is_finite()).collect()
-}
-
-fn failures(table: &Table) -> Vec<String> {
+fn failures(all: &[String]) -> Vec<String> {
     let mut reasons: Vec<(&str, usize)> = Vec::new();
-    let all = texts(table, "failure");
     for why in all.iter().filter(|why| !why.is_empty()) {
         match reasons.iter_mut().find(|(known, _)| known == why) {
             Some((_, count)) => *count += 1,
@@ -75,70 +78,64 @@ fn failures(table: &Table) -> Vec<String> {
     }
 }
 
-fn fits(table: &Table) -> Vec<String> {
+/// The values that are numbers, with the responses that they belong to.
+fn by_response<'a>(responses: &'a [String], values: &[f64]) -> Vec<(&'a str, f64)> {
+    let pairs = responses.iter().map(String::as_str).zip(values.iter().copied());
+    pairs.filter(|(_, value)| value.is_finite()).collect()
+}
+
+fn fits(fit: &Fits) -> Vec<String> {
     let mut found = Vec::new();
-    for (response, missing) in by_response(table, "missing").into_iter().filter(|(_, missing)| *missing > 0.0) {
+    for (response, missing) in fit.response.iter().zip(&fit.missing).filter(|(_, missing)| **missing > 0) {
         found.push(format!("{response}: {missing} runs are missing from the fit"));
     }
-    for (response, p) in by_response(table, "lack_of_fit_p").into_iter().filter(|(_, p)| *p < LEVEL) {
+    for (response, p) in by_response(&fit.response, &fit.lack_of_fit_p).into_iter().filter(|(_, p)| *p < LEVEL) {
         found.push(format!(
             "{response}: the lack of fit is significant (p = {p:.2e}): the model leaves out what the runs show"
         ));
     }
-    let predicted = by_response(table, "r2_predicted");
-    for (response, adjusted) in by_response(table, "r2_adjusted") {
-        let Some((_, predicted)) = predicted.iter().find(|(name, _)| *name == response) else { continue };
-        if adjusted - predicted > GAP {
-            found.push(format!(
-                "{response}: predicted R² ({predicted:.3}) is far below adjusted R² ({adjusted:.3}): few runs carry the model"
-            ));
-        }
+    let both = fit.response.iter().zip(&fit.r2_adjusted).zip(&fit.r2_predicted);
+    for ((response, adjusted), predicted) in both.filter(|((_, adjusted), predicted)| **adjusted - **predicted > GAP) {
+        found.push(format!(
+            "{response}: predicted R² ({predicted:.3}) is far below adjusted R² ({adjusted:.3}): few runs carry the model"
+        ));
     }
-    let lost =
-        texts(table, "response").iter().zip(texts(table, "not_estimable")).filter(|(_, terms)| !terms.is_empty());
+    let lost = fit.not_estimable.iter().flatten();
+    let lost = fit.response.iter().zip(lost).filter(|(_, terms)| !terms.is_empty());
     found.extend(lost.map(|(response, terms)| format!("{response}: cannot be estimated: {terms}")));
     found
 }
 
-fn flags(table: &Table) -> Vec<String> {
-    let rows: Vec<String> = match table.column("row").map(|column| &column.values) {
-        Some(Values::Texts(rows)) => rows.clone(),
-        Some(Values::Ints(rows)) => rows.iter().map(i64::to_string).collect(),
-        Some(Values::Reals(_)) | None => Vec::new(),
-    };
-    let flagged =
-        texts(table, "response").iter().zip(rows).zip(texts(table, "flag")).filter(|(_, flag)| !flag.is_empty());
+fn flags(residuals: &Residuals) -> Vec<String> {
+    let all = residuals.response.iter().zip(&residuals.row).zip(&residuals.flag);
+    let flagged = all.filter(|(_, flag)| !flag.is_empty());
     let told: Vec<String> = flagged.map(|((response, row), flag)| format!("{response}, row {row} ({flag})")).collect();
     if told.is_empty() { Vec::new() } else { vec![format!("suspicious runs, kept in the fit: {}", told.join("; "))] }
 }
 
-fn inflation(table: &Table) -> Vec<String> {
+fn inflation(coefficients: &Coefficients) -> Vec<String> {
     // In natural units a square is close to its factor; only first-order models are judged by this.
-    let terms = texts(table, "term");
-    if terms.iter().any(|term| term.contains(['^', '*'])) {
+    if coefficients.term.iter().any(|term| term.contains(['^', '*'])) {
         return Vec::new();
     }
-    let rows = by_response(table, "vif").into_iter().zip(terms).filter(|((_, vif), _)| *vif > INFLATION);
-    rows.map(|((response, vif), term)| {
+    let all = coefficients.response.iter().zip(&coefficients.term).zip(&coefficients.vif);
+    let rows = all.filter(|(_, vif)| vif.is_finite() && **vif > INFLATION);
+    rows.map(|((response, term), vif)| {
         format!("{response}: {term} is nearly a mixture of others (variance inflation {vif:.0})")
     })
     .collect()
 }
 
-fn reach(table: &Table) -> Vec<String> {
-    let sets = table.ints("set").unwrap_or_default();
-    let rows = texts(table, "response").iter().zip(texts(table, "reach")).enumerate();
-    let out = rows.filter(|(_, (_, reach))| reach.starts_with("out of reach"));
-    out.map(|(i, (response, reach))| format!("set {}: the target of {response} is {reach}", sets.get(i).unwrap_or(&0)))
-        .collect()
+fn reach(prediction: &Prediction) -> Vec<String> {
+    let rows = prediction.set.iter().zip(&prediction.response).zip(&prediction.reach);
+    let out = rows.filter(|(_, reach)| reach.starts_with("out of reach"));
+    out.map(|((set, response), reach)| format!("set {set}: the target of {response} is {reach}")).collect()
 }
 
-fn outside(table: &Table) -> Vec<String> {
-    let sets = table.ints("set").unwrap_or_default();
-    let rows = texts(table, "response").iter().zip(texts(table, "target_inside")).enumerate();
-    let out = rows.filter(|(_, (_, inside))| *inside == "no");
-    let told: Vec<String> =
-        out.map(|(i, (response, _))| format!("{response} of set {}", sets.get(i).unwrap_or(&0))).collect();
+fn outside(summary: &Summary) -> Vec<String> {
+    let rows = summary.set.iter().zip(&summary.response).zip(&summary.target_inside);
+    let out = rows.filter(|(_, inside)| *inside == "no");
+    let told: Vec<String> = out.map(|((set, response), _)| format!("{response} of set {set}")).collect();
     if told.is_empty() {
         Vec::new()
     } else {
@@ -157,15 +154,15 @@ mod tests {
     #[test]
     fn a_fit_is_judged_by_lack_of_fit_prediction_and_missing_runs() {
         let fit = |p: f64, predicted: f64, missing: i64| {
-            let table =
-                Table::default().texts_column("response", "", words(&["E"])).ints_column("missing", "", vec![missing]);
-            let table = table.reals_column("r2_adjusted", "", "", vec![0.9]).reals_column(
-                "r2_predicted",
-                "",
-                "",
-                vec![predicted],
-            );
-            fits(&table.reals_column("lack_of_fit_p", "", "", vec![p])).len()
+            let fit = Fits {
+                response: words(&["E"]),
+                missing: vec![missing],
+                r2_adjusted: vec![0.9],
+                r2_predicted: vec![predicted],
+                lack_of_fit_p: vec![p],
+                ..Fits::default()
+            };
+            fits(&fit).len()
         };
         assert_eq!([fit(0.2, 0.8, 0), fit(f64::NAN, f64::NAN, 0)], [0, 0]);
         assert_eq!([fit(0.01, 0.8, 0), fit(0.2, 0.5, 0), fit(0.01, 0.5, 3)], [1, 1, 3]);
@@ -173,17 +170,13 @@ mod tests {
 
     #[test]
     fn failures_flags_and_targets_are_counted_by_name() {
-        let runs = Table::default().texts_column("failure", "", words(&["", "no peak", "no peak", "lost"]));
+        let runs = words(&["", "no peak", "no peak", "lost"]);
         assert_eq!(failures(&runs), ["3 of 4 runs have no result: no peak (2); lost (1)"]);
-        let residuals = Table::default()
-            .texts_column("response", "", words(&["E", "E"]))
-            .ints_column("row", "", vec![4, 26])
-            .texts_column("flag", "", words(&["", "outlier"]));
+        let (response, row, flag) = (words(&["E", "E"]), vec![4, 26], words(&["", "outlier"]));
+        let residuals = Residuals { response, row, flag, ..Residuals::default() };
         assert_eq!(flags(&residuals), ["suspicious runs, kept in the fit: E, row 26 (outlier)"]);
-        let summary = Table::default()
-            .ints_column("set", "", vec![1, 2])
-            .texts_column("response", "", words(&["E", "nu"]))
-            .texts_column("target_inside", "", words(&["no", "yes"]));
+        let (response, target_inside) = (words(&["E", "nu"]), words(&["no", "yes"]));
+        let summary = Summary { set: vec![1, 2], response, target_inside, ..Summary::default() };
         assert_eq!(outside(&summary), ["targets outside the 95 % interval of the mean: E of set 1"]);
     }
 }

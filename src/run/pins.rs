@@ -151,7 +151,7 @@ command 1
 data 2
 design 2
 effort 1
-figure 9
+figure 10
 fit 2
 formula 2
 gather 1

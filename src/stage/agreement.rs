@@ -11,7 +11,8 @@
 use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -168,11 +169,12 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
         let hint = "rows are paired by the factors that both tables hold";
         return Err(StageError::new("no point with a response is in both tables").hint(hint).into());
     }
-    let root = Group::new()
-        .with("summary", Node::Table(summary_table(&summaries(&points))))
-        .with("trends", Node::Table(trend_table(&trends)))
-        .with("pairs", Node::Table(pair_table(&points)));
-    Ok(Artifact::of(ArtifactKind::AGREEMENT, root))
+    let stored = Stored {
+        summary: summary_table(&summaries(&points)),
+        trends: trend_table(&trends),
+        pairs: pair_table(&points),
+    };
+    Ok(stored.to_artifact())
 }
 
 fn levels(sample: &Sample) -> Vec<&[f64]> {
@@ -239,42 +241,45 @@ fn summaries(points: &[Point]) -> Vec<Summary> {
     found
 }
 
-fn summary_table(lines: &[Summary]) -> Table {
+fn summary_table(lines: &[Summary]) -> Ratios {
     let rows = Rows(lines);
     let ratio = |pick: fn(&Found) -> f64| rows.reals(|l| Some(pick(&l.found)));
-    Table { about: "the ratio computed/reference".to_owned(), columns: Vec::new() }
-        .texts_column("response", "", rows.texts(|l| l.response.as_str()))
-        .texts_column("table", "`all`: all tables together", rows.texts(|l| l.table.as_str()))
-        .ints_column("n", "pairs", rows.ints(|l| l.found.n))
-        .reals_column("median", "", "", ratio(|f| f.quartiles[1]))
-        .reals_column("lower", "", "first quartile", ratio(|f| f.quartiles[0]))
-        .reals_column("upper", "", "third quartile", ratio(|f| f.quartiles[2]))
-        .reals_column("least", "", "", ratio(|f| f.extremes[0]))
-        .reals_column("greatest", "", "", ratio(|f| f.extremes[1]))
-        .reals_column("mean", "", "", ratio(|f| f.mean))
-        .reals_column("std", "", "standard deviation", rows.reals(|l| l.found.deviation))
-        .reals_column("spearman", "", "rank correlation of the values", rows.reals(|l| l.found.spearman))
+    Ratios {
+        response: rows.texts(|l| l.response.as_str()),
+        table: rows.texts(|l| l.table.as_str()),
+        n: rows.ints(|l| l.found.n),
+        median: ratio(|f| f.quartiles[1]),
+        lower: ratio(|f| f.quartiles[0]),
+        upper: ratio(|f| f.quartiles[2]),
+        least: ratio(|f| f.extremes[0]),
+        greatest: ratio(|f| f.extremes[1]),
+        mean: ratio(|f| f.mean),
+        std: rows.reals(|l| l.found.deviation),
+        spearman: rows.reals(|l| l.found.spearman),
+    }
 }
 
-fn trend_table(lines: &[Trend]) -> Table {
+fn trend_table(lines: &[Trend]) -> Trends {
     let rows = Rows(lines);
-    Table { about: "what the ratio depends on: regression of 100 ln ratio".to_owned(), columns: Vec::new() }
-        .texts_column("response", "", rows.texts(|l| l.response.as_str()))
-        .texts_column("table", "", rows.texts(|l| l.table.as_str()))
-        .texts_column("factor", "", rows.texts(|l| l.factor.as_str()))
-        .reals_column("effect", "%", "change of the ratio over the factor's span", rows.reals(|l| Some(l.effect)))
-        .reals_column("std_error", "%", "", rows.reals(|l| l.std_error))
-        .reals_column("t", "", "", rows.reals(|l| l.t))
-        .reals_column("p", "", "", rows.reals(|l| l.p))
+    Trends {
+        response: rows.texts(|l| l.response.as_str()),
+        table: rows.texts(|l| l.table.as_str()),
+        factor: rows.texts(|l| l.factor.as_str()),
+        effect: rows.reals(|l| Some(l.effect)),
+        std_error: rows.reals(|l| l.std_error),
+        t: rows.reals(|l| l.t),
+        p: rows.reals(|l| l.p),
+    }
 }
 
-fn pair_table(points: &[Point]) -> Table {
+fn pair_table(points: &[Point]) -> Pairs {
     let rows = Rows(points);
-    Table { about: "every pair, in the units of the responses".to_owned(), columns: Vec::new() }
-        .texts_column("response", "", rows.texts(|p| p.response.as_str()))
-        .texts_column("table", "", rows.texts(|p| p.table.as_str()))
-        .ints_column("row", "of the reference", rows.ints(|p| p.row))
-        .reals_column("computed", "", "", rows.reals(|p| Some(p.computed)))
-        .reals_column("reference", "", "", rows.reals(|p| Some(p.reference)))
-        .reals_column("ratio", "", "", rows.reals(|p| Some(p.computed / p.reference)))
+    Pairs {
+        response: rows.texts(|p| p.response.as_str()),
+        table: rows.texts(|p| p.table.as_str()),
+        row: rows.ints(|p| p.row),
+        computed: rows.reals(|p| Some(p.computed)),
+        reference: rows.reals(|p| Some(p.reference)),
+        ratio: rows.reals(|p| Some(p.computed / p.reference)),
+    }
 }

@@ -10,7 +10,8 @@ use super::fitted::{fit_table, residual_table};
 use super::notes::{Notes, short};
 use super::published::{Computed, beside, prints};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::statistics::{Anova as Stored, Fits, Variances};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -238,8 +239,7 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let rounding = |(a, line): &(&Analysis, &Line)| a.f_rounding(line, *params.rounding.get(&a.response)?);
     let mut table = variance_table(&lines);
     if !params.rounding.is_empty() {
-        let about = "standard deviation of F when the responses are rounded";
-        table = table.reals_column("f_rounding", "", about, Rows(&lines).reals(rounding));
+        table.f_rounding = Some(Rows(&lines).reals(rounding));
     }
     let remark = |line: &Line| {
         let significant = line.p.is_some_and(|p| p <= params.alpha) && params.empty.contains(&line.source);
@@ -261,27 +261,22 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
                     remark: remark(own.1),
                 })
                 .collect();
-            table = beside(table, &prints, &computed);
+            let (published, remark) = beside(&prints, &computed);
+            (table.published, table.remark) = (Some(published), Some(remark));
         }
         None if params.empty.is_empty() => {}
-        None => table = table.texts_column("remark", "", Rows(&lines).texts(|(_, line)| remark(line))),
+        None => table.remark = Some(Rows(&lines).texts(|(_, line)| remark(line))),
     }
     let residuals = analyses.iter().map(|a| (a.response.as_str(), a.residuals.as_slice()));
     let fits: Vec<_> = analyses.iter().map(|a| &a.fit).collect();
     let about = Rows(&analyses);
-    let fit = fit_table(&fits)
-        .texts_column("pooled", "terms pooled into the error", about.texts(|a| a.pooled.join(" ")))
-        .texts_column(
-            "not_estimable",
-            "interactions that the runs cannot tell apart",
-            about.texts(|a| a.not_estimable.join(" ")),
-        );
-    let root = Group::new()
-        .with("anova", Node::Table(table))
-        .with("fit", Node::Table(fit))
-        .with("notes", Node::Table(notes(&analyses, &params).table()))
-        .with("residuals", Node::Table(residual_table(residuals)));
-    Ok(Artifact::of(ArtifactKind::ANOVA, root))
+    let fit = Fits {
+        pooled: Some(about.texts(|a| a.pooled.join(" "))),
+        not_estimable: Some(about.texts(|a| a.not_estimable.join(" "))),
+        ..fit_table(&fits)
+    };
+    let (notes, residuals) = (notes(&analyses, &params).table(), residual_table(residuals));
+    Ok(Stored { anova: table, fit, notes, residuals }.to_artifact())
 }
 
 /// What a person should see at once.
@@ -311,17 +306,21 @@ fn notes(analyses: &[Analysis], params: &Params) -> Notes {
     notes
 }
 
-fn variance_table(lines: &[(&Analysis, &Line)]) -> Table {
+fn variance_table(lines: &[(&Analysis, &Line)]) -> Variances {
     let rows = Rows(lines);
-    Table { about: "analysis of variance".to_owned(), columns: Vec::new() }
-        .texts_column("response", "", rows.texts(|(a, _)| a.response.as_str()))
-        .texts_column("source", "", rows.texts(|(_, l)| l.source.as_str()))
-        .ints_column("df", "degrees of freedom", rows.ints(|(_, l)| l.df))
-        .reals_column("ss", "", "sum of squares, squared unit of the response", rows.reals(|(_, l)| Some(l.ss)))
-        .reals_column("ms", "", "mean square", rows.reals(|(_, l)| l.ms))
-        .reals_column("f", "", "ratio to the mean square of the error", rows.reals(|(_, l)| l.f))
-        .reals_column("p", "", "probability of such an F by chance", rows.reals(|(_, l)| l.p))
-        .texts_column("significance", "", rows.texts(|(_, l)| l.significance.as_str()))
-        .reals_column("eta2", "", "share of the total sum of squares", rows.reals(|(_, l)| l.eta2))
-        .reals_column("omega2", "", "the same without what chance alone gives", rows.reals(|(_, l)| l.omega2))
+    Variances {
+        response: rows.texts(|(a, _)| a.response.as_str()),
+        source: rows.texts(|(_, l)| l.source.as_str()),
+        df: rows.ints(|(_, l)| l.df),
+        ss: rows.reals(|(_, l)| Some(l.ss)),
+        ms: rows.reals(|(_, l)| l.ms),
+        f: rows.reals(|(_, l)| l.f),
+        p: rows.reals(|(_, l)| l.p),
+        significance: rows.texts(|(_, l)| l.significance.as_str()),
+        eta2: rows.reals(|(_, l)| l.eta2),
+        omega2: rows.reals(|(_, l)| l.omega2),
+        f_rounding: None,
+        published: None,
+        remark: None,
+    }
 }

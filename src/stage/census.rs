@@ -4,6 +4,7 @@
 //! of the parent module, a new artifact included. `cli::tests` takes it through every command.
 
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use crate::artifact::results::Results;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,9 +69,9 @@ impl Kind for Census {
 
 fn count(job: &Job) -> Result<Artifact, Failure> {
     let table = job.input("table")?;
-    let runs = table.table("runs").ok_or_else(|| StageError::new("the input holds no table `runs`"))?;
+    let runs = Results::table(table).map_err(StageError::from)?;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for failure in runs.texts("failure").map_err(StageError::from)? {
+    for failure in Results::failures(runs) {
         *counts.entry(if failure.is_empty() { "done" } else { failure }).or_default() += 1;
     }
     let (ending, runs) = counts.into_iter().map(|(ending, runs)| (ending.to_owned(), runs)).unzip();

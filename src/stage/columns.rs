@@ -2,6 +2,8 @@
 
 use super::derived::Derived;
 use super::{Complaint, Context, StageError};
+use crate::artifact::groups::Groups;
+use crate::artifact::results::Results;
 use crate::artifact::{Artifact, Table, Values};
 use serde::{Deserialize, Serialize};
 use stats::error::Faults;
@@ -57,8 +59,7 @@ pub(super) struct Wanted<'a> {
 
 /// The table `runs` of an artifact, or the table `groups` of fits by groups.
 pub(super) fn runs(artifact: &Artifact) -> Result<&Table, StageError> {
-    let found = artifact.table("runs").or_else(|| artifact.table("groups"));
-    found.ok_or_else(|| StageError::new("the input holds no table `runs`"))
+    Ok(if artifact.is(Groups::KIND) { Groups::table(artifact)? } else { Results::table(artifact)? })
 }
 
 impl Columns {

@@ -14,7 +14,8 @@ use super::beside::Beside;
 use super::notes::Notes;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::results::Results;
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use cells::Cells;
 use dialect::Dialect;
 pub use dialect::{Decimal, Delimiter, Encoding};
@@ -88,13 +89,12 @@ impl Kind for Data {
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
     let (table, said) = parse_as(&job.file("table")?, &job.params()?)?;
-    let mut root = Group::new().with("runs", Node::Table(table));
-    if let Some(said) = said {
+    let notes = said.map(|said| {
         let mut notes = Notes::default();
         notes.add("", said);
-        root.put("notes", Node::Table(notes.table()));
-    }
-    Ok(Artifact::of(ArtifactKind::RESULTS, root))
+        notes.table()
+    });
+    Ok(Results { runs: table, notes }.to_artifact())
 }
 
 /// Reads the whole table in whatever way it is written, or says what is wrong with it.

@@ -6,7 +6,10 @@ use super::notes::Notes;
 use super::published::{Computed, beside, prints};
 use super::regression::origin::Beside;
 use super::{Failure, Job, StageError};
-use crate::artifact::{Array, Artifact, ArtifactKind, Group, Node, Table, Values};
+use crate::artifact::Artifact;
+use crate::artifact::statistics::{
+    Coefficients, Domains, Fits, PrincipalAxes, Residuals, Selections, Stationary, Surfaces, WithConstant,
+};
 use serde::{Deserialize, Serialize};
 use stats::canonical::canonical;
 use stats::diagnostics::Residual;
@@ -90,31 +93,30 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         let values: Vec<(String, String, f64)> =
             found.iter().flat_map(|(f, r)| r.natural.iter().map(move |c| own((*f, c)))).collect();
         let computed: Vec<Computed> = values.iter().map(|(r, t, v)| plain(r, t, *v)).collect();
-        natural = beside(natural, &prints, &computed);
+        let (published, remark) = beside(&prints, &computed);
+        (natural.published, natural.remark) = (Some(published), Some(remark));
         let computed: Vec<Computed> = fits.iter().map(|f| plain(&f.response, "r2", f.r2)).collect();
-        fit = beside(fit, &prints, &computed);
+        let (published, remark) = beside(&prints, &computed);
+        (fit.published, fit.remark) = (Some(published), Some(remark));
     }
     let residuals = found.iter().map(|(f, r)| (f.response.as_str(), r.residuals.as_slice()));
     let (stationary, axes) = stationary_tables(&found);
-    let mut root = Group::new()
-        .with("coefficients", Node::Table(natural))
-        .with("coded", Node::Table(coefficient_table(&found, |r| &r.coded)))
-        .with("fit", Node::Table(fit))
-        .with("residuals", Node::Table(residual_table(residuals)))
-        .with("stationary", Node::Table(stationary))
-        .with("axes", Node::Table(axes))
-        .with("path", Node::Table(predict::path_table(&found)))
-        .with("domain", Node::Table(domain_table(&found)))
-        .with("selection", Node::Table(selection_table(&found)))
-        .with("notes", Node::Table(notes(&found, params.predict.as_ref()).table()))
-        .with("models", Node::Group(keep::kept(found.iter().map(|(f, r)| (f.response.as_str(), &r.model)))));
-    if params.through_origin {
-        root.put("with_constant", Node::Table(constant_table(&with_constant)));
-    }
-    if let Some(points) = &params.predict {
-        root.put("predictions", Node::Table(predict::prediction_table(&found, points)));
-    }
-    Ok(Artifact::of(ArtifactKind::SURFACES, root))
+    let surfaces = Surfaces {
+        coefficients: natural,
+        coded: coefficient_table(&found, |r| &r.coded),
+        fit,
+        residuals: residual_table(residuals),
+        stationary,
+        axes,
+        path: predict::path_table(&found),
+        domain: domain_table(&found),
+        selection: selection_table(&found),
+        notes: notes(&found, params.predict.as_ref()).table(),
+        models: found.iter().map(|(f, r)| (f.response.clone(), keep::stored(&r.model))).collect(),
+        with_constant: params.through_origin.then(|| constant_table(&with_constant)),
+        predictions: params.predict.as_ref().map(|points| predict::prediction_table(&found, points)),
+    };
+    Ok(surfaces.to_artifact())
 }
 
 /// What a person should see at once.
@@ -145,164 +147,147 @@ fn notes(found: &[(&Fitting, Regression)], points: Option<&Predict>) -> Notes {
     notes
 }
 
-fn named(about: &str) -> Table {
-    Table { about: about.to_owned(), columns: Vec::new() }
-}
-
-fn coefficient_table(found: &[(&Fitting, Regression)], list: impl Fn(&Regression) -> &Vec<Coefficient>) -> Table {
+fn coefficient_table(
+    found: &[(&Fitting, Regression)],
+    list: impl Fn(&Regression) -> &Vec<Coefficient>,
+) -> Coefficients {
     let all: Vec<(&str, &Coefficient)> =
         found.iter().flat_map(|(f, r)| list(r).iter().map(|c| (f.response.as_str(), c))).collect();
     let rows = Rows(&all);
-    named("coefficients of the fitted models")
-        .texts_column("response", "", rows.texts(|(response, _)| *response))
-        .texts_column("term", "", rows.texts(|(_, c)| c.term.as_str()))
-        .reals_column(
-            "estimate",
-            "",
-            "unit of the response per unit of the term",
-            rows.reals(|(_, c)| Some(c.estimate)),
-        )
-        .reals_column("std_error", "", "standard error", rows.reals(|(_, c)| c.std_error))
-        .reals_column("t", "", "estimate over standard error", rows.reals(|(_, c)| c.t))
-        .reals_column("p", "", "probability of such a t by chance", rows.reals(|(_, c)| c.p))
-        .reals_column("vif", "", "variance inflation factor", rows.reals(|(_, c)| c.vif))
+    Coefficients {
+        response: rows.texts(|(response, _)| *response),
+        term: rows.texts(|(_, c)| c.term.as_str()),
+        estimate: rows.reals(|(_, c)| Some(c.estimate)),
+        std_error: rows.reals(|(_, c)| c.std_error),
+        t: rows.reals(|(_, c)| c.t),
+        p: rows.reals(|(_, c)| c.p),
+        vif: rows.reals(|(_, c)| c.vif),
+        published: None,
+        remark: None,
+    }
 }
 
 /// The same terms with a constant, for fits through the origin.
-fn constant_table(found: &[(&str, Beside)]) -> Table {
+fn constant_table(found: &[(&str, Beside)]) -> WithConstant {
     let all: Vec<(&str, f64, &Coefficient)> = found
         .iter()
         .flat_map(|(response, b)| std::iter::once(&b.constant).chain(&b.rest).map(|c| (*response, b.r2, c)))
         .collect();
     let rows = Rows(&all);
-    named("the same terms with a constant: whether the data point to the origin")
-        .texts_column("response", "", rows.texts(|(response, ..)| *response))
-        .texts_column("term", "", rows.texts(|(.., c)| c.term.as_str()))
-        .reals_column(
-            "estimate",
-            "",
-            "unit of the response per unit of the term",
-            rows.reals(|(.., c)| Some(c.estimate)),
-        )
-        .reals_column("std_error", "", "standard error", rows.reals(|(.., c)| c.std_error))
-        .reals_column("t", "", "estimate over standard error", rows.reals(|(.., c)| c.t))
-        .reals_column("p", "", "probability of such a t by chance", rows.reals(|(.., c)| c.p))
-        .reals_column("r2", "", "about the mean", rows.reals(|(_, r2, _)| Some(*r2)))
+    WithConstant {
+        response: rows.texts(|(response, ..)| *response),
+        term: rows.texts(|(.., c)| c.term.as_str()),
+        estimate: rows.reals(|(.., c)| Some(c.estimate)),
+        std_error: rows.reals(|(.., c)| c.std_error),
+        t: rows.reals(|(.., c)| c.t),
+        p: rows.reals(|(.., c)| c.p),
+        r2: rows.reals(|(_, r2, _)| Some(*r2)),
+    }
 }
 
 /// Quality of fits, one row each.
-pub(super) fn fit_table(fits: &[&Fit]) -> Table {
+pub(super) fn fit_table(fits: &[&Fit]) -> Fits {
     let rows = Rows(fits);
-    let table = named("quality of the fits")
-        .texts_column("response", "", rows.texts(|f| f.response.as_str()))
-        .ints_column("n", "runs used", rows.ints(|f| f.n))
-        .ints_column("missing", "runs without a value", rows.ints(|f| f.missing))
-        .ints_column("df_residual", "residual degrees of freedom", rows.ints(|f| f.df_residual))
-        .reals_column("s", "", "residual standard deviation, unit of the response", rows.reals(|f| f.s))
-        .reals_column("r2", "", "coefficient of determination", rows.reals(|f| Some(f.r2)))
-        .reals_column("r2_adjusted", "", "adjusted for degrees of freedom", rows.reals(|f| f.r2_adjusted))
-        .reals_column("r2_predicted", "", "1 - PRESS/SST", rows.reals(|f| f.r2_predicted))
-        .reals_column("press", "", "sum of squared leave-one-out residuals", rows.reals(|f| f.press))
-        .reals_column("f", "", "F of the whole model", rows.reals(|f| f.f))
-        .reals_column("p", "", "probability of such an F by chance", rows.reals(|f| f.p))
-        .ints_column("df_pure_error", "degrees of freedom of replicates", rows.ints(|f| f.df_pure_error))
-        .reals_column("lack_of_fit_f", "", "lack of fit against pure error", rows.reals(|f| f.lack_of_fit_f))
-        .reals_column("lack_of_fit_p", "", "probability of such an F by chance", rows.reals(|f| f.lack_of_fit_p));
-    if fits.iter().all(|f| f.constant) {
-        return table;
-    }
+    let through_origin = fits.iter().any(|f| !f.constant);
     let about = |f: &&Fit| if f.constant { "with a constant" } else { "through the origin: r2 about zero" };
-    table.texts_column("model", "what r2 is a share of", rows.texts(about)).reals_column(
-        "r2_about_mean",
-        "",
-        "1 - SSE over squares about the mean",
-        rows.reals(|f| f.r2_about_mean),
-    )
+    Fits {
+        response: rows.texts(|f| f.response.as_str()),
+        n: rows.ints(|f| f.n),
+        missing: rows.ints(|f| f.missing),
+        df_residual: rows.ints(|f| f.df_residual),
+        s: rows.reals(|f| f.s),
+        r2: rows.reals(|f| Some(f.r2)),
+        r2_adjusted: rows.reals(|f| f.r2_adjusted),
+        r2_predicted: rows.reals(|f| f.r2_predicted),
+        press: rows.reals(|f| f.press),
+        f: rows.reals(|f| f.f),
+        p: rows.reals(|f| f.p),
+        df_pure_error: rows.ints(|f| f.df_pure_error),
+        lack_of_fit_f: rows.reals(|f| f.lack_of_fit_f),
+        lack_of_fit_p: rows.reals(|f| f.lack_of_fit_p),
+        model: through_origin.then(|| rows.texts(about)),
+        r2_about_mean: through_origin.then(|| rows.reals(|f| f.r2_about_mean)),
+        pooled: None,
+        not_estimable: None,
+        published: None,
+        remark: None,
+    }
 }
 
 /// Every row seen by every model.
-pub(super) fn residual_table<'a>(found: impl Iterator<Item = (&'a str, &'a [Residual])>) -> Table {
+pub(super) fn residual_table<'a>(found: impl Iterator<Item = (&'a str, &'a [Residual])>) -> Residuals {
     let all: Vec<(&str, &Residual)> = found.flat_map(|(name, list)| list.iter().map(move |r| (name, r))).collect();
     let rows = Rows(&all);
     let flag = |(_, r): &(&str, &Residual)| {
         let flags = [(r.outlier, "outlier"), (r.high_leverage, "high leverage"), (r.influential, "influential")];
         flags.into_iter().filter(|(set, _)| *set).map(|(_, word)| word).collect::<Vec<_>>().join(", ")
     };
-    named("residuals; outliers are flagged, not dropped")
-        .texts_column("response", "", rows.texts(|(response, _)| *response))
-        .ints_column("row", "counted from 1", rows.ints(|(_, r)| r.row))
-        .reals_column("observed", "", "as measured", rows.reals(|(_, r)| Some(r.observed)))
-        .reals_column("fitted", "", "as the model says", rows.reals(|(_, r)| Some(r.fitted)))
-        .reals_column("residual", "", "observed minus fitted", rows.reals(|(_, r)| Some(r.residual)))
-        .reals_column("leverage", "", "diagonal of the hat matrix", rows.reals(|(_, r)| Some(r.leverage)))
-        .reals_column("standardized", "", "internally studentized residual", rows.reals(|(_, r)| r.standardized))
-        .reals_column("studentized", "", "externally studentized residual", rows.reals(|(_, r)| r.studentized))
-        .reals_column("cook", "", "Cook's distance", rows.reals(|(_, r)| r.cook))
-        .texts_column("flag", "what is suspicious", rows.texts(flag))
+    Residuals {
+        response: rows.texts(|(response, _)| *response),
+        row: rows.ints(|(_, r)| r.row),
+        observed: rows.reals(|(_, r)| Some(r.observed)),
+        fitted: rows.reals(|(_, r)| Some(r.fitted)),
+        residual: rows.reals(|(_, r)| Some(r.residual)),
+        leverage: rows.reals(|(_, r)| Some(r.leverage)),
+        standardized: rows.reals(|(_, r)| r.standardized),
+        studentized: rows.reals(|(_, r)| r.studentized),
+        cook: rows.reals(|(_, r)| r.cook),
+        flag: rows.texts(flag),
+    }
 }
 
 /// Stationary points factor by factor, and the principal axes of the surfaces.
-fn stationary_tables(found: &[(&Fitting, Regression)]) -> (Table, Table) {
+fn stationary_tables(found: &[(&Fitting, Regression)]) -> (Stationary, PrincipalAxes) {
     let places: Vec<_> = found.iter().filter_map(|(f, r)| Some((f.response.as_str(), canonical(&r.model)?))).collect();
     let points: Vec<_> = places.iter().flat_map(|place| (0..place.1.factors.len()).map(move |i| (place, i))).collect();
     let rows = Rows(&points);
-    let stationary = named("stationary points of the second-order surfaces")
-        .texts_column("response", "", rows.texts(|(place, _)| place.0))
-        .texts_column("nature", "", rows.texts(|(place, _)| place.1.nature.word()))
-        .reals_column("value", "", "the surface there", rows.reals(|(place, _)| Some(place.1.value)))
-        .texts_column(
-            "domain",
-            "whether it lies among the runs",
-            rows.texts(|(place, _)| if place.1.inside { "inside" } else { "outside" }),
-        )
-        .texts_column("factor", "", rows.texts(|(place, i)| place.1.factors[*i].as_str()))
-        .reals_column("natural", "", "in the factor's unit", rows.reals(|(place, i)| Some(place.1.natural[*i])))
-        .reals_column("coded", "", "in coded units", rows.reals(|(place, i)| Some(place.1.coded[*i])));
+    let stationary = Stationary {
+        response: rows.texts(|(place, _)| place.0),
+        nature: rows.texts(|(place, _)| place.1.nature.word()),
+        value: rows.reals(|(place, _)| Some(place.1.value)),
+        domain: rows.texts(|(place, _)| if place.1.inside { "inside" } else { "outside" }),
+        factor: rows.texts(|(place, i)| place.1.factors[*i].as_str()),
+        natural: rows.reals(|(place, i)| Some(place.1.natural[*i])),
+        coded: rows.reals(|(place, i)| Some(place.1.coded[*i])),
+    };
     let parts: Vec<_> = places
         .iter()
         .flat_map(|place| place.1.axes.iter().enumerate().map(move |(k, axis)| (place, k, axis)))
         .flat_map(|(place, k, axis)| (0..axis.direction.len()).map(move |i| (place, k, axis, i)))
         .collect();
     let rows = Rows(&parts);
-    let axes = named("principal axes of the second-order surfaces, in coded units")
-        .texts_column("response", "", rows.texts(|(place, ..)| place.0))
-        .ints_column("axis", "by falling eigenvalue", rows.ints(|(_, k, ..)| k + 1))
-        .reals_column("eigenvalue", "", "curvature along the axis", rows.reals(|(_, _, axis, _)| Some(axis.eigenvalue)))
-        .texts_column("factor", "", rows.texts(|(place, _, _, i)| place.1.factors[*i].as_str()))
-        .reals_column(
-            "direction",
-            "",
-            "component along the factor",
-            rows.reals(|(_, _, axis, i)| Some(axis.direction[*i])),
-        );
+    let axes = PrincipalAxes {
+        response: rows.texts(|(place, ..)| place.0),
+        axis: rows.ints(|(_, k, ..)| k + 1),
+        eigenvalue: rows.reals(|(_, _, axis, _)| Some(axis.eigenvalue)),
+        factor: rows.texts(|(place, _, _, i)| place.1.factors[*i].as_str()),
+        direction: rows.reals(|(_, _, axis, i)| Some(axis.direction[*i])),
+    };
     (stationary, axes)
 }
 
 /// Where each model was seen: beyond it lies extrapolation.
-fn domain_table(found: &[(&Fitting, Regression)]) -> Table {
+fn domain_table(found: &[(&Fitting, Regression)]) -> Domains {
     let all: Vec<_> = found.iter().flat_map(|(f, r)| r.model.axes.iter().map(move |axis| (f, axis))).collect();
     let rows = Rows(&all);
-    named("domain of the models; predictions outside it are extrapolation")
-        .texts_column("response", "", rows.texts(|(f, _)| f.response.as_str()))
-        .texts_column("factor", "", rows.texts(|(_, axis)| axis.name.as_str()))
-        .texts_column("unit", "", rows.texts(|(f, axis)| f.columns.unit_of(&axis.name)))
-        .reals_column("low", "", "least value fitted", rows.reals(|(_, axis)| Some(axis.low)))
-        .reals_column("high", "", "greatest value fitted", rows.reals(|(_, axis)| Some(axis.high)))
+    Domains {
+        response: rows.texts(|(f, _)| f.response.as_str()),
+        factor: rows.texts(|(_, axis)| axis.name.as_str()),
+        unit: rows.texts(|(f, axis)| f.columns.unit_of(&axis.name)),
+        low: rows.reals(|(_, axis)| Some(axis.low)),
+        high: rows.reals(|(_, axis)| Some(axis.high)),
+    }
 }
 
-fn selection_table(found: &[(&Fitting, Regression)]) -> Table {
+fn selection_table(found: &[(&Fitting, Regression)]) -> Selections {
     let all: Vec<_> = found.iter().flat_map(|(f, r)| r.steps.iter().map(move |step| (f, step))).collect();
     let rows = Rows(&all);
-    named("terms that selection added or removed, in order")
-        .texts_column("response", "", rows.texts(|(f, _)| f.response.as_str()))
-        .texts_column("term", "", rows.texts(|(_, step)| step.term.as_str()))
-        .texts_column("step", "", rows.texts(|(_, step)| if step.added { "added" } else { "removed" }))
-        .reals_column("p", "", "in the model that held it", rows.reals(|(_, step)| Some(step.p)))
-}
-
-/// An array of numbers without unit.
-fn reals(values: Vec<f64>, shape: Vec<usize>, about: &str) -> Node {
-    Node::Array(Array { shape, unit: String::new(), about: about.to_owned(), values: Values::Reals(values) })
+    Selections {
+        response: rows.texts(|(f, _)| f.response.as_str()),
+        term: rows.texts(|(_, step)| step.term.as_str()),
+        step: rows.texts(|(_, step)| if step.added { "added" } else { "removed" }),
+        p: rows.reals(|(_, step)| Some(step.p)),
+    }
 }
 
 /// The models that an artifact `surfaces` holds, or why it cannot be read.

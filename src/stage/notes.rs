@@ -2,8 +2,7 @@
 //!
 //! A note repeats in words what stands in the other tables; nothing is left out of an analysis because of one.
 
-use super::columns::Rows;
-use crate::artifact::Table;
+use crate::artifact::statistics::Remarks;
 use stats::diagnostics::Residual;
 use stats::fit::Fit;
 use stats::regression::Coefficient;
@@ -99,11 +98,9 @@ impl Notes {
     }
 
     /// The table.
-    pub(super) fn table(self) -> Table {
-        let rows = Rows(&self.0);
-        Table { about: "what to look at before trusting the numbers".to_owned(), columns: Vec::new() }
-            .texts_column("response", "", rows.texts(|(response, _)| response.as_str()))
-            .texts_column("note", "", rows.texts(|(_, note)| note.as_str()))
+    pub(super) fn table(self) -> Remarks {
+        let (response, note) = self.0.into_iter().unzip();
+        Remarks { response, note }
     }
 }
 

@@ -6,7 +6,8 @@
 use super::columns::{Columns, Rows, Wanted, check_names, refused, runs};
 use super::notes::Notes;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::range::{LevelValues, Levels, Range as Stored, Ranges};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Numbered};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -70,27 +71,16 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let lines = range_analysis(&sample).map_err(refused)?;
     let most = lines.iter().map(|line| line.levels.len()).max().unwrap_or(0);
     let rows = Rows(&lines);
-    let mut range = Table { about: "mean response at each level".to_owned(), columns: Vec::new() }
-        .texts_column("response", "", rows.texts(|l| l.response.as_str()))
-        .texts_column("factor", "", rows.texts(|l| l.factor.as_str()));
-    for level in 0..most {
-        let about = format!("mean response at level {}, in its unit", level + 1);
-        range = range.reals_column(
-            &format!("level_{}", level + 1),
-            "",
-            &about,
-            rows.reals(|l| l.means.get(level).copied()),
-        );
-    }
-    range = range
-        .reals_column("range", "", "greatest mean minus least", rows.reals(|l| Some(l.range)))
-        .ints_column("rank", "1 has the largest range", rows.ints(|l| l.rank))
-        .ints_column("missing", "runs without a value", rows.ints(|l| l.missing));
-    let root = Group::new()
-        .with("range", Node::Table(range))
-        .with("levels", Node::Table(levels(&columns, &lines, most)))
-        .with("notes", Node::Table(notes(&lines, sample.rows()).table()));
-    Ok(Artifact::of(ArtifactKind::RANGE, root))
+    let range = Ranges {
+        response: rows.texts(|l| l.response.as_str()),
+        factor: rows.texts(|l| l.factor.as_str()),
+        level: Numbered((0..most).map(|level| rows.reals(|l| l.means.get(level).copied())).collect()),
+        range: rows.reals(|l| Some(l.range)),
+        rank: rows.ints(|l| l.rank),
+        missing: rows.ints(|l| l.missing),
+    };
+    let levels = levels(&columns, &lines, most);
+    Ok(Stored { range, levels, notes: notes(&lines, sample.rows()).table() }.to_artifact())
 }
 
 /// Responses whose missing runs spoil the balance of the table.
@@ -107,21 +97,20 @@ fn notes(lines: &[Line], rows: usize) -> Notes {
 }
 
 /// What level 1, 2, … of each factor stand for.
-fn levels(columns: &Columns, lines: &[Line], most: usize) -> Table {
+fn levels(columns: &Columns, lines: &[Line], most: usize) -> LevelValues {
     let first = lines.first().map(|line| line.response.clone());
     let own: Vec<&Line> = lines.iter().filter(|line| Some(&line.response) == first.as_ref()).collect();
     let rows = Rows(&own);
-    let mut table = Table { about: "values of the levels".to_owned(), columns: Vec::new() }
-        .texts_column("factor", "", rows.texts(|l| l.factor.as_str()))
-        .texts_column("unit", "", rows.texts(|l| columns.unit_of(&l.factor)));
-    for level in 0..most {
-        let head = format!("level_{}", level + 1);
-        table = if columns.categories().next().is_some() {
-            let names = rows.texts(|l| l.names.get(level).cloned().unwrap_or_default());
-            table.texts_column(&head, "in the factor's unit, or its name", names)
+    let named = columns.categories().next().is_some();
+    let numbers = |level: usize| rows.reals(|l| l.levels.get(level).copied());
+    let names = |level: usize| rows.texts(|l| l.names.get(level).cloned().unwrap_or_default());
+    LevelValues {
+        factor: rows.texts(|l| l.factor.as_str()),
+        unit: rows.texts(|l| columns.unit_of(&l.factor)),
+        level: if named {
+            Levels::Names(Numbered((0..most).map(names).collect()))
         } else {
-            table.reals_column(&head, "", "in the factor's unit", rows.reals(|l| l.levels.get(level).copied()))
-        };
+            Levels::Numbers(Numbered((0..most).map(numbers).collect()))
+        },
     }
-    table
 }

@@ -17,7 +17,6 @@ use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
-use grouped::GROUPS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -100,12 +99,12 @@ pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
 
 impl Stage for Regression {
     fn inputs(&self) -> Vec<Port> {
-        let accepts = Accepts::Only(&[ArtifactKind::RESULTS, GROUPS]);
+        let accepts = Accepts::Only(&[ArtifactKind::RESULTS, ArtifactKind::GROUPS]);
         vec![Port { key: "table", stages: vec![self.table.clone()], accepts }]
     }
 
     fn gives(&self) -> ArtifactKind {
-        if self.by.is_empty() { ArtifactKind::SURFACES } else { GROUPS }
+        if self.by.is_empty() { ArtifactKind::SURFACES } else { ArtifactKind::GROUPS }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -203,7 +202,7 @@ impl Regression {
 impl Kind for Regression {
     const NAME: &'static str = "regression";
     const ABOUT: &'static str = "linear regression of responses on factors, from one table";
-    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES, GROUPS];
+    const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES, ArtifactKind::GROUPS];
     const CLASS: Class = Class::Statistics;
     // 2: notes; what rounding leaves of an exact fit is no error
     const WORKS: &'static [Work] =

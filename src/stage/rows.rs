@@ -12,8 +12,10 @@ use super::material::{self, Material};
 use super::{
     Complaint, Context, Failure, Input, Job, Known, Parameter, Point, Source, Stage, StageError, Step, Task, Work, vary,
 };
+use crate::artifact::design::Design;
+use crate::artifact::results::Results;
 use crate::artifact::run::{Outcome, Run};
-use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
+use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::expression::Measure;
 use crate::unit::{Conversion, Dimension, Unit};
 use serde::{Deserialize, Serialize};
@@ -23,8 +25,7 @@ use std::sync::Arc;
 
 /// The columns of a design that are factors, by name.
 fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a Column>, StageError> {
-    let table = design.table("design").or_else(|| design.table("runs"));
-    let table = table.ok_or_else(|| StageError::new("the design holds no table `design`"))?;
+    let table = Design::table(design).or_else(|_| Results::table(design))?;
     Ok(table.columns.iter().filter(|column| context.factors.contains_key(&column.name)).collect())
 }
 
@@ -164,7 +165,7 @@ pub fn check_units(context: &Context) -> Vec<Complaint> {
 fn gathered(job: &Job) -> Result<Artifact, Failure> {
     let params: GatherParams = job.params()?;
     let design = job.input("design")?;
-    let design = design.table("design").ok_or_else(|| StageError::new("the design holds no table `design`"))?;
+    let design = Design::table(design).map_err(StageError::from)?;
     let kept = job.inputs.iter().find(|(name, _)| name == "kept").map(|(_, kept)| kept_runs(kept)).transpose()?;
     let results = all_responses(job, kept.as_ref())?;
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() };
@@ -182,8 +183,7 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
         table = response_column(table, name, params.units.get(name), &results)?;
     }
     let failures = results.iter().map(|(failure, _)| (*failure).to_owned()).collect();
-    table = table.texts_column("failure", "why the run gave no result; empty when it did", failures);
-    Ok(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
+    Ok(Results::of(table, failures).to_artifact())
 }
 
 /// Places among the inputs of the task, and briefs, of runs that were made before.

@@ -9,7 +9,8 @@ use super::fitted::{fit_table, residual_table};
 use super::notes::Notes;
 use super::regression::{check_doubled, factors_of};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::statistics::{Effects, Limits, Screening as Stored};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -95,13 +96,14 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let found = responses.iter().map(one).collect::<Result<Vec<Found>, StageError>>()?;
     let residuals = found.iter().map(|s| (s.response.as_str(), s.regression.residuals.as_slice()));
     let fits: Vec<_> = found.iter().map(|s| &s.regression.fit).collect();
-    let root = Group::new()
-        .with("effects", Node::Table(effect_table(&found)))
-        .with("limits", Node::Table(limit_table(&found)))
-        .with("fit", Node::Table(fit_table(&fits)))
-        .with("notes", Node::Table(notes(&found).table()))
-        .with("residuals", Node::Table(residual_table(residuals)));
-    Ok(Artifact::of(ArtifactKind::SCREENING, root))
+    let screening = Stored {
+        effects: effect_table(&found),
+        limits: limit_table(&found),
+        fit: fit_table(&fits),
+        notes: notes(&found).table(),
+        residuals: residual_table(residuals),
+    };
+    Ok(screening.to_artifact())
 }
 
 /// What stands out of the noise, and what to look at.
@@ -141,7 +143,7 @@ fn notes(found: &[Found]) -> Notes {
     notes
 }
 
-fn effect_table(found: &[Found]) -> Table {
+fn effect_table(found: &[Found]) -> Effects {
     let all: Vec<(&str, &Effect)> =
         found.iter().flat_map(|s| s.effects.iter().map(|e| (s.response.as_str(), e))).collect();
     let rows = Rows(&all);
@@ -155,32 +157,31 @@ fn effect_table(found: &[Found]) -> Table {
         Some(false) => "-",
         None => "",
     };
-    Table { about: "effects: mean at the high level minus mean at the low one".to_owned(), columns: Vec::new() }
-        .texts_column("response", "", rows.texts(|(response, _)| *response))
-        .texts_column("term", "", rows.texts(|(_, e)| e.term.as_str()))
-        .reals_column("effect", "", "in the unit of the response", rows.reals(|(_, e)| Some(e.effect)))
-        .reals_column("std_error", "", "where the design leaves degrees of freedom", rows.reals(|(_, e)| e.std_error))
-        .reals_column("standardized", "", "effect over its standard error", rows.reals(|(_, e)| e.standardized))
-        .reals_column("p", "", "with that standard error", rows.reals(|(_, e)| e.p))
-        .reals_column("lenth_t", "", "effect over the pseudo standard error", rows.reals(|(_, e)| e.lenth_t))
-        .ints_column("rank", "1 is the largest in size", rows.ints(|(_, e)| e.rank))
-        .reals_column("share", "", "of the sum of squared effects", rows.reals(|(_, e)| Some(e.share)))
-        .reals_column("cumulative", "", "share of this and all larger effects", rows.reals(|(_, e)| Some(e.cumulative)))
-        .reals_column("normal", "", "abscissa of the normal plot", rows.reals(|(_, e)| Some(e.normal)))
-        .reals_column("half_normal", "", "abscissa of the half-normal plot", rows.reals(|(_, e)| Some(e.half_normal)))
-        .texts_column("verdict", "against Lenth's margins", rows.texts(verdict))
-        .texts_column("significance", "against the critical value of the standardised effect", rows.texts(significance))
+    Effects {
+        response: rows.texts(|(response, _)| *response),
+        term: rows.texts(|(_, e)| e.term.as_str()),
+        effect: rows.reals(|(_, e)| Some(e.effect)),
+        std_error: rows.reals(|(_, e)| e.std_error),
+        standardized: rows.reals(|(_, e)| e.standardized),
+        p: rows.reals(|(_, e)| e.p),
+        lenth_t: rows.reals(|(_, e)| e.lenth_t),
+        rank: rows.ints(|(_, e)| e.rank),
+        share: rows.reals(|(_, e)| Some(e.share)),
+        cumulative: rows.reals(|(_, e)| Some(e.cumulative)),
+        normal: rows.reals(|(_, e)| Some(e.normal)),
+        half_normal: rows.reals(|(_, e)| Some(e.half_normal)),
+        verdict: rows.texts(verdict),
+        significance: rows.texts(significance),
+    }
 }
 
-fn limit_table(found: &[Found]) -> Table {
+fn limit_table(found: &[Found]) -> Limits {
     let rows = Rows(found);
-    Table {
-        about: "Lenth's limits, and the critical value of t where there is an error to test against".to_owned(),
-        columns: Vec::new(),
+    Limits {
+        response: rows.texts(|s| s.response.as_str()),
+        pse: rows.reals(|s| s.pse),
+        margin: rows.reals(|s| s.margin),
+        simultaneous: rows.reals(|s| s.simultaneous),
+        critical: rows.reals(|s| s.critical),
     }
-    .texts_column("response", "", rows.texts(|s| s.response.as_str()))
-    .reals_column("pse", "", "pseudo standard error", rows.reals(|s| s.pse))
-    .reals_column("margin", "", "margin of error", rows.reals(|s| s.margin))
-    .reals_column("simultaneous", "", "simultaneous margin of error", rows.reals(|s| s.simultaneous))
-    .reals_column("critical", "", "critical value of the standardised effects", rows.reals(|s| s.critical))
 }

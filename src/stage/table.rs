@@ -19,7 +19,8 @@ mod units;
 use super::beside::Beside;
 use super::figure::{Names, stored};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{self, Accepts, Artifact, ArtifactKind, Group, Node};
+use crate::artifact::presentation::Printed as Stored;
+use crate::artifact::{self, Accepts, Artifact, ArtifactKind};
 use crate::unit::Length;
 use beside::beside;
 use figure::column::{Column, Digits, Values};
@@ -284,12 +285,13 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
         columns.insert(0, Column::words("stage", names));
     }
     let printed = Printed { caption: params.caption, label: params.label, columns, notes };
-    let root = Group::new()
-        .with("csv", Node::Text(printed.csv()))
-        .with("latex", Node::Text(printed.latex()))
-        .with("markdown", Node::Text(printed.markdown()))
-        .with("table", Node::Table(stored(printed.columns)));
-    Ok(Artifact::of(ArtifactKind::TABLE, root))
+    let stored = Stored {
+        csv: printed.csv(),
+        latex: printed.latex(),
+        markdown: printed.markdown(),
+        table: stored(printed.columns),
+    };
+    Ok(stored.to_artifact())
 }
 
 /// The chosen columns of the chosen rows.

@@ -1,6 +1,7 @@
 //! What a calibration found, for a reader and for programs.
 
 use super::Asked;
+use crate::artifact::calibration::{Prediction, Solved};
 use crate::artifact::{Artifact, Column, Table, Values};
 use crate::cli::show::{rows_json, text as shown};
 use crate::export::csv_text;
@@ -18,7 +19,7 @@ pub(super) fn text(asked: &Asked, solution: &Artifact) -> String {
             values.iter_mut().filter(|value| value.abs() < NOTHING).for_each(|value| *value = 0.0);
         }
         let _ = writeln!(text, "{}\n", shown(&Table { about: String::new(), columns }));
-        text.push_str(&warnings(prediction));
+        text.push_str(&Prediction::from_table(prediction).map_or_else(|_| String::new(), |found| warnings(&found)));
     }
     text.push_str(&remarks(asked, solution));
     text
@@ -42,19 +43,13 @@ fn table<'a>(artifact: &'a Artifact, name: &str) -> std::borrow::Cow<'a, Table> 
 }
 
 /// Targets out of reach, one by one or together.
-fn warnings(prediction: &Table) -> String {
-    let Some(Values::Texts(reach)) = prediction.column("reach").map(|column| &column.values) else {
-        return String::new();
-    };
-    let Some(Values::Texts(names)) = prediction.column("response").map(|column| &column.values) else {
-        return String::new();
-    };
+fn warnings(prediction: &Prediction) -> String {
     let mut text = String::new();
-    for (name, reach) in names.iter().zip(reach).filter(|(_, reach)| reach.starts_with("out of reach")) {
+    let rows = prediction.response.iter().zip(&prediction.reach);
+    for (name, reach) in rows.filter(|(_, reach)| reach.starts_with("out of reach")) {
         let _ = writeln!(text, "the target of `{name}` is {reach} over these ranges: the nearest is given");
     }
-    let deviations = prediction.numbers("deviation_percent", "").unwrap_or_default();
-    let missed = deviations.iter().any(|deviation| deviation.abs() > MET);
+    let missed = prediction.deviation_percent.iter().any(|deviation| deviation.abs() > MET);
     if text.is_empty() && missed {
         text.push_str("each target can be met by itself, all together cannot: the nearest is given\n");
     }
@@ -66,15 +61,13 @@ const MET: f64 = 0.1;
 
 /// How good the solution is, and how far it is the only one.
 fn remarks(asked: &Asked, solution: &Artifact) -> String {
-    let best = table(solution, "solution");
-    let one = |name: &str| best.shown(name).ok().and_then(|(values, _)| values.first().copied());
-    let stop = match best.column("stop").map(|column| &column.values) {
-        Some(Values::Texts(texts)) => texts.first().cloned().unwrap_or_default(),
-        Some(_) | None => String::new(),
-    };
-    let (misfit, evaluations) = (one("misfit").unwrap_or(f64::NAN), one("evaluations").unwrap_or(f64::NAN));
+    let stored = table(solution, "solution");
+    let Ok(Solved { misfit, evaluations, stop, free, .. }) = Solved::from_table(&stored) else { return String::new() };
+    let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
+    let stop = stop.first().map_or("", String::as_str);
+    let (misfit, evaluations) = (first(&misfit), evaluations.first().copied().unwrap_or_default());
     let mut text = format!("misfit {misfit:.1e} after {evaluations} evaluations: {stop}\n");
-    let free = one("free").unwrap_or(0.0);
+    let free = first(&free);
     if free > 0.0 {
         let preferred = asked.workflow.position(&asked.stage).is_some_and(|index| {
             let settings = asked.workflow.stages[index].stage.settings();

@@ -7,6 +7,7 @@
 
 use super::goal::Wanted;
 use super::params::{ORDINATE, TargetParam};
+use crate::artifact::results::Results;
 use crate::artifact::{Artifact, Table};
 use crate::stage::StageError;
 use crate::stage::figure::Names;
@@ -128,7 +129,7 @@ impl Curve {
 
     /// The curve of a data stage, in order of its strains, rows without a number left out.
     fn read(&self, data: &Artifact) -> Result<Measured, StageError> {
-        let table = data.table("runs").ok_or_else(|| StageError::new("curve: the data hold no table `runs`"))?;
+        let table = Results::table(data)?;
         let [strain, stress] = self.columns.clone().unwrap_or_else(|| ["strain".to_owned(), "stress".to_owned()]);
         let (strain, stress) = (column(table, &strain, "")?, column(table, &stress, STRESS)?);
         let mut rows: Vec<(f64, f64)> = strain.into_iter().zip(stress).collect();

@@ -221,5 +221,5 @@ pub(super) fn notes(params: &Params, solved: &[Solved]) -> Table {
             notes.add("", format!("{}intervals are unknown: {}", whose(set), s.unknown));
         }
     }
-    notes.table()
+    notes.table().to_table()
 }

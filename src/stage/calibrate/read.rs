@@ -1,8 +1,9 @@
 //! Responses for the optimiser: from surfaces, from single runs, from tables of runs.
 
 use super::params::{FactorParam, SetParam, TargetParam};
+use crate::artifact::results::Results;
 use crate::artifact::run::Run;
-use crate::artifact::{Artifact, Table, Values};
+use crate::artifact::{Artifact, Table};
 use crate::stage::StageError;
 use crate::stage::fitted::models;
 use crate::unit::Conversion;
@@ -215,26 +216,19 @@ pub(super) fn runs(
     factors: &[FactorParam],
     targets: &[TargetParam],
 ) -> Result<Vec<Trial>, StageError> {
-    let table =
-        artifact.table("runs").ok_or_else(|| StageError::new("a stage of `learn_from` holds no table `runs`"))?;
+    let table = Results::table(artifact)?;
     let points = factors.iter().map(|f| factor_values(table, f)).collect::<Result<Vec<_>, _>>()?;
     let responses = targets.iter().map(|t| response_values(table, t)).collect::<Result<Vec<_>, _>>()?;
-    let failed = failures(table);
+    let failures = Results::failures(table);
+    let failed = |row: usize| failures.get(row).is_some_and(|reason| !reason.is_empty());
     let row = |i: usize| {
         let values: Vec<f64> = responses.iter().map(|column| column[i]).collect();
         let some = values.iter().any(|v| v.is_finite());
         let point = points.iter().map(|column| column[i]).collect();
         // A run that lacks every response without having failed says nothing.
-        (some || failed[i]).then_some(Trial { point, responses: some.then_some(values) })
+        (some || failed(i)).then_some(Trial { point, responses: some.then_some(values) })
     };
     Ok((0..table.rows()).filter_map(row).collect())
-}
-
-fn failures(table: &Table) -> Vec<bool> {
-    match table.column("failure").map(|column| &column.values) {
-        Some(Values::Texts(texts)) => texts.iter().map(|text| !text.is_empty()).collect(),
-        Some(_) | None => vec![false; table.rows()],
-    }
 }
 
 fn factor_values(table: &Table, factor: &FactorParam) -> Result<Vec<f64>, StageError> {

@@ -2,7 +2,8 @@
 
 use super::super::StageError;
 use super::valid::Broken;
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::design::{Design, DesignReport, DesignRows};
+use crate::artifact::{Artifact, Table};
 use design::{DesignTable, Report};
 use std::collections::BTreeMap;
 
@@ -16,7 +17,6 @@ pub(super) fn shortened(
     names: &Names,
     (whole, broken): (&DesignTable, &[Broken]),
 ) -> Result<Artifact, StageError> {
-    let mut made = artifact(table, report, names)?;
     let mut left = Table { about: "rows left out, with the rules that they break".to_owned(), columns: Vec::new() }
         .ints_column(
             "standard_order",
@@ -29,17 +29,17 @@ pub(super) fn shortened(
         left =
             left.reals_column(&factor.name, &factor.unit, "", broken.iter().map(|b| whole.natural[b.row][j]).collect());
     }
-    made.root.put("left_out", Node::Table(left));
-    Ok(made)
+    Ok(Design { left_out: Some(left), ..stored(table, report, names)? }.to_artifact())
 }
 
-/// The tables `design`, `coded` and `report`.
+/// The storable form.
 pub(super) fn artifact(table: &DesignTable, report: &Report, names: &Names) -> Result<Artifact, StageError> {
-    let root = Group::new()
-        .with("design", Node::Table(design(table, names)?))
-        .with("coded", Node::Table(coded(table)))
-        .with("report", Node::Table(lines(table, report)));
-    Ok(Artifact::of(ArtifactKind::DESIGN, root))
+    Ok(stored(table, report, names)?.to_artifact())
+}
+
+fn stored(table: &DesignTable, report: &Report, names: &Names) -> Result<Design, StageError> {
+    let design = design(table, names)?;
+    Ok(Design { design, coded: coded(table), report: lines(table, report), left_out: None })
 }
 
 fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
@@ -47,13 +47,13 @@ fn counted(numbers: impl IntoIterator<Item = usize>) -> Vec<i64> {
 }
 
 fn design(table: &DesignTable, names: &Names) -> Result<Table, StageError> {
-    let replicate = table.replicate().into_iter().map(|n| n as i64).collect();
-    let types = table.point_type.iter().map(|p| p.word().to_owned()).collect();
-    let mut found = Table { about: table.construction.clone(), columns: Vec::new() }
-        .ints_column("run", "order of the runs", counted(1..=table.runs()))
-        .ints_column("standard_order", "place in the order of the construction", counted(table.standard_order.clone()))
-        .ints_column("replicate", "which of the equal rows it is", replicate)
-        .texts_column("point_type", "centre, cube, axial, edge, grid, sample or given", types);
+    let rows = DesignRows {
+        run: counted(1..=table.runs()),
+        standard_order: counted(table.standard_order.clone()),
+        replicate: table.replicate().into_iter().map(|n| n as i64).collect(),
+        point_type: table.point_type.iter().map(|p| p.word().to_owned()).collect(),
+    };
+    let mut found = Table { about: table.construction.clone(), ..rows.to_table() };
     for (j, factor) in table.factors.iter().enumerate() {
         let values = table.natural.iter().map(|row| row[j]).collect();
         if let Some(names) = names.get(&factor.name) {
@@ -78,13 +78,14 @@ fn coded(table: &DesignTable) -> Table {
     found
 }
 
-fn lines(table: &DesignTable, report: &Report) -> Table {
+fn lines(table: &DesignTable, report: &Report) -> DesignReport {
     let lines = report.lines(table);
     let texts = |pick: &dyn Fn(&design::report::Line) -> String| lines.iter().map(pick).collect();
-    Table { about: "what the design can tell, judged by its rows".to_owned(), columns: Vec::new() }
-        .texts_column("section", "", texts(&|l| l.section.to_owned()))
-        .texts_column("subject", "factor, term or model", texts(&|l| l.subject.clone()))
-        .texts_column("quantity", "", texts(&|l| l.quantity.clone()))
-        .reals_column("value", "", "missing where words say it", lines.iter().map(|l| l.value).collect())
-        .texts_column("text", "", texts(&|l| l.text.clone()))
+    DesignReport {
+        section: texts(&|l| l.section.to_owned()),
+        subject: texts(&|l| l.subject.clone()),
+        quantity: texts(&|l| l.quantity.clone()),
+        value: lines.iter().map(|l| l.value).collect(),
+        text: texts(&|l| l.text.clone()),
+    }
 }

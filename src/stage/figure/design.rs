@@ -1,8 +1,10 @@
 //! Figures of designs and their results: main effects, ranges, points, agreement with other results.
 
 use super::super::StageError;
-use super::source::{Rows, Source, Sources};
+use super::source::{Rows, Source, Sources, rows_of};
 use super::{Label, Params};
+use crate::artifact::design::DesignRows;
+use crate::artifact::range::Range as Stored;
 use figure::agreement::{Agreement, Cloud, Pair};
 use figure::axis::fixed;
 use figure::bars::{Bar, RankedBars};
@@ -17,30 +19,23 @@ fn one_response(params: &Params) -> Result<&Label, StageError> {
 /// Range analysis of one factor for one response.
 struct Range {
     factor: String,
-    levels: Vec<f64>,
+    /// `None` where levels are names.
+    levels: Option<Vec<f64>>,
     means: Vec<f64>,
     range: f64,
 }
 
 /// The analysis of one response for the factors that are drawn, in their order.
 fn ranges(source: Source, params: &Params, response: &Label) -> Result<Vec<Range>, StageError> {
-    let (range, levels) = (source.rows(&["range"])?, source.rows(&["levels"])?);
-    let mine = range.where_is("response", &response.key)?;
-    let (factor, owner) = (range.texts("factor")?, levels.texts("factor")?);
-    let spans = range.reals("range", "")?;
-    let names: Vec<String> = (1..).map(|k| format!("level_{k}")).take_while(|name| range.has(name)).collect();
-    let read = |rows: Rows<'_>| names.iter().map(|name| rows.reals(name, "")).collect::<Result<Vec<_>, _>>();
-    let (means, values) = (read(range)?, read(levels)?);
-    let of = |columns: &[Vec<f64>], row: usize| -> Vec<f64> {
-        columns.iter().map(|c| c[row]).take_while(|v| v.is_finite()).collect()
-    };
+    let Stored { range, levels, .. } = Stored::from_artifact(source.0)?;
+    let mine = rows_of(&range.response, &response.key)?;
     let mut found = Vec::new();
     for label in &params.factors {
-        let row = mine.iter().copied().find(|&i| factor[i] == label.key);
-        let place = owner.iter().position(|f| *f == label.key);
-        if let (Some(row), Some(place)) = (row, place) {
-            let (levels, means) = (of(&values, place), of(&means, row));
-            found.push(Range { factor: label.key.clone(), levels, means, range: spans[row] });
+        let row = mine.iter().copied().find(|&row| range.factor[row] == label.key);
+        let own = levels.factor.iter().position(|factor| *factor == label.key);
+        if let (Some(row), Some(own)) = (row, own) {
+            let (levels, means) = (levels.level.numbers(own), range.level.row(row));
+            found.push(Range { factor: label.key.clone(), levels, means, range: range.range[row] });
         }
     }
     Ok(found)
@@ -65,11 +60,13 @@ pub(super) fn main_effects(params: &Params, sources: &Sources) -> Result<MainEff
     let mut factors = Vec::new();
     for range in computed {
         let label = label_of(params, &range)?;
+        let named =
+            || StageError::new(format!("the levels of `{}` are names, which have no place on an axis", label.key));
         factors.push(FactorMeans {
             factor: label.quantity(),
             group: if some_set && label.group.is_empty() { "empty column".into() } else { label.group.clone() },
             published: published.iter().find(|r| r.factor == label.key).map(|r| r.means.clone()).unwrap_or_default(),
-            levels: range.levels,
+            levels: range.levels.ok_or_else(|| named().hint("show = \"range\" compares its means"))?,
             means: range.means,
             half_width: Vec::new(),
         });
@@ -104,14 +101,17 @@ pub(super) fn range(params: &Params, sources: &Sources) -> Result<RankedBars, St
 }
 
 pub(super) fn points(params: &Params, sources: &Sources) -> Result<DesignPoints, StageError> {
-    let rows = sources.first()?.rows(&["design", "runs"])?;
+    let rows = sources.first()?.main()?;
     if !(2..=3).contains(&params.factors.len()) {
         let message = format!("points are drawn in two or three factors, not in {}", params.factors.len());
         return Err(StageError::new(message).hint("name them with `factors`"));
     }
     let columns = params.factors.iter().map(|f| rows.reals(&f.key, &f.unit)).collect::<Result<Vec<_>, _>>()?;
     let points: Vec<Vec<f64>> = (0..rows.len()).map(|i| columns.iter().map(|c| c[i]).collect()).collect();
-    let kinds = if rows.has("point_type") { rows.texts("point_type")? } else { vec!["run".to_owned(); rows.len()] };
+    let kinds = match DesignRows::from_table(rows.table) {
+        Ok(rows) => rows.point_type,
+        Err(_) => vec!["run".to_owned(); rows.len()],
+    };
     let side = |(label, column): (&Label, &Vec<f64>)| {
         let (low, high) = figure::axis::extent(column.iter().copied());
         let cube: Vec<f64> =
@@ -130,7 +130,7 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
     for response in &params.responses {
         let mut clouds = Vec::new();
         for (i, (ours, theirs)) in sources.of.iter().zip(&sources.compare).enumerate() {
-            let (ours, theirs) = (ours.rows(&["runs"])?, theirs.rows(&["runs"])?);
+            let (ours, theirs) = (ours.main()?, theirs.main()?);
             if !ours.has(&response.key) || !theirs.has(&response.key) {
                 continue;
             }

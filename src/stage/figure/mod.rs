@@ -37,7 +37,8 @@ mod source;
 
 use super::beside::Beside;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::presentation::Picture as Stored;
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
 use figure::palette::Map;
 use figure::{self, Figure as Picture, Style, column, text};
 use serde::{Deserialize, Serialize};
@@ -304,8 +305,9 @@ impl Kind for Figure {
     /// 6: descriptions in plain letters, without stray blanks. 7: a stage named after its kind says it once; force
     /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
-    /// where a screening has an error to test against; discs in a round outline.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 9, run: draw }];
+    /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
+    /// one another.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 10, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -349,14 +351,15 @@ const DPI: f64 = 300.0;
 fn picture_artifact(picture: &dyn Picture, style: &Style) -> Result<Artifact, Failure> {
     let scene = picture.scene(style);
     let png = figure::png::png(&scene, DPI).map_err(|e| StageError::new(e.to_string()))?;
-    let root = Group::new()
-        .with("title", Node::Text(scene.title.clone()))
-        .with("description", Node::Text(scene.description.clone()))
-        .with("svg", Node::Text(figure::svg::svg(&scene)))
-        .with("pdf", Node::Bytes(figure::pdf::pdf(&scene)))
-        .with("png", Node::Bytes(png))
-        .with("data", Node::Table(stored(picture.data())));
-    Ok(Artifact::of(ArtifactKind::PICTURE, root))
+    let stored = Stored {
+        svg: figure::svg::svg(&scene),
+        pdf: figure::pdf::pdf(&scene),
+        png,
+        data: stored(picture.data()),
+        title: scene.title,
+        description: scene.description,
+    };
+    Ok(stored.to_artifact())
 }
 
 /// Columns of a figure as a table of the store; a second column of the same name gets a number.

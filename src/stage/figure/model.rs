@@ -1,8 +1,9 @@
 //! Figures of fitted models: surfaces, residuals, effects.
 
-use super::super::StageError;
-use super::source::{Rows, Source, Sources, pick};
+use super::super::{StageError, artifact_kind};
+use super::source::{Source, Sources, pick, rows_of};
 use super::{Label, Params};
+use crate::artifact::statistics::{Anova, Coefficients, Domains, Residuals as StoredResiduals, Screening, Surfaces};
 use figure::Quantity;
 use figure::agreement::{Agreement, Cloud, Pair};
 use figure::axis::{fixed, significant};
@@ -26,10 +27,9 @@ const NODES: usize = 61;
 struct Polynomial(Vec<(Term, f64)>);
 
 impl Polynomial {
-    fn read(rows: Rows<'_>, response: &str) -> Result<Self, StageError> {
-        let which = rows.where_is("response", response)?;
-        let terms = pick(&rows.texts("term")?, &which);
-        let values = pick(&rows.reals("estimate", "")?, &which);
+    fn read(stored: &Coefficients, response: &str) -> Result<Self, StageError> {
+        let which = rows_of(&stored.response, response)?;
+        let (terms, values) = (pick(&stored.term, &which), pick(&stored.estimate, &which));
         let parsed = terms.iter().map(|t| Term::parse(t).map_err(|e| StageError::new(e.to_string())));
         Ok(Self(parsed.collect::<Result<Vec<_>, _>>()?.into_iter().zip(values).collect()))
     }
@@ -54,8 +54,8 @@ impl Polynomial {
 
 pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, StageError> {
     let response = one_response(params)?;
-    let source = sources.first()?;
-    let model = Polynomial::read(source.rows(&["coefficients"])?, &response.key)?;
+    let surfaces = Surfaces::from_artifact(sources.first()?.0)?;
+    let model = Polynomial::read(&surfaces.coefficients, &response.key)?;
     let [x, y] = params.factors.first_chunk::<2>().ok_or_else(|| StageError::new("two factors must be named"))?;
     let used = model.factors();
     for label in [x, y] {
@@ -64,7 +64,7 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
             return Err(StageError::new(message).hint(format!("it depends on {}", used.join(", "))));
         }
     }
-    let domain = Domain::read(source, &response.key);
+    let domain = Domain::read(&surfaces.domain, &response.key);
     let range = |label: &Label| {
         let own = domain.of(&label.key).or(label.range);
         own.ok_or_else(|| StageError::new(format!("[factor.{}] has neither levels nor range", label.key)))
@@ -112,15 +112,9 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
 struct Domain(Vec<(String, [f64; 2])>);
 
 impl Domain {
-    /// Nothing where the artifact does not tell.
-    fn read(source: Source, response: &str) -> Self {
-        let read = || {
-            let rows = source.rows(&["domain"])?;
-            let (factors, low, high) = (rows.texts("factor")?, rows.reals("low", "")?, rows.reals("high", "")?);
-            let which = rows.where_is("response", response)?;
-            Ok::<_, StageError>(which.into_iter().map(|i| (factors[i].clone(), [low[i], high[i]])).collect())
-        };
-        Self(read().unwrap_or_default())
+    fn read(stored: &Domains, response: &str) -> Self {
+        let own = (0..stored.response.len()).filter(|&i| stored.response[i] == response);
+        Self(own.map(|i| (stored.factor[i].clone(), [stored.low[i], stored.high[i]])).collect())
     }
 
     fn of(&self, factor: &str) -> Option<[f64; 2]> {
@@ -132,7 +126,7 @@ impl Domain {
 fn marks(sources: &Sources, x: &Label, y: &Label) -> Result<Vec<[f64; 2]>, StageError> {
     let mut marks: Vec<[f64; 2]> = Vec::new();
     for source in &sources.compare {
-        let rows = source.rows(&["design", "runs"])?;
+        let rows = source.main()?;
         for (u, v) in rows.reals(&x.key, &x.unit)?.into_iter().zip(rows.reals(&y.key, &y.unit)?) {
             if !marks.contains(&[u, v]) {
                 marks.push([u, v]);
@@ -154,23 +148,15 @@ pub(super) fn surface(params: &Params, sources: &Sources) -> Result<Surface, Sta
 
 pub(super) fn residuals(params: &Params, sources: &Sources) -> Result<Residuals, StageError> {
     let response = one_response(params)?;
-    let source = sources.first()?;
-    let rows = source.rows(&["residuals"])?;
-    let which = rows.where_is("response", &response.key)?;
-    let column = |name: &str| rows.reals(name, "").map(|v| pick(&v, &which));
-    let studentized = column("studentized")?;
-    let leverage = column("leverage")?;
-    let runs = if rows.has("row") {
-        pick(&rows.texts("row")?, &which)
-    } else {
-        (1..=which.len()).map(|i| i.to_string()).collect()
-    };
+    let stored = residuals_of(sources.first()?)?;
+    let which = rows_of(&stored.response, &response.key)?;
+    let (studentized, leverage) = (pick(&stored.studentized, &which), pick(&stored.leverage, &which));
     // The trace of the hat matrix is the number of coefficients.
     let coefficients = leverage.iter().filter(|h| h.is_finite()).sum::<f64>().round() as usize;
     Ok(Residuals {
         response: response.quantity(),
-        runs,
-        fitted: column("fitted")?,
+        runs: which.iter().map(|&i| stored.row[i].to_string()).collect(),
+        fitted: pick(&stored.fitted, &which),
         quantiles: normal_scores(&studentized),
         studentized,
         leverage,
@@ -192,11 +178,11 @@ fn normal_scores(values: &[f64]) -> Vec<f64> {
 }
 
 pub(super) fn observed(params: &Params, sources: &Sources) -> Result<Agreement, StageError> {
-    let rows = sources.first()?.rows(&["residuals"])?;
+    let stored = residuals_of(sources.first()?)?;
     let mut pairs = Vec::new();
     for response in &params.responses {
-        let Ok(which) = rows.where_is("response", &response.key) else { continue };
-        let (x, y) = (pick(&rows.reals("observed", "")?, &which), pick(&rows.reals("fitted", "")?, &which));
+        let Ok(which) = rows_of(&stored.response, &response.key) else { continue };
+        let (x, y) = (pick(&stored.observed, &which), pick(&stored.fitted, &which));
         let mean = x.iter().sum::<f64>() / x.len().max(1) as f64;
         let total: f64 = x.iter().map(|v| (v - mean) * (v - mean)).sum();
         let left: f64 = x.iter().zip(&y).map(|(a, b)| (a - b) * (a - b)).sum();
@@ -229,40 +215,45 @@ struct Effects {
 
 fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
     let response = one_response(params)?;
-    let source = sources.first()?;
-    let rows = source.rows(&["effects"])?;
-    let which = rows.where_is("response", &response.key)?;
-    let limits = source.rows(&["limits", "fit"])?;
-    let mine = limits.where_is("response", &response.key)?;
-    let limit = |name: &str| -> Option<f64> {
-        limits.reals(name, "").ok().and_then(|v| pick(&v, &mine).first().copied()).filter(|v| v.is_finite())
-    };
-    let names: Vec<String> = pick(&rows.texts("term")?, &which).iter().map(|t| term_label(t, params)).collect();
-    let (normal, half_normal) =
-        (pick(&rows.reals("normal", "")?, &which), pick(&rows.reals("half_normal", "")?, &which));
-    if let Some(critical) = limit("critical") {
-        let values = pick(&rows.reals("standardized", "")?, &which);
-        let margin = Some(("critical value".to_owned(), critical));
+    let Screening { effects, limits, .. } = Screening::from_artifact(sources.first()?.0)?;
+    let which = rows_of(&effects.response, &response.key)?;
+    let mine = rows_of(&limits.response, &response.key)?;
+    let limit = |values: &[f64]| pick(values, &mine).first().copied().filter(|value| value.is_finite());
+    let names = pick(&effects.term, &which).iter().map(|t| term_label(t, params)).collect();
+    let (normal, half_normal) = (pick(&effects.normal, &which), pick(&effects.half_normal, &which));
+    if let Some(critical) = limit(&limits.critical) {
         return Ok(Effects {
             names,
-            values,
+            values: pick(&effects.standardized, &which),
             normal,
             half_normal,
             error: 1.0,
-            margin,
+            margin: Some(("critical value".to_owned(), critical)),
             simultaneous: None,
             standardized: true,
         });
     }
     Ok(Effects {
         names,
-        values: pick(&rows.reals("effect", "")?, &which),
+        values: pick(&effects.effect, &which),
         normal,
         half_normal,
-        error: limit("pse").unwrap_or(f64::NAN),
-        margin: limit("margin").map(|margin| ("margin of error".to_owned(), margin)),
-        simultaneous: limit("simultaneous"),
+        error: limit(&limits.pse).unwrap_or(f64::NAN),
+        margin: limit(&limits.margin).map(|margin| ("margin of error".to_owned(), margin)),
+        simultaneous: limit(&limits.simultaneous),
         standardized: false,
+    })
+}
+
+/// The residuals that an artifact of the statistics holds.
+fn residuals_of(source: Source) -> Result<StoredResiduals, StageError> {
+    let kind = artifact_kind(source.0);
+    Ok(if kind == Some(Anova::KIND) {
+        Anova::from_artifact(source.0)?.residuals
+    } else if kind == Some(Screening::KIND) {
+        Screening::from_artifact(source.0)?.residuals
+    } else {
+        Surfaces::from_artifact(source.0)?.residuals
     })
 }
 
@@ -270,13 +261,13 @@ fn effects(params: &Params, sources: &Sources) -> Result<Effects, StageError> {
 /// (i − ½)/m, which for two degrees of freedom are √(−2 ln(1 − p)).
 fn chi_plot(params: &Params, source: Source) -> Result<EffectPlot, StageError> {
     let response = one_response(params)?;
-    let rows = source.rows(&["anova"])?;
-    let which = rows.where_is("response", &response.key)?;
-    let (names, df) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("df", "")?, &which));
-    let (squares, words) = (pick(&rows.reals("ss", "")?, &which), pick(&rows.texts("significance")?, &which));
+    let lines = Anova::from_artifact(source.0)?.anova;
+    let which = rows_of(&lines.response, &response.key)?;
+    let (names, df) = (pick(&lines.source, &which), pick(&lines.df, &which));
+    let (squares, words) = (pick(&lines.ss, &which), pick(&lines.significance, &which));
     let effects: Vec<usize> = (0..names.len()).filter(|&i| names[i] != "residual" && names[i] != "total").collect();
-    let degrees = effects.first().map_or(0.0, |&i| df[i]);
-    if !(degrees == 1.0 || degrees == 2.0) || effects.iter().any(|&i| df[i] != degrees) {
+    let degrees = effects.first().map_or(0, |&i| df[i]);
+    if !(degrees == 1 || degrees == 2) || effects.iter().any(|&i| df[i] != degrees) {
         return Err(StageError::new(
             "the sources of the analysis of variance do not all have one, or all two, degrees of freedom",
         )
@@ -286,7 +277,7 @@ fn chi_plot(params: &Params, source: Source) -> Result<EffectPlot, StageError> {
     order.sort_by(|&a, &b| squares[a].total_cmp(&squares[b]));
     let position =
         |i: usize| order.iter().position(|&k| k == i).map_or(0.0, |rank| rank as f64 + 0.5) / order.len() as f64;
-    let quantile = |p: f64| if degrees == 1.0 { normal_quantile(0.5 + 0.5 * p) } else { (-2.0 * ln(1.0 - p)).sqrt() };
+    let quantile = |p: f64| if degrees == 1 { normal_quantile(0.5 + 0.5 * p) } else { (-2.0 * ln(1.0 - p)).sqrt() };
     let residual = (0..names.len()).find(|&i| names[i] == "residual");
     let effect = |&i: &usize| Effect {
         name: term_label(&names[i], params),
@@ -296,16 +287,16 @@ fn chi_plot(params: &Params, source: Source) -> Result<EffectPlot, StageError> {
     };
     Ok(EffectPlot {
         response: response.quantity(),
-        coordinates: if degrees == 1.0 { Coordinates::HalfNormal } else { Coordinates::Chi(degrees as usize) },
+        coordinates: if degrees == 1 { Coordinates::HalfNormal } else { Coordinates::Chi(degrees as usize) },
         effects: effects.iter().map(effect).collect(),
-        error: residual.map_or(f64::NAN, |i| (squares[i] / df[i]).sqrt()),
+        error: residual.map_or(f64::NAN, |i| (squares[i] / df[i] as f64).sqrt()),
         standardized: false,
         margin: None,
     })
 }
 
 pub(super) fn half_normal(params: &Params, sources: &Sources) -> Result<EffectPlot, StageError> {
-    if sources.first()?.rows(&["anova"]).is_ok() {
+    if sources.first()?.0.is(Anova::KIND) {
         return chi_plot(params, sources.first()?);
     }
     let found = effects(params, sources)?;
@@ -353,9 +344,9 @@ fn term_label(term: &str, params: &Params) -> String {
 /// Shares of the sources of an analysis of variance in its total sum of squares.
 fn shares(params: &Params, source: Source) -> Result<RankedBars, StageError> {
     let response = one_response(params)?;
-    let rows = source.rows(&["anova"])?;
-    let which = rows.where_is("response", &response.key)?;
-    let (names, squares) = (pick(&rows.texts("source")?, &which), pick(&rows.reals("eta2", "")?, &which));
+    let lines = Anova::from_artifact(source.0)?.anova;
+    let which = rows_of(&lines.response, &response.key)?;
+    let (names, squares) = (pick(&lines.source, &which), pick(&lines.eta2, &which));
     // Where factors set properties of groups, one that sets nothing is an empty column.
     let grouped = params.factors.iter().any(|l| !l.group.is_empty());
     let mut bars = Vec::new();
@@ -377,7 +368,7 @@ fn shares(params: &Params, source: Source) -> Result<RankedBars, StageError> {
 
 pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, StageError> {
     let source = sources.first()?;
-    if source.rows(&["anova"]).is_ok() {
+    if source.0.is(Anova::KIND) {
         return shares(params, source);
     }
     let response = one_response(params)?;

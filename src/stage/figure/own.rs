@@ -282,8 +282,8 @@ pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bu
     let mut quantities: Option<[Quantity; 2]> = None;
     for (k, source) in sources.of.iter().enumerate() {
         // a run that failed before it was loaded has no curve
-        let Ok(rows) = source.rows(&["curve"]) else { continue };
-        let every: Vec<usize> = (0..rows.len()).collect();
+        let Some(table) = source.0.table("curve") else { continue };
+        let every: Vec<usize> = (0..table.rows()).collect();
         // all curves in the units of the first
         let fixed = |key: &str, i: usize| -> Result<Label, StageError> {
             let label = label(key)?;
@@ -291,7 +291,7 @@ pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bu
             Ok(Label { unit, ..label.clone() })
         };
         let (x, y) = (fixed("x", 0)?, fixed("y", 1)?);
-        let (x, y) = (Shown::of(rows.table, &x, &every)?, Shown::of(rows.table, &y, &every)?);
+        let (x, y) = (Shown::of(table, &x, &every)?, Shown::of(table, &y, &every)?);
         all.push((bundle::Line { name: format!("run {}", k + 1), x: x.values, y: y.values }, group_of(params, k)));
         quantities.get_or_insert([x.quantity, y.quantity]);
     }

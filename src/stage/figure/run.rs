@@ -2,8 +2,9 @@
 
 use super::super::StageError;
 use super::Params;
-use super::source::{Source, Sources};
+use super::source::Sources;
 use crate::artifact::run::{CrackMode, Cracks as StoredCracks, Curve as Stored, Run};
+use crate::artifact::specimen::Specimen as StoredSpecimen;
 use crate::unit::Conversion;
 use figure::chains::{Chains, Link};
 use figure::cracks::{Crack, Cracks, Moment};
@@ -70,58 +71,44 @@ fn counts(cracks: &StoredCracks, axial: &[f64]) -> Vec<(String, Vec<f64>)> {
 }
 
 /// Lower left and upper right corner of a specimen in mm; its centre is the origin.
-fn domain(specimen: Source) -> Result<([f64; 2], [f64; 2]), StageError> {
-    let half = |name: &str| specimen.number(name).map(|v| v * MM / 2.0).ok_or_else(|| specimen.lacks(name));
-    let (w, h) = (half("width")?, half("height")?);
-    Ok(([-w, -h], [w, h]))
+fn domain(specimen: &StoredSpecimen) -> ([f64; 2], [f64; 2]) {
+    let [w, h] = [specimen.width, specimen.height].map(|v| v * MM / 2.0);
+    ([-w, -h], [w, h])
 }
 
 /// Shape of a specimen.
-fn outline(specimen: Source) -> Outline {
-    match specimen.text("outline") {
-        Some("disc") => Outline::Disc,
-        Some(_) | None => Outline::Rectangle,
-    }
+fn outline(specimen: &StoredSpecimen) -> Outline {
+    if specimen.outline == "disc" { Outline::Disc } else { Outline::Rectangle }
 }
 
 /// Polygons of the aggregate in mm.
-fn outlines(specimen: Source) -> Vec<Vec<[f64; 2]>> {
-    let vertices = specimen.vectors("vertices").unwrap_or_default();
-    let owner = specimen.numbers("polygon_of").unwrap_or_default();
-    let mut polygons: Vec<Vec<[f64; 2]>> = Vec::new();
-    let mut last = f64::NAN;
-    for (vertex, &of) in vertices.iter().zip(&owner) {
-        if of != last {
-            polygons.push(Vec::new());
-            last = of;
-        }
-        if let Some(polygon) = polygons.last_mut() {
-            polygon.push(vertex.map(|v| v * MM));
-        }
-    }
-    polygons
+fn outlines(specimen: &StoredSpecimen) -> Vec<Vec<[f64; 2]>> {
+    let corners: Vec<(&i64, &[f64; 2])> = specimen.polygon_of.iter().zip(&specimen.vertices).collect();
+    let polygon = |corners: &[(&i64, &[f64; 2])]| corners.iter().map(|(_, vertex)| vertex.map(|v| v * MM)).collect();
+    corners.chunk_by(|a, b| a.0 == b.0).map(polygon).collect()
 }
 
 pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
-    let source = sources.first()?;
-    let (low, high) = domain(source)?;
-    let centres = source.vectors("centres").ok_or_else(|| source.lacks("centres"))?;
-    let radii = source.numbers("radii").ok_or_else(|| source.lacks("radii"))?;
-    let clump = source.numbers("clump_of").unwrap_or_default();
-    let group: Vec<usize> = (0..radii.len()).map(|i| usize::from(clump.get(i).is_some_and(|&c| c >= 0.0))).collect();
-    let mut groups = vec!["mortar".to_owned()];
-    if group.contains(&1) {
-        groups.push("aggregate".into());
+    let stored = StoredSpecimen::from_artifact(sources.first()?.0)?;
+    if stored.centres.ncols() != 2 {
+        return Err(
+            StageError::new("a specimen is drawn in the plane, and this one is in space").hint("export it as VTU")
+        );
     }
+    // The groups that occur, in the order of their numbers.
+    let used: Vec<i64> = (0..stored.groups.len() as i64).filter(|number| stored.group_of.contains(number)).collect();
+    let group = stored.group_of.iter().map(|own| used.iter().position(|number| number == own).unwrap_or(0)).collect();
+    let groups = used.iter().map(|&number| stored.groups[number as usize].clone()).collect();
+    let (low, high) = domain(&stored);
     Ok(Specimen {
-        outline: outline(source),
+        outline: outline(&stored),
         low,
         high,
-        centres: centres.iter().map(|c| c.map(|v| v * MM)).collect(),
-        radii: radii.iter().map(|r| r * MM).collect(),
+        centres: stored.centres.rows().into_iter().map(|c| [c[0] * MM, c[1] * MM]).collect(),
+        radii: stored.radii.iter().map(|r| r * MM).collect(),
         group,
         groups,
-        outlines: outlines(source),
+        outlines: outlines(&stored),
     })
 }
 
@@ -138,9 +125,10 @@ struct Ground {
 
 /// Domain and polygons: of the specimen when it is given, else around the points.
 fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
-    if let Some(&specimen) = sources.compare.first() {
-        let (low, high) = domain(specimen)?;
-        return Ok(Ground { outline: outline(specimen), low, high, polygons: outlines(specimen) });
+    if let Some(specimen) = sources.compare.first() {
+        let specimen = StoredSpecimen::from_artifact(specimen.0)?;
+        let (low, high) = domain(&specimen);
+        return Ok(Ground { outline: outline(&specimen), low, high, polygons: outlines(&specimen) });
     }
     let around = figure::scene::Rect::around(points.iter().copied());
     let r = around.ok_or_else(|| StageError::new("there is nothing to draw").hint("the run has no cracks"))?;

@@ -1,77 +1,72 @@
 //! Figures of a calibration: convergence, parameter sets, verification.
 
 use super::super::StageError;
-use super::source::{Rows, Source, Sources, pick};
+use super::source::{Sources, pick};
 use super::{Label, Params};
+use crate::artifact::Table;
+use crate::artifact::calibration::{Alternatives, Evaluations, Solution, Solved, Verification as Stored, VerifiedRuns};
+use crate::unit::Conversion;
 use figure::convergence::{Convergence, Descent};
 use figure::solutions::{SolutionSet, Solutions};
 use figure::verification::{Check, Verification};
 
-/// Rows of each target, in the order in which targets appear; one nameless group when there is no such column.
-fn by_target(targets: &[String]) -> Vec<(String, Vec<usize>)> {
-    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
-    for (i, target) in targets.iter().enumerate() {
-        match groups.iter_mut().find(|(name, _)| name == target) {
-            Some((_, rows)) => rows.push(i),
-            None => groups.push((target.clone(), vec![i])),
+/// The target sets in the order in which they appear.
+fn distinct(sets: &[i64]) -> Vec<i64> {
+    let mut found: Vec<i64> = Vec::new();
+    for set in sets {
+        if !found.contains(set) {
+            found.push(*set);
         }
     }
-    groups
+    found
 }
 
-/// "1" becomes "target 1"; a name stays as it is.
-fn target_name(target: &str) -> String {
-    if target.parse::<f64>().is_ok() { format!("target {target}") } else { target.to_owned() }
+/// The rows of a target set.
+fn rows_of(sets: &[i64], set: i64) -> Vec<usize> {
+    (0..sets.len()).filter(|&row| sets[row] == set).collect()
 }
 
 /// Prefix of a series when several stages are drawn together.
 fn prefixed(params: &Params, input: usize, name: &str) -> String {
     match params.series.get(input) {
-        Some(series) if name.is_empty() => series.clone(),
         Some(series) => format!("{series}, {name}"),
         None => name.to_owned(),
     }
 }
 
-/// The set that each row belongs to.
-fn sets_of(rows: Rows<'_>) -> Result<Vec<String>, StageError> {
-    if rows.has("set") { rows.texts("set") } else { Ok(vec![String::new(); rows.len()]) }
-}
-
 pub(super) fn convergence(params: &Params, sources: &Sources) -> Result<Convergence, StageError> {
     let mut runs = Vec::new();
     for (k, source) in sources.of.iter().enumerate() {
-        let rows = source.rows(&["history"])?;
-        let (effort, best) = (rows.reals("evaluation", "")?, rows.reals("best", "")?);
-        for (target, group) in by_target(&sets_of(rows)?) {
-            let name = prefixed(params, k, &target_name(&target));
-            let [effort, best] = [&effort, &best].map(|v| pick(v, &group));
-            runs.push(Descent { name, effort, best, median: Vec::new() });
+        let history = Evaluations::from_table(&Solution::from_artifact(source.0)?.history)?;
+        for set in distinct(&history.set) {
+            let rows = rows_of(&history.set, set);
+            let effort = rows.iter().map(|&row| history.evaluation[row] as f64).collect();
+            let name = prefixed(params, k, &format!("target {set}"));
+            runs.push(Descent { name, effort, best: pick(&history.best, &rows), median: Vec::new() });
         }
     }
     Ok(Convergence { effort: "Evaluations of the model".into(), misfit: "Misfit $f$ / –".into(), runs })
 }
 
 pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions, StageError> {
-    let first = sources.first()?.rows(&["solution"])?;
-    let labels: Vec<&Label> = params.factors.iter().filter(|f| first.has(&f.key)).collect();
+    let first = Solution::from_artifact(sources.first()?.0)?.solution;
+    let labels: Vec<&Label> = params.factors.iter().filter(|f| first.column(&f.key).is_some()).collect();
     if labels.is_empty() {
         return Err(StageError::new("the solutions hold no factor of the workflow"));
     }
+    let points = |table: &Table| -> Result<Vec<Vec<f64>>, StageError> {
+        let columns = labels.iter().map(|label| table.numbers(&label.key, &label.unit));
+        let columns = columns.collect::<Result<Vec<_>, _>>()?;
+        Ok((0..table.rows()).map(|row| columns.iter().map(|column| column[row]).collect()).collect())
+    };
     let mut sets: Vec<SolutionSet> = Vec::new();
     for (k, source) in sources.of.iter().enumerate() {
-        let best = source.rows(&["solution"])?;
-        let further = source.rows(&["solution_set"]).ok();
-        let others = further.map(sets_of).transpose()?.unwrap_or_default();
-        let point = |rows: Rows<'_>, i: usize| -> Result<Vec<f64>, StageError> {
-            labels.iter().map(|l| Ok(rows.reals(&l.key, &l.unit)?[i])).collect()
-        };
-        for (i, target) in sets_of(best)?.into_iter().enumerate() {
-            let mut rows = vec![point(best, i)?];
-            for j in (0..others.len()).filter(|&j| others[j] == target) {
-                rows.extend(further.map(|f| point(f, j)).transpose()?);
-            }
-            sets.push(SolutionSet { name: prefixed(params, k, &target_name(&target)), rows, misfit: Vec::new() });
+        let stored = Solution::from_artifact(source.0)?;
+        let (best, further) = (points(&stored.solution)?, points(&stored.solution_set)?);
+        let others = Alternatives::from_table(&stored.solution_set)?.set;
+        for (set, point) in Solved::from_table(&stored.solution)?.set.into_iter().zip(best) {
+            let rows = std::iter::once(point).chain(pick(&further, &rows_of(&others, set))).collect();
+            sets.push(SolutionSet { name: prefixed(params, k, &format!("target {set}")), rows, misfit: Vec::new() });
         }
     }
     let bound = |(k, label): (usize, &&Label)| {
@@ -84,30 +79,33 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
 
 /// Values of the runs, and the target of each set and response.
 pub(super) fn verification(params: &Params, sources: &Sources) -> Result<Verification, StageError> {
-    let source: Source = sources.first()?;
-    let (runs, summary) = (source.rows(&["runs"])?, source.rows(&["summary"])?);
-    let (of_run, of_line) = (sets_of(runs)?, sets_of(summary)?);
-    let (responses, targets) = (summary.texts("response")?, summary.reals("target", "")?);
-    let sets: Vec<String> = by_target(&of_line).into_iter().map(|(set, _)| set).collect();
+    let Stored { summary, runs } = Stored::from_artifact(sources.first()?.0)?;
+    let of_run = VerifiedRuns::from_table(&runs)?.set;
+    let sets = distinct(&summary.set);
     let mut checks = Vec::new();
-    for response in params.responses.iter().filter(|r| runs.has(&r.key) && responses.contains(&r.key)) {
-        let values = runs.reals(&response.key, &response.unit)?;
-        let of = |set: &String| -> Vec<f64> {
-            let hits = (0..values.len()).filter(|&i| of_run[i] == *set && values[i].is_finite());
-            hits.map(|i| values[i]).collect()
+    let both = |label: &&Label| runs.column(&label.key).is_some() && summary.response.contains(&label.key);
+    for response in params.responses.iter().filter(both) {
+        let values = runs.numbers(&response.key, &response.unit)?;
+        let of = |set: &i64| -> Vec<f64> {
+            pick(&values, &rows_of(&of_run, *set)).into_iter().filter(|value| value.is_finite()).collect()
         };
-        let target = |set: &String| {
-            let line = (0..responses.len()).find(|&i| of_line[i] == *set && responses[i] == response.key);
-            line.map_or(f64::NAN, |i| targets[i])
-        };
-        checks.push(Check {
-            response: response.quantity(),
-            target: sets.iter().map(target).collect(),
-            runs: sets.iter().map(of).collect(),
-        });
+        let mut targets = Vec::with_capacity(sets.len());
+        for set in &sets {
+            let line = rows_of(&summary.set, *set).into_iter().find(|&line| summary.response[line] == response.key);
+            targets.push(match line {
+                Some(line) => {
+                    let shown = Conversion::between(&summary.unit[line], &response.unit);
+                    shown
+                        .map_err(|e| StageError::new(format!("the target of `{}`: {e}", response.key)))?
+                        .of(summary.target[line])
+                }
+                None => f64::NAN,
+            });
+        }
+        checks.push(Check { response: response.quantity(), target: targets, runs: sets.iter().map(of).collect() });
     }
     if checks.is_empty() {
         return Err(StageError::new("no response is in both tables `runs` and `summary`"));
     }
-    Ok(Verification { sets, checks })
+    Ok(Verification { sets: sets.iter().map(i64::to_string).collect(), checks })
 }

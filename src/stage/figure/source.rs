@@ -1,7 +1,7 @@
 //! Reading the inputs of a figure, with errors that say which table or column is missing and which there are.
 
-use super::super::{Job, StageError};
-use crate::artifact::{Array, Artifact, Node, Table, Values};
+use super::super::{Job, StageError, artifact_kind};
+use crate::artifact::{Artifact, ArtifactKind, Table, Values};
 use std::sync::Arc;
 
 /// The inputs of a figure by port.
@@ -14,11 +14,10 @@ pub(super) struct Sources<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a>(pub &'a Artifact);
 
-/// One table of an input, with the name to complain about.
+/// One table of an input.
 #[derive(Clone, Copy)]
 pub(super) struct Rows<'a> {
     pub table: &'a Table,
-    name: &'a str,
 }
 
 impl<'a> Sources<'a> {
@@ -36,58 +35,11 @@ impl<'a> Sources<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The first of the named tables that is there.
-    pub(super) fn rows(self, names: &[&'a str]) -> Result<Rows<'a>, StageError> {
-        let found = names.iter().find_map(|name| self.0.table(name).map(|table| Rows { table, name }));
-        found.ok_or_else(|| {
-            let there: Vec<String> = self.0.tables().into_iter().map(|(name, _)| name).collect();
-            StageError::new(format!("the artifact `{}` holds no table `{}`", self.0.kind, names.join("` or `")))
-                .hint(format!("it holds {}", if there.is_empty() { "no table".into() } else { there.join(", ") }))
-        })
-    }
-
-    /// An array of vectors of the plane.
-    pub(super) fn vectors(self, name: &str) -> Option<Vec<[f64; 2]>> {
-        match self.0.root.get(name) {
-            Some(Node::Array(Array { shape, values: Values::Reals(values), .. })) if shape.get(1) == Some(&2) => {
-                Some(values.as_chunks::<2>().0.to_vec())
-            }
-            _ => None,
-        }
-    }
-
-    /// A plain array of numbers.
-    pub(super) fn numbers(self, name: &str) -> Option<Vec<f64>> {
-        match self.0.root.get(name) {
-            Some(Node::Array(Array { values: Values::Reals(values), .. })) => Some(values.clone()),
-            Some(Node::Array(Array { values: Values::Ints(values), .. })) => {
-                Some(values.iter().map(|&v| v as f64).collect())
-            }
-            _ => None,
-        }
-    }
-
-    /// A single number.
-    pub(super) fn number(self, name: &str) -> Option<f64> {
-        match self.0.root.get(name) {
-            Some(Node::Real { value, .. }) => Some(*value),
-            _ => None,
-        }
-    }
-
-    /// A text.
-    pub(super) fn text(self, name: &str) -> Option<&'a str> {
-        match self.0.root.get(name) {
-            Some(Node::Text(text)) => Some(text),
-            _ => None,
-        }
-    }
-
-    /// What is missing, in words.
-    pub(super) fn lacks(self, name: &str) -> StageError {
-        let there: Vec<&str> = self.0.root.iter().map(|(name, _)| name).collect();
-        StageError::new(format!("the artifact `{}` holds no `{name}`", self.0.kind))
-            .hint(format!("it holds {}", there.join(", ")))
+    /// The main table of its kind.
+    pub(super) fn main(self) -> Result<Rows<'a>, StageError> {
+        let name = artifact_kind(self.0).and_then(ArtifactKind::main_table);
+        let found = name.and_then(|name| self.0.table(name)).map(|table| Rows { table });
+        found.ok_or_else(|| StageError::new(format!("the artifact `{}` holds no table to draw", self.0.kind)))
     }
 }
 
@@ -112,12 +64,6 @@ pub(super) fn words(artifact: &Artifact, response: Option<&str>) -> Vec<String> 
 }
 
 impl Rows<'_> {
-    fn lacks(self, column: &str, what: &str) -> StageError {
-        let there: Vec<&str> = self.table.columns.iter().map(|c| c.name.as_str()).collect();
-        StageError::new(format!("table `{}` has no {what} in a column `{column}`", self.name))
-            .hint(format!("its columns are {}", there.join(", ")))
-    }
-
     pub(super) fn has(self, column: &str) -> bool {
         self.table.column(column).is_some()
     }
@@ -130,32 +76,19 @@ impl Rows<'_> {
     pub(super) fn reals(self, column: &str, unit: &str) -> Result<Vec<f64>, StageError> {
         Ok(self.table.numbers(column, unit)?)
     }
+}
 
-    pub(super) fn texts(self, column: &str) -> Result<Vec<String>, StageError> {
-        match self.table.column(column).map(|c| &c.values) {
-            Some(Values::Texts(texts)) => Ok(texts.clone()),
-            Some(Values::Ints(values)) => Ok(values.iter().map(i64::to_string).collect()),
-            Some(Values::Reals(values)) => Ok(values.iter().map(|v| format!("{v}")).collect()),
-            None => Err(self.lacks(column, "words")),
-        }
+/// Row numbers whose response is the one that is drawn.
+pub(super) fn rows_of(responses: &[String], wanted: &str) -> Result<Vec<usize>, StageError> {
+    let rows: Vec<usize> = (0..responses.len()).filter(|&row| responses[row] == wanted).collect();
+    if rows.is_empty() {
+        let mut there = responses.to_vec();
+        there.sort();
+        there.dedup();
+        let message = format!("the analysis has no response `{wanted}`");
+        return Err(StageError::new(message).hint(format!("it has {}", there.join(", "))));
     }
-
-    /// Row numbers whose `column` equals `value`; all rows when there is no such column.
-    pub(super) fn where_is(self, column: &str, value: &str) -> Result<Vec<usize>, StageError> {
-        if !self.has(column) {
-            return Ok((0..self.len()).collect());
-        }
-        let texts = self.texts(column)?;
-        let rows: Vec<usize> = (0..texts.len()).filter(|&i| texts[i] == value).collect();
-        if rows.is_empty() {
-            let mut there = texts;
-            there.sort();
-            there.dedup();
-            let message = format!("table `{}` has no rows of {column} `{value}`", self.name);
-            return Err(StageError::new(message).hint(format!("it has {}", there.join(", "))));
-        }
-        Ok(rows)
-    }
+    Ok(rows)
 }
 
 /// The values at the given rows.

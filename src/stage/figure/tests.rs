@@ -1,6 +1,15 @@
 use super::*;
+use crate::artifact::calibration::{
+    Alternatives, Evaluations, Prediction, Solution, Solved, Summary, Verification, VerifiedRuns,
+};
+use crate::artifact::range::{LevelValues, Levels, Range, Ranges};
 use crate::artifact::run::{CrackMode, Cracks, Curve, Forces, Responses, Run, States};
-use crate::artifact::{Array, ArtifactKind, ContentHash, Values};
+use crate::artifact::specimen::Specimen;
+use crate::artifact::statistics::{
+    Anova, Coefficients, Domains, Effects, Fits, Limits, Paths, PrincipalAxes, Remarks, Residuals, Screening,
+    Selections, Stationary, Surfaces, Variances,
+};
+use crate::artifact::{ContentHash, Group, Node, Numbered, Values};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use ndarray::{Array2, Array3};
 use std::sync::Arc;
@@ -20,19 +29,18 @@ fn table() -> Table {
 }
 
 fn range_analysis() -> Artifact {
-    let range = table()
-        .texts_column("response", "", words(["UCS", "UCS", "UCS"]))
-        .texts_column("factor", "", words(["Ec", "mu", "null"]))
-        .reals_column("level_1", "", "", vec![30.0, 34.0, 34.5])
-        .reals_column("level_2", "", "", vec![40.0, 35.0, 35.0])
-        .reals_column("level_3", "", "", vec![f64::NAN, 36.0, 34.6])
-        .reals_column("range", "", "", vec![10.0, 2.0, 0.5]);
-    let levels = table()
-        .texts_column("factor", "", words(["Ec", "mu", "null"]))
-        .reals_column("level_1", "", "", vec![10.0, 0.5, 1.0])
-        .reals_column("level_2", "", "", vec![20.0, 1.0, 2.0])
-        .reals_column("level_3", "", "", vec![f64::NAN, 1.5, 3.0]);
-    artifact("range", vec![("range", range), ("levels", levels)])
+    let factor = words(["Ec", "mu", "null"]);
+    let range = Ranges {
+        response: words(["UCS", "UCS", "UCS"]),
+        factor: factor.clone(),
+        level: Numbered(vec![vec![30.0, 34.0, 34.5], vec![40.0, 35.0, 35.0], vec![f64::NAN, 36.0, 34.6]]),
+        range: vec![10.0, 2.0, 0.5],
+        rank: vec![1, 2, 3],
+        missing: vec![0; 3],
+    };
+    let level = Numbered(vec![vec![10.0, 0.5, 1.0], vec![20.0, 1.0, 2.0], vec![f64::NAN, 1.5, 3.0]]);
+    let levels = LevelValues { factor, unit: words(["GPa", "", ""]), level: Levels::Numbers(level) };
+    Range { range, levels, notes: Remarks::default() }.to_artifact()
 }
 
 fn results(shift: f64) -> Artifact {
@@ -86,115 +94,172 @@ fn run() -> Artifact {
 }
 
 fn specimen() -> Artifact {
-    let vectors = |values: Vec<f64>| {
-        Node::Array(Array {
-            shape: vec![values.len() / 2, 2],
-            unit: "m".into(),
-            about: String::new(),
-            values: Values::Reals(values),
-        })
+    let specimen = Specimen {
+        outline: "rectangle".into(),
+        width: 0.05,
+        height: 0.1,
+        depth: 0.0,
+        density: 2000.0,
+        centres: Array2::from(vec![[0.0, 0.0], [0.002, 0.0], [0.004, 0.01]]),
+        group_of: vec![0, 1, 1],
+        groups: words(["mortar", "aggregate"]),
+        radii: vec![1e-3; 3],
+        clump_of: vec![-1, 0, 0],
+        clumps: table(),
+        polygon_of: vec![0, 0, 0],
+        vertices: vec![[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]],
+        quality: table(),
+        warnings: Vec::new(),
     };
-    let ints = |values: Vec<i64>| {
-        Node::Array(Array {
-            shape: vec![values.len()],
-            unit: String::new(),
-            about: String::new(),
-            values: Values::Ints(values),
-        })
-    };
-    let radii = Array { shape: vec![3], unit: "m".into(), about: String::new(), values: Values::Reals(vec![1e-3; 3]) };
-    let metre = |value: f64| Node::Real { value, unit: "m".into() };
-    let root = Group::new()
-        .with("width", metre(0.05))
-        .with("height", metre(0.1))
-        .with("centres", vectors(vec![0.0, 0.0, 0.002, 0.0, 0.004, 0.01]))
-        .with("radii", Node::Array(radii))
-        .with("clump_of", ints(vec![-1, 0, 0]))
-        .with("polygon_of", ints(vec![0, 0, 0]))
-        .with("vertices", vectors(vec![0.0, 0.0, 0.005, 0.0, 0.0, 0.005]));
-    Artifact::of(ArtifactKind::SPECIMEN, root)
+    specimen.to_artifact()
 }
 
 fn surfaces() -> Artifact {
-    let coefficients = table()
-        .texts_column("response", "", words(["UCS", "UCS", "UCS", "UCS", "E"]))
-        .texts_column("term", "", words(["const", "Ec", "mu", "Ec*mu", "const"]))
-        .reals_column("estimate", "", "", vec![1.0, 2.0, -3.0, 0.5, 7.0]);
-    let domain = table()
-        .texts_column("response", "", words(["UCS", "UCS"]))
-        .texts_column("factor", "", words(["Ec", "mu"]))
-        .reals_column("low", "", "", vec![8.0, 0.4])
-        .reals_column("high", "", "", vec![22.0, 1.6]);
-    artifact("surfaces", vec![("coefficients", coefficients), ("domain", domain), ("residuals", residual_table())])
+    let coefficients = Coefficients {
+        response: words(["UCS", "UCS", "UCS", "UCS", "E"]),
+        term: words(["const", "Ec", "mu", "Ec*mu", "const"]),
+        estimate: vec![1.0, 2.0, -3.0, 0.5, 7.0],
+        std_error: vec![0.1; 5],
+        t: vec![1.0; 5],
+        p: vec![0.5; 5],
+        vif: vec![1.0; 5],
+        ..Coefficients::default()
+    };
+    let domain = Domains {
+        response: words(["UCS", "UCS"]),
+        factor: words(["Ec", "mu"]),
+        unit: words(["GPa", ""]),
+        low: vec![8.0, 0.4],
+        high: vec![22.0, 1.6],
+    };
+    let surfaces = Surfaces {
+        coefficients,
+        coded: Coefficients::default(),
+        fit: Fits::default(),
+        residuals: residuals(),
+        stationary: Stationary::default(),
+        axes: PrincipalAxes::default(),
+        path: Paths::default(),
+        domain,
+        selection: Selections::default(),
+        notes: Remarks::default(),
+        models: BTreeMap::new(),
+        with_constant: None,
+        predictions: None,
+    };
+    surfaces.to_artifact()
 }
 
-fn residual_table() -> Table {
+fn residuals() -> Residuals {
     let n = 12;
     let count = |f: fn(f64) -> f64| (0..n).map(|i| f(f64::from(i))).collect::<Vec<f64>>();
-    table()
-        .texts_column("response", "", vec!["UCS".into(); 12])
-        .ints_column("row", "", (1..=12).collect())
-        .reals_column("observed", "", "", count(|i| 20.0 + i))
-        .reals_column("fitted", "", "", count(|i| 20.0 + 1.01 * i))
-        .reals_column("leverage", "", "", count(|i| 0.25 + 0.01 * (i % 3.0)))
-        .reals_column("studentized", "", "", count(|i| if i == 5.0 { 4.0 } else { (i * 1.7) % 2.0 - 1.0 }))
+    Residuals {
+        response: vec!["UCS".into(); 12],
+        row: (1..=12).collect(),
+        observed: count(|i| 20.0 + i),
+        fitted: count(|i| 20.0 + 1.01 * i),
+        residual: count(|i| -0.01 * i),
+        leverage: count(|i| 0.25 + 0.01 * (i % 3.0)),
+        standardized: count(|_| 0.0),
+        studentized: count(|i| if i == 5.0 { 4.0 } else { (i * 1.7) % 2.0 - 1.0 }),
+        cook: count(|_| 0.0),
+        flag: vec![String::new(); 12],
+    }
 }
 
 fn screening() -> Artifact {
-    let effects = table()
-        .texts_column("response", "", vec!["UCS".into(); 3])
-        .texts_column("term", "", words(["Ec", "mu", "Ec*mu"]))
-        .reals_column("effect", "", "", vec![9.0, -3.0, 0.4])
-        .reals_column("normal", "", "", vec![0.97, -0.97, 0.0])
-        .reals_column("half_normal", "", "", vec![1.38, 0.67, 0.21]);
-    let limits = table()
-        .texts_column("response", "", words(["UCS"]))
-        .reals_column("pse", "", "", vec![0.6])
-        .reals_column("margin", "", "", vec![2.3])
-        .reals_column("simultaneous", "", "", vec![f64::NAN]);
-    artifact("screening", vec![("effects", effects), ("limits", limits), ("residuals", residual_table())])
+    let effects = Effects {
+        response: vec!["UCS".into(); 3],
+        term: words(["Ec", "mu", "Ec*mu"]),
+        effect: vec![9.0, -3.0, 0.4],
+        std_error: vec![f64::NAN; 3],
+        standardized: vec![f64::NAN; 3],
+        p: vec![f64::NAN; 3],
+        lenth_t: vec![1.0; 3],
+        rank: vec![1, 2, 3],
+        share: vec![0.3; 3],
+        cumulative: vec![0.3, 0.6, 1.0],
+        normal: vec![0.97, -0.97, 0.0],
+        half_normal: vec![1.38, 0.67, 0.21],
+        verdict: words(["", "", ""]),
+        significance: words(["", "", ""]),
+    };
+    let limits = Limits {
+        response: words(["UCS"]),
+        pse: vec![0.6],
+        margin: vec![2.3],
+        simultaneous: vec![f64::NAN],
+        critical: vec![f64::NAN],
+    };
+    let (fit, notes) = (Fits::default(), Remarks::default());
+    Screening { effects, limits, fit, notes, residuals: residuals() }.to_artifact()
 }
 
 fn anova() -> Artifact {
-    let lines = table()
-        .texts_column("response", "", vec!["UCS".into(); 4])
-        .texts_column("source", "", words(["Ec", "mu", "residual", "total"]))
-        .reals_column("eta2", "", "", vec![0.8, 0.15, 0.05, f64::NAN]);
-    artifact("anova", vec![("anova", lines)])
+    let anova = Variances {
+        response: vec!["UCS".into(); 4],
+        source: words(["Ec", "mu", "residual", "total"]),
+        df: vec![1, 1, 2, 4],
+        ss: vec![8.0, 1.5, 0.5, 10.0],
+        ms: vec![8.0, 1.5, 0.25, f64::NAN],
+        f: vec![f64::NAN; 4],
+        p: vec![f64::NAN; 4],
+        significance: words(["", "", "", ""]),
+        eta2: vec![0.8, 0.15, 0.05, f64::NAN],
+        omega2: vec![f64::NAN; 4],
+        ..Variances::default()
+    };
+    Anova { anova, fit: Fits::default(), notes: Remarks::default(), residuals: residuals() }.to_artifact()
 }
 
 fn solution() -> Artifact {
-    let set = || vec![1, 2];
-    let solution = table()
-        .ints_column("set", "", set())
-        .reals_column("Ec", "GPa", "", vec![12.0, 18.0])
-        .reals_column("mu", "", "", vec![0.7, 1.2])
-        .reals_column("misfit", "", "", vec![1e-4, 2e-3]);
-    let further = table().ints_column("set", "", set()).reals_column("Ec", "GPa", "", vec![13.0, 17.0]).reals_column(
-        "mu",
-        "",
-        "",
-        vec![0.8, 1.1],
-    );
-    let history = table()
-        .ints_column("set", "", vec![1, 1, 2])
-        .ints_column("evaluation", "", vec![1, 20, 1])
-        .reals_column("best", "", "", vec![0.5, 1e-4, 2e-3]);
-    artifact("solution", vec![("solution", solution), ("solution_set", further), ("history", history)])
+    let factors = |ec: Vec<f64>, mu: Vec<f64>| table().reals_column("Ec", "GPa", "", ec).reals_column("mu", "", "", mu);
+    let solved = Solved {
+        set: vec![1, 2],
+        misfit: vec![1e-4, 2e-3],
+        evaluations: vec![20, 1],
+        failed: vec![0, 0],
+        stop: words(["", ""]),
+        free: vec![0.0, 0.0],
+    };
+    let history = Evaluations {
+        set: vec![1, 1, 2],
+        evaluation: vec![1, 20, 1],
+        misfit: vec![0.5, 1e-4, 2e-3],
+        best: vec![0.5, 1e-4, 2e-3],
+        recommended: vec![f64::NAN; 3],
+        failure: words(["", "", ""]),
+    };
+    let others = Alternatives { set: vec![1, 2] }.to_table();
+    let solution = Solution {
+        solution: solved.to_table().with_after("set", factors(vec![12.0, 18.0], vec![0.7, 1.2])),
+        prediction: Prediction::default(),
+        history: history.to_table(),
+        solution_set: others.with_after("set", factors(vec![13.0, 17.0], vec![0.8, 1.1])),
+    };
+    solution.to_artifact()
 }
 
 fn verification() -> Artifact {
-    let runs = table().ints_column("set", "", vec![1, 1, 2, 2]).reals_column(
-        "UCS",
-        "MPa",
-        "",
-        vec![30.0, 31.0, 40.0, f64::NAN],
-    );
-    let summary = table()
-        .ints_column("set", "", vec![1, 2])
-        .texts_column("response", "", words(["UCS", "UCS"]))
-        .reals_column("target", "", "", vec![30.2, 41.0]);
-    artifact("verification", vec![("runs", runs), ("summary", summary)])
+    let runs =
+        VerifiedRuns { set: vec![1, 1, 2, 2], specimen: vec![1, 2, 1, 2], failure: words(["", "", "", "no peak"]) };
+    let ucs = table().reals_column("UCS", "MPa", "", vec![30.0, 31.0, 40.0, f64::NAN]);
+    let summary = Summary {
+        set: vec![1, 2],
+        response: words(["UCS", "UCS"]),
+        unit: words(["MPa", "kPa"]),
+        target: vec![30.2, 41_000.0],
+        mean: vec![30.5, 40.0],
+        std: vec![0.7, f64::NAN],
+        cv_percent: vec![2.0, f64::NAN],
+        relative_error_percent: vec![1.0, 2.0],
+        error_of_mean_percent: vec![1.0, 2.0],
+        low: vec![f64::NAN; 2],
+        high: vec![f64::NAN; 2],
+        target_inside: words(["unknown", "unknown"]),
+        n: vec![2, 1],
+    };
+    Verification { summary, runs: runs.to_table().with_after("specimen", ucs) }.to_artifact()
 }
 
 fn context() -> Context {
@@ -410,7 +475,8 @@ fn what_an_input_lacks_is_named() {
         other => panic!("{other:?}"),
     };
     let residuals = "show = 'residuals'\nof = 'a'\nresponse = 'UCS'";
-    assert_eq!(said(residuals, anova()), "the artifact `anova` holds no table `residuals` (it holds anova)");
+    let empty = Artifact::of(Anova::KIND, Group::new());
+    assert_eq!(said(residuals, empty), "anova.anova: wanted table, found nothing ()");
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec', 'null']";
     assert_eq!(said(contour, surfaces()), "the surface of `UCS` does not depend on `null` (it depends on Ec, mu)");
 }

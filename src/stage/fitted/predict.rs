@@ -3,8 +3,8 @@
 use super::super::columns::Rows;
 use super::super::notes::Notes;
 use super::super::{Complaint, Context};
-use super::{Fitting, named};
-use crate::artifact::Table;
+use super::Fitting;
+use crate::artifact::statistics::{Paths, Predictions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stats::canonical::steepest_path;
@@ -70,27 +70,28 @@ pub(super) fn extrapolations(found: &[(&Fitting, Regression)], predict: &Predict
 }
 
 /// One row per response and point.
-pub(super) fn prediction_table(found: &[(&Fitting, Regression)], predict: &Predict) -> Table {
+pub(super) fn prediction_table(found: &[(&Fitting, Regression)], predict: &Predict) -> Predictions {
     let all = asked(found, predict);
     let rows = Rows(&all);
-    named("predictions with intervals; extrapolation is flagged")
-        .texts_column("response", "", rows.texts(|(response, ..)| response.as_str()))
-        .ints_column("point", "counted from 1", rows.ints(|(_, number, _)| number + 1))
-        .reals_column("value", "", "of the model", rows.reals(|(_, _, p)| Some(p.value)))
-        .reals_column("std_error", "", "of the mean response", rows.reals(|(_, _, p)| p.std_error))
-        .reals_column("confidence_low", "", "of the mean response", rows.reals(|(_, _, p)| Some(p.confidence?.0)))
-        .reals_column("confidence_high", "", "of the mean response", rows.reals(|(_, _, p)| Some(p.confidence?.1)))
-        .reals_column("prediction_low", "", "of one new run", rows.reals(|(_, _, p)| Some(p.prediction?.0)))
-        .reals_column("prediction_high", "", "of one new run", rows.reals(|(_, _, p)| Some(p.prediction?.1)))
-        .reals_column("leverage", "", "of the point", rows.reals(|(_, _, p)| Some(p.leverage)))
-        .texts_column("extrapolation", "", rows.texts(beyond))
+    Predictions {
+        response: rows.texts(|(response, ..)| response.as_str()),
+        point: rows.ints(|(_, number, _)| number + 1),
+        value: rows.reals(|(_, _, p)| Some(p.value)),
+        std_error: rows.reals(|(_, _, p)| p.std_error),
+        confidence_low: rows.reals(|(_, _, p)| Some(p.confidence?.0)),
+        confidence_high: rows.reals(|(_, _, p)| Some(p.confidence?.1)),
+        prediction_low: rows.reals(|(_, _, p)| Some(p.prediction?.0)),
+        prediction_high: rows.reals(|(_, _, p)| Some(p.prediction?.1)),
+        leverage: rows.reals(|(_, _, p)| Some(p.leverage)),
+        extrapolation: rows.texts(beyond),
+    }
 }
 
 /// Radii of the steepest paths, in coded units.
 const RADII: [f64; 7] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5];
 
 /// The steepest way up and down from the centre, factor by factor.
-pub(super) fn path_table(found: &[(&Fitting, Regression)]) -> Table {
+pub(super) fn path_table(found: &[(&Fitting, Regression)]) -> Paths {
     let ways = |(fitting, regression): &(&Fitting, Regression)| {
         let way = |up: bool| {
             let points = steepest_path(&regression.model, up, &RADII).unwrap_or_default();
@@ -105,12 +106,13 @@ pub(super) fn path_table(found: &[(&Fitting, Regression)]) -> Table {
     };
     let all: Vec<_> = found.iter().flat_map(ways).collect();
     let rows = Rows(&all);
-    named("best points on spheres about the centre, in coded units")
-        .texts_column("response", "", rows.texts(|(response, ..)| response.as_str()))
-        .texts_column("way", "", rows.texts(|(_, up, ..)| if *up { "up" } else { "down" }))
-        .reals_column("radius", "", "in coded units", rows.reals(|(.., point)| Some(point.radius)))
-        .reals_column("value", "", "the surface there", rows.reals(|(.., point)| Some(point.value)))
-        .texts_column("factor", "", rows.texts(|(_, _, factor, ..)| factor.as_str()))
-        .reals_column("natural", "", "in the factor's unit", rows.reals(|(_, _, _, i, point)| Some(point.natural[*i])))
-        .reals_column("coded", "", "in coded units", rows.reals(|(_, _, _, i, point)| Some(point.coded[*i])))
+    Paths {
+        response: rows.texts(|(response, ..)| response.as_str()),
+        way: rows.texts(|(_, up, ..)| if *up { "up" } else { "down" }),
+        radius: rows.reals(|(.., point)| Some(point.radius)),
+        value: rows.reals(|(.., point)| Some(point.value)),
+        factor: rows.texts(|(_, _, factor, ..)| factor.as_str()),
+        natural: rows.reals(|(_, _, _, i, point)| Some(point.natural[*i])),
+        coded: rows.reals(|(_, _, _, i, point)| Some(point.coded[*i])),
+    }
 }

@@ -9,16 +9,14 @@ use super::super::fitted::Fitting;
 use super::super::notes::Notes;
 use super::super::{Failure, Job, StageError};
 use super::origin::Beside;
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table, Values};
+use crate::artifact::groups::{GroupFits, GroupResiduals, Groups};
+use crate::artifact::{Artifact, Column, Table, Values};
 use math::distribution::t_for_coverage;
 use serde::{Deserialize, Serialize};
 use stats::diagnostics::Residual;
 use stats::groups::{Grouped, groups};
 use stats::regression::{Coefficient, Regression, Settings, regress};
 use stats::sample::Sample;
-
-/// Fits by groups.
-pub(super) const GROUPS: ArtifactKind = ArtifactKind::new("groups", 1).main("groups");
 
 /// Everything that decides fits by groups.
 #[derive(Debug, Serialize, Deserialize)]
@@ -65,11 +63,12 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
             found.push(Found { response: &fitting.response, group: group.clone(), fit });
         }
     }
-    let root = Group::new()
-        .with("groups", Node::Table(group_table(&found, &by, &params)))
-        .with("residuals", Node::Table(residual_table(&found, &by)))
-        .with("notes", Node::Table(notes(&found, &by).table()));
-    Ok(Artifact::of(GROUPS, root))
+    let stored = Groups {
+        groups: group_table(&found, &by, &params),
+        residuals: residual_table(&found, &by),
+        notes: notes(&found, &by).table(),
+    };
+    Ok(stored.to_artifact())
 }
 
 fn by_column<'a>(table: &'a Table, name: &str) -> Result<By<'a>, StageError> {
@@ -107,16 +106,21 @@ fn key_texts(by: &[By], group: &Grouped) -> Vec<String> {
     by.iter().zip(&group.key).map(text).collect()
 }
 
-/// Adds the columns that groups were made by.
-fn with_key<R>(table: Table, by: &[By], rows: &[R], group: impl Fn(&R) -> &Grouped) -> Table {
-    by.iter().enumerate().fold(table, |table, (k, by)| {
+/// Adds the columns that groups were made by, after the column of the response.
+fn with_key<R>(mut table: Table, by: &[By], rows: &[R], group: impl Fn(&R) -> &Grouped) -> Table {
+    let column = |(k, by): (usize, &By)| {
         let values = rows.iter().map(|row| group(row).key[k]);
-        if by.labels.is_empty() {
-            return table.reals_column(by.name, by.unit, "what the group shares", values.collect());
-        }
-        let names = values.map(|v| by.labels.get(v as usize).cloned().unwrap_or_default());
-        table.texts_column(by.name, "what the group shares", names.collect())
-    })
+        let (unit, values) = if by.labels.is_empty() {
+            (by.unit, Values::Reals(values.collect()))
+        } else {
+            let name = |v: f64| by.labels.get(v as usize).cloned().unwrap_or_default();
+            ("", Values::Texts(values.map(name).collect()))
+        };
+        let about = "what the group shares".to_owned();
+        Column { name: by.name.to_owned(), unit: unit.to_owned(), about, values }
+    };
+    table.columns.splice(1..1, by.iter().enumerate().map(column));
+    table
 }
 
 fn group_table(found: &[Found], by: &[By], params: &Params) -> Table {
@@ -128,8 +132,6 @@ fn group_table(found: &[Found], by: &[By], params: &Params) -> Table {
         })
         .collect();
     let rows = Rows(&lines);
-    let table = Table { about: "coefficients of one fit per group".to_owned(), columns: Vec::new() };
-    let table = with_key(table.texts_column("response", "", rows.texts(|l| l.0.response)), by, &lines, |l| &l.0.group);
     let of = |pick: fn(&Regression, &Coefficient) -> Option<f64>| {
         rows.reals(|Line(_, fit)| fit.and_then(|(fit, c, _)| pick(fit, c)))
     };
@@ -138,60 +140,51 @@ fn group_table(found: &[Found], by: &[By], params: &Params) -> Table {
     };
     let end =
         |sign: f64| rows.reals(|Line(_, fit)| fit.and_then(|(fit, c, _)| Some(c.estimate + sign * reach(fit, c)?)));
-    let failure = |Line(found, _): &Line| found.fit.as_ref().err().cloned().unwrap_or_default();
-    let table = table
-        .texts_column("term", "", rows.texts(|Line(_, fit)| fit.map_or("", |(_, c, _)| c.term.as_str())))
-        .reals_column("estimate", "", "unit of the response per unit of the term", of(|_, c| Some(c.estimate)))
-        .reals_column("std_error", "", "standard error", of(|_, c| c.std_error))
-        .reals_column("low", "", "lower end of its confidence interval", end(-1.0))
-        .reals_column("high", "", "upper end of its confidence interval", end(1.0))
-        .reals_column("t", "", "estimate over standard error", of(|_, c| c.t))
-        .reals_column("p", "", "probability of such a t by chance", of(|_, c| c.p))
-        .ints_column("n", "runs used", rows.ints(|Line(_, fit)| fit.map_or(0, |(fit, ..)| fit.fit.n)))
-        .ints_column("missing", "runs without a value", rows.ints(|Line(_, fit)| fit.map_or(0, |f| f.0.fit.missing)))
-        .reals_column("s", "", "residual standard deviation", of(|fit, _| fit.fit.s))
-        .reals_column("r2", "", params.r2_about(), of(|fit, _| Some(fit.fit.r2)));
-    let table = if params.through_origin {
-        let beside = |pick: fn(&Beside, &str) -> Option<f64>| {
-            rows.reals(|Line(_, fit)| fit.and_then(|(_, c, beside)| pick(beside?, &c.term)))
-        };
-        table
-            .reals_column("r2_about_mean", "", "1 - SSE over squares about the mean", of(|f, _| f.fit.r2_about_mean))
-            .reals_column("constant", "", "of the same terms with a constant", beside(|b, _| Some(b.constant.estimate)))
-            .reals_column("constant_std_error", "", "its standard error", beside(|b, _| b.constant.std_error))
-            .reals_column("beside_constant", "", "this estimate with a constant", beside(|b, t| b.estimate(t)))
-            .reals_column("r2_with_constant", "", "about the mean", beside(|b, _| Some(b.r2)))
-    } else {
-        table
+    // only fits through the origin stand beside the same terms with a constant
+    let beside = |pick: fn(&Beside, &str) -> Option<f64>| {
+        let value = |Line(_, fit): &Line| fit.and_then(|(_, c, beside)| pick(beside?, &c.term));
+        params.through_origin.then(|| rows.reals(value))
     };
-    table.texts_column("failure", "why the group has no fit", rows.texts(failure))
-}
-
-impl Params {
-    fn r2_about(&self) -> &'static str {
-        if self.through_origin { "through the origin: share of the squares about zero" } else { "about the mean" }
-    }
+    let fits = GroupFits {
+        response: rows.texts(|l| l.0.response),
+        term: rows.texts(|Line(_, fit)| fit.map_or("", |(_, c, _)| c.term.as_str())),
+        estimate: of(|_, c| Some(c.estimate)),
+        std_error: of(|_, c| c.std_error),
+        low: end(-1.0),
+        high: end(1.0),
+        t: of(|_, c| c.t),
+        p: of(|_, c| c.p),
+        n: rows.ints(|Line(_, fit)| fit.map_or(0, |(fit, ..)| fit.fit.n)),
+        missing: rows.ints(|Line(_, fit)| fit.map_or(0, |f| f.0.fit.missing)),
+        s: of(|fit, _| fit.fit.s),
+        r2: of(|fit, _| Some(fit.fit.r2)),
+        r2_about_mean: params.through_origin.then(|| of(|fit, _| fit.fit.r2_about_mean)),
+        constant: beside(|b, _| Some(b.constant.estimate)),
+        constant_std_error: beside(|b, _| b.constant.std_error),
+        beside_constant: beside(|b, term| b.estimate(term)),
+        r2_with_constant: beside(|b, _| Some(b.r2)),
+        failure: rows.texts(|Line(found, _)| found.fit.as_ref().err().cloned().unwrap_or_default()),
+    };
+    with_key(fits.to_table(), by, &lines, |l| &l.0.group)
 }
 
 fn residual_table(found: &[Found], by: &[By]) -> Table {
-    let residuals = |f: &'_ &'_ Found| f.fit.as_ref().map_or(&[][..], |(fit, _)| fit.residuals.as_slice()).len();
     let all: Vec<(&Found, &Residual)> = found
         .iter()
-        .filter(|f| residuals(f) > 0)
         .flat_map(|f| f.fit.iter().flat_map(move |(fit, _)| fit.residuals.iter().map(move |r| (f, r))))
         .collect();
     let rows = Rows(&all);
-    let row = |(found, r): &(&Found, &Residual)| found.group.rows.get(r.row - 1).map_or(0, |row| row + 1);
-    let table = Table { about: "residuals; outliers are flagged, not dropped".to_owned(), columns: Vec::new() };
-    let table = table.texts_column("response", "", rows.texts(|(f, _)| f.response));
-    with_key(table, by, &all, |(f, _)| &f.group)
-        .ints_column("row", "in the table of runs, counted from 1", rows.ints(row))
-        .reals_column("observed", "", "as measured", rows.reals(|(_, r)| Some(r.observed)))
-        .reals_column("fitted", "", "as the model says", rows.reals(|(_, r)| Some(r.fitted)))
-        .reals_column("residual", "", "observed minus fitted", rows.reals(|(_, r)| Some(r.residual)))
-        .reals_column("leverage", "", "diagonal of the hat matrix", rows.reals(|(_, r)| Some(r.leverage)))
-        .reals_column("studentized", "", "externally studentized residual", rows.reals(|(_, r)| r.studentized))
-        .texts_column("flag", "what is suspicious", rows.texts(|(_, r)| if r.outlier { "outlier" } else { "" }))
+    let residuals = GroupResiduals {
+        response: rows.texts(|(f, _)| f.response),
+        row: rows.ints(|(found, r)| found.group.rows.get(r.row - 1).map_or(0, |row| row + 1)),
+        observed: rows.reals(|(_, r)| Some(r.observed)),
+        fitted: rows.reals(|(_, r)| Some(r.fitted)),
+        residual: rows.reals(|(_, r)| Some(r.residual)),
+        leverage: rows.reals(|(_, r)| Some(r.leverage)),
+        studentized: rows.reals(|(_, r)| r.studentized),
+        flag: rows.texts(|(_, r)| if r.outlier { "outlier" } else { "" }),
+    };
+    with_key(residuals.to_table(), by, &all, |(f, _)| &f.group)
 }
 
 fn notes(found: &[Found], by: &[By]) -> Notes {

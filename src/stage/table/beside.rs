@@ -11,7 +11,13 @@ pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String
         let ours = columns.iter().find(|c| c.key == *name);
         let ours =
             ours.ok_or_else(|| StageError::new(format!("`by` names `{name}`, which is not among the columns")))?;
-        Ok((&ours.values, &column_of(other, name)?.values))
+        let theirs = column_of(other, name)?;
+        let theirs = if theirs.values.are_numbers() {
+            artifact::Values::Reals(theirs.numbers(&ours.unit)?)
+        } else {
+            theirs.values.clone()
+        };
+        Ok((&ours.values, theirs))
     });
     let keys = keys.collect::<Result<Vec<_>, StageError>>()?;
     let rows = columns.first().map_or(0, Column::len);

@@ -2,7 +2,8 @@
 
 use super::super::{Complaint, Context, Known, StageError};
 use super::Table;
-use crate::artifact::{self, Artifact, Values};
+use crate::artifact::statistics::Surfaces;
+use crate::artifact::{self, Artifact};
 use crate::unit::Unit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -181,12 +182,10 @@ impl Table {
             let factor = context.factors.get(name);
             rows.push((name.clone(), factor.map_or(String::new(), |f| f.unit.clone()), factor.and_then(range)));
         }
-        let table = surfaces.table("residuals").ok_or_else(|| StageError::new("`of` names no fitted surfaces"))?;
-        let observed = table.numbers("observed", "").unwrap_or_default();
-        let Some(Values::Texts(responses)) = table.column("response").map(|column| &column.values) else {
-            return Err(StageError::new("the residuals do not name their responses"));
-        };
-        for (response, value) in responses.iter().zip(observed) {
+        let residuals = Surfaces::from_artifact(surfaces)
+            .map_err(|wanted| StageError::new("`of` names no fitted surfaces").hint(wanted.to_string()))?
+            .residuals;
+        for (response, value) in residuals.response.iter().zip(residuals.observed) {
             match rows.iter_mut().find(|(name, ..)| name == response) {
                 Some((_, _, Some([low, high]))) => (*low, *high) = (low.min(value), high.max(value)),
                 Some(_) => {}

@@ -1,5 +1,5 @@
 use super::*;
-use crate::artifact::Table as Data;
+use crate::artifact::{Group, Node, Table as Data};
 use crate::stage::material::MaterialTable;
 use serde_json::Value;
 use std::sync::Arc;
@@ -173,4 +173,23 @@ fn quantities_in_rows_are_told_as_people_read_them() {
     let rows: Vec<String> = text(&made, "markdown").lines().map(str::to_owned).collect();
     let ends = ["| mean radius | 0.4854 | mm |", "| width | 0.1000 | m |", "| discs | 24 | – |"];
     assert!(ends.iter().zip(&rows[rows.len() - 3..]).all(|(end, row)| row == end), "{rows:?}");
+}
+
+/// A table in kPa beside one in MPa: 31000 kPa are 31 MPa, and rows are matched whatever the unit of their levels.
+#[test]
+fn values_in_another_unit_are_converted() {
+    let runs = |n: &str, factor: f64, unit: &str, scale: f64| {
+        let levels = [0.01, 0.02].iter().map(|level| level * factor).collect();
+        let values = [31.0, 32.0].iter().map(|value| value * scale).collect();
+        let table = Data::default().reals_column("w", n, "", levels).reals_column("UCS", unit, "", values);
+        Arc::new(Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table))))
+    };
+    let params = json!({ "by": ["w"], "digits": 4 });
+    let ours = runs("", 1.0, "MPa", 1.0);
+    let made = run(params.clone(), &[("of", ours.clone()), ("compare", runs("%", 100.0, "kPa", 1000.0))]).unwrap();
+    let table = made.table("table").unwrap();
+    assert_eq!(table.numbers("UCS published", "MPa").unwrap(), [31.0, 32.0]);
+    assert_eq!(table.numbers("UCS deviation", "%").unwrap(), [0.0, 0.0]);
+    let error = run(params, &[("of", ours), ("compare", runs("", 1.0, "mm", 1.0))]).unwrap_err().to_string();
+    assert!(error.contains("column `UCS` is in `mm` and cannot be read in `MPa`"), "{error}");
 }
