@@ -132,8 +132,8 @@ impl<C: Cells> Cells for Option<C> {
 
 /// Declares words that stand in a column: an enum that is a column of texts.
 ///
-/// ```
-/// flow::words! {
+/// ```text
+/// words! {
 ///     /// How a bond broke.
 ///     pub enum CrackMode {
 ///         /// Pulled apart.

@@ -210,6 +210,7 @@ mod tests {
             let all = [
                 Method::FullFactorial(factorial::FullFactorial { centre_points: count }),
                 Method::FractionalFactorial(fractional::FractionalFactorial {
+                    resolution: Some(3),
                     centre_points: count,
                     ..Default::default()
                 }),

@@ -99,7 +99,9 @@ fn replay_from_any_history_asks_the_same() {
         }
         let end = next(&problem, &method, &budget(70), 5, &Knowledge::default(), &history);
         let Ok(Next::Stop(stop, state)) = end else { panic!("{end:?}") };
-        assert_eq!((Some(stop), state), (search.stop(), search.state()));
+        // As texts, because an interval that is unknown is NaN, which equals nothing.
+        let (told, wanted) = ((Some(stop), state), (search.stop(), search.state()));
+        assert_eq!(format!("{told:?}"), format!("{wanted:?}"));
         let other = next(&problem, &method, &budget(70), 6, &Knowledge::default(), &history);
         assert!(matches!(other, Err(Error::ForeignHistory { index: 0, .. })), "{method:?}");
     }

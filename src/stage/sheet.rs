@@ -17,6 +17,11 @@ pub(super) struct Sheet {
     pub(super) columns: Vec<Vec<String>>,
 }
 
+/// White space, and the mark that is a blank without width everywhere but at the head of a file.
+fn blank(c: char) -> bool {
+    c.is_whitespace() || c == '\u{feff}'
+}
+
 impl Sheet {
     /// Reads a whole file, or says what is wrong with it.
     ///
@@ -47,7 +52,8 @@ impl Sheet {
         let mut reader =
             csv::ReaderBuilder::new().delimiter(separator).trim(csv::Trim::All).from_reader(body.as_bytes());
         let fail = |e: &csv::Error| unequal(e, skipped);
-        let heads: Vec<String> = reader.headers().map_err(|e| fail(&e))?.iter().map(str::to_owned).collect();
+        let heads: Vec<String> =
+            reader.headers().map_err(|e| fail(&e))?.iter().map(|head| head.trim_matches(blank).to_owned()).collect();
         check(&heads)?;
         let mut columns = vec![Vec::new(); heads.len()];
         for (row, record) in reader.records().enumerate() {

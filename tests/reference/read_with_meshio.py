@@ -15,15 +15,27 @@ import numpy as np
 folder = Path(sys.argv[1])
 
 
+# Units of the CSV files, which are those of the field; the grids are in SI units.
+SI = {"MPa": 1e6, "kN": 1e3, "mm": 1e-3}
+
+
 def table(name):
     with open(folder / name, newline="") as file:
         rows = list(csv.DictReader(file))
-    plain = {key: key.split(" [")[0] for key in rows[0]}
-    return {plain[key]: [row[key] for row in rows] for key in rows[0]}
+    columns = {}
+    for head in rows[0]:
+        plain, _, unit = head.partition(" [")
+        columns[plain] = ([row[head] for row in rows], SI.get(unit.rstrip("]"), 1.0))
+    return columns
+
+
+def texts(columns, name):
+    return columns[name][0]
 
 
 def numbers(columns, name):
-    return np.array([float(value) for value in columns[name]])
+    values, factor = columns[name]
+    return np.array([float(value) for value in values]) * factor
 
 
 def cells(mesh, kind):
@@ -34,7 +46,7 @@ def cells(mesh, kind):
 # The specimen: discs, contacts, clumps.
 discs = table("trial.particles.csv")
 start = meshio.read(folder / "specimen.particles.vtu")
-assert len(cells(start, "vertex")) == len(discs["id"])
+assert len(cells(start, "vertex")) == len(texts(discs, "id"))
 assert np.array_equal(start.points[:, 0], numbers(discs, "x")) and np.array_equal(start.points[:, 1], numbers(discs, "y"))
 assert np.array_equal(start.point_data["radius"], numbers(discs, "radius"))
 assert np.array_equal(start.point_data["clump"], numbers(discs, "clump"))
@@ -49,13 +61,13 @@ gap = length - radius[ends[:, 0]] - radius[ends[:, 1]]
 assert np.allclose(contacts.cell_data["gap"][0], gap, atol=1e-12) and gap.max() <= 0
 clumps = meshio.read(folder / "specimen.clumps.vtu")
 assert all(block.type == "polygon" for block in clumps.cells)
-assert sum(len(block.data) for block in clumps.cells) >= len(table("trial.clumps.csv")["id"]) > 0
+assert sum(len(block.data) for block in clumps.cells) >= len(texts(table("trial.clumps.csv"), "id")) > 0
 
 # The states of the run, over the axial strain.
 series = xml.etree.ElementTree.parse(folder / "trial.pvd").getroot()[0]
 sets = [(float(one.get("timestep")), int(one.get("part")), one.get("file")) for one in series]
 strains = sorted({one[0] for one in sets})
-states = table("trial.snapshots.states.csv")
+states = table("trial.states.csv")
 assert np.allclose(strains, sorted(set(numbers(states, "axial_strain"))), rtol=1e-12)
 forces, cracks = table("trial.forces.csv"), table("trial.cracks.csv")
 width = 0.04
@@ -72,7 +84,7 @@ for strain, part, file in sets:
         lines = cells(mesh, "line")
         own = numbers(forces, "state") == state
         normal = mesh.cell_data["normal_force"][0]
-        assert np.array_equal(normal, numbers(forces, "normal_force")[own])
+        assert np.allclose(normal, numbers(forces, "normal_force")[own], rtol=1e-12, atol=0)
         assert np.array_equal(lines[:, 0], numbers(forces, "first")[own])
         chain = mesh.cell_data["chain"][0] == 1
         assert np.array_equal(chain, np.abs(normal) >= np.abs(normal).mean()) and 0 < chain.mean() < 0.6
@@ -84,7 +96,7 @@ for strain, part, file in sets:
         open_ = numbers(cracks, "axial_strain") <= strain
         assert len(cells(mesh, "line")) == open_.sum() > 0
         middle = mesh.points[mesh.cells[0].data].mean(axis=1)
-        assert np.allclose(middle[:, 0], numbers(cracks, "x")[open_], atol=1e-12)
+        assert np.allclose(middle[:, 0], numbers(cracks, "position_x")[open_], atol=1e-12)
         along = mesh.points[mesh.cells[0].data[:, 1]] - mesh.points[mesh.cells[0].data[:, 0]]
         assert np.allclose(np.linalg.norm(along, axis=1), numbers(cracks, "size")[open_], atol=1e-12)
         across = along[:, 0] * numbers(cracks, "normal_x")[open_] + along[:, 1] * numbers(cracks, "normal_y")[open_]
