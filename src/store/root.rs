@@ -11,6 +11,7 @@ use super::journal;
 use super::presence::is_listing;
 use std::io::ErrorKind;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// Name of the marker.
 pub(super) const MARKER: &str = "flow.store";
@@ -24,15 +25,32 @@ const FOLDERS: &[&str] = &["objects", "journal", "memo", "runs", "locks", "aside
 /// Files that flow makes in the root of a store.
 const FILES: &[&str] = &[MARKER, super::lock::IN_USE, "listing"];
 
+/// How long another node's marker may be listed before it can be read: shared file systems remember for up to ten seconds that
+/// a file was not there.
+const LATE: Duration = Duration::from_secs(15);
+const PAUSE: Duration = Duration::from_millis(100);
+
 /// Opens the folder of a store, and makes it when there is none.
 pub(super) fn open(disk: &Disk) -> Result<(), StoreError> {
+    let asked = Instant::now();
+    while !opened(disk)? {
+        if asked.elapsed() > LATE {
+            return Err(refuse(&disk.root, format!("its file `{MARKER}` is listed and cannot be read; try again")));
+        }
+        std::thread::sleep(PAUSE);
+    }
+    Ok(())
+}
+
+/// Opens the folder of a store; returns false when its marker came in this moment and cannot be read yet.
+fn opened(disk: &Disk) -> Result<bool, StoreError> {
     let root = &disk.root;
     if !root.is_dir() {
         create(disk)?;
     }
     let folder = Folder::at(root).map_err(|error| disk.fail("open the folder", root, error))?;
     match folder.read(MARKER, 1 << 12) {
-        Ok(text) if text.starts_with(FIRST_LINE.as_bytes()) => return Ok(()),
+        Ok(text) if text.starts_with(FIRST_LINE.as_bytes()) => return Ok(true),
         Ok(text) if text.starts_with(b"flow store ") => {
             return Err(refuse(root, "a newer flow made it; use that one".to_owned()));
         }
@@ -42,9 +60,9 @@ pub(super) fn open(disk: &Disk) -> Result<(), StoreError> {
         Err(error) => return Err(disk.fail("read", &root.join(MARKER), error)),
     }
     match other_names(disk, &folder)?.as_slice() {
-        [] => mark(disk),
+        [] => mark(disk).map(|()| true),
         // Another process has made it in the meantime.
-        names if names.iter().any(|name| name == MARKER) => open(disk),
+        names if names.iter().any(|name| name == MARKER) => Ok(false),
         names if names.iter().all(|name| is_ours(name)) => Err(refuse(
             root,
             format!(
