@@ -163,12 +163,13 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
 }
 
 /// Pages for people who look at the repository, by their path in it.
-const PAGES: [&str; 5] = [
+const PAGES: [&str; 6] = [
     "README.md",
     "workflows/c30/README.md",
     "store/README.md",
     "src/dem/tests/engine/VALIDATION.md",
     "tests/bench/README.md",
+    "CONTRIBUTING.md",
 ];
 
 /// What the links and pictures of a Markdown text point to.
