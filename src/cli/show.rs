@@ -232,7 +232,7 @@ fn short(values: &Values) -> Vec<String> {
 /// So many rows of a table are shown to a reader; programs take `--csv` or `--json`.
 const MOST_ROWS: usize = 100;
 
-/// So many columns.
+/// Most columns shown at once.
 const MOST_COLUMNS: usize = 200;
 
 /// A cell for a terminal: characters that steer it, which a log or a file may hold, are shown as signs.

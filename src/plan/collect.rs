@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use super::node::{Entry, Node, Sources, Step, Table, Value};
 
-/// So many faults are told; much later ones are not even looked for.
+/// Most faults that are reported; the search ends soon after them.
 pub(super) const MOST_FAULTS: usize = 50;
 
 /// Longest name of a stage, factor, response or material.

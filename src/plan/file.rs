@@ -152,7 +152,7 @@ impl<'de> Deserialize<'de> for Paths {
                 }
                 Ok(paths)
             }
-            /// A hole: its fault was told already.
+            /// A hole: its fault is reported already.
             fn visit_unit<E: de::Error>(self) -> Result<Vec<String>, E> {
                 Ok(Vec::new())
             }

@@ -40,7 +40,7 @@ pub(super) fn read<T>(
         let stop = told.is_none() || faults.len() - before >= MOST_FAULTS;
         faults.extend(told);
         if stop {
-            // What cannot be read for a hole alone was told when the hole was made.
+            // The fault of a hole was reported when the hole was made.
             assert!(!faults.is_empty(), "BUG: a table cannot be read, and no fault says why");
             return None;
         }
