@@ -116,7 +116,7 @@ impl Kind for Agreement {
     const ABOUT: &'static str = "computed results beside values from elsewhere: ratios, ranks, trends";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::AGREEMENT];
     const CLASS: Class = Class::Statistics;
-    const WORKS: &'static [Work] = &[Work { name: "agreement", version: 1, run: compare }];
+    const WORKS: &'static [Work] = &[Work { name: "agreement", version: 1, run: compare, far: false }];
 }
 
 /// A pair of values of one point.

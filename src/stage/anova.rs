@@ -211,7 +211,7 @@ impl Kind for Anova {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::ANOVA];
     const CLASS: Class = Class::Statistics;
     // 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "anova", version: 2, run: analyse }];
+    const WORKS: &'static [Work] = &[Work { name: "anova", version: 2, run: analyse, far: false }];
 }
 
 fn settings(params: &Params) -> Settings {

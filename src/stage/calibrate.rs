@@ -174,5 +174,5 @@ impl Kind for Calibrate {
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
     const CLASS: Class = Class::Calibration;
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 3, run: solve::solve }];
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 3, run: solve::solve, far: false }];
 }

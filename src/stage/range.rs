@@ -62,7 +62,7 @@ impl Kind for Range {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RANGE];
     const CLASS: Class = Class::Statistics;
     // 2: notes
-    const WORKS: &'static [Work] = &[Work { name: "range", version: 2, run: analyse }];
+    const WORKS: &'static [Work] = &[Work { name: "range", version: 2, run: analyse, far: false }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {

@@ -150,7 +150,7 @@ fn gather(known: &Known, design: &Input<'_>, artifact: &Artifact) -> Result<Task
 pub const RUN: &str = "run";
 
 /// Work that every simulator kind lists.
-pub const GATHER: Work = Work { name: "gather", version: 1, run: gathered };
+pub const GATHER: Work = Work { name: "gather", version: 1, run: gathered, far: false };
 
 /// Complaints about responses whose unit cannot be read; for [`super::Stage::check`] of simulator kinds.
 pub fn check_units(context: &Context) -> Vec<Complaint> {

@@ -85,7 +85,7 @@ impl Kind for Screening {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SCREENING];
     const CLASS: Class = Class::Statistics;
     // 3: standardised effects with their critical value. 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "screening", version: 3, run: analyse }];
+    const WORKS: &'static [Work] = &[Work { name: "screening", version: 3, run: analyse, far: false }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {

@@ -232,7 +232,7 @@ impl Kind for Table {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
     /// 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
-    const WORKS: &'static [Work] = &[Work { name: "table", version: 4, run: print }];
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 4, run: print, far: false }];
 }
 
 /// The table of that name, or the artifact's main one.

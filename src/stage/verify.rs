@@ -150,7 +150,7 @@ impl Kind for Verify {
     const ABOUT: &'static str = "calibrated parameters on fresh specimens";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::VERIFICATION];
     const CLASS: Class = Class::Calibration;
-    const WORKS: &'static [Work] = &[Work { name: "verify", version: 1, run: verify }];
+    const WORKS: &'static [Work] = &[Work { name: "verify", version: 1, run: verify, far: false }];
 }
 
 /// One target and what its runs gave; NaN where a run failed.

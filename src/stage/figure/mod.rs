@@ -307,7 +307,7 @@ impl Kind for Figure {
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
     /// one another.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 10, run: draw }];
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 10, run: draw, far: false }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
