@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `stress-strain` | runs | `curve`, `cracks` |
 //! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces`, `snapshots` |
-//! | `specimen` | a specimen | its arrays |
+//! | `specimen` | a specimen | its arrays; one in space is shaded, and cut open where it holds clumps |
 //! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
 //! | `points` | a design or results | `design` or `runs`: two or three factors |
 //! | `agreement` | results (`compare`: as many results) | `runs`; rows are matched by their factors |
@@ -34,6 +34,7 @@ mod plot;
 mod run;
 mod solution;
 mod source;
+mod space;
 mod validity;
 
 use super::beside::Beside;
@@ -328,10 +329,10 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
     let sources = source::Sources::new(job);
     let picture: Box<dyn Picture> = match params.show {
         Show::StressStrain => Box::new(run::stress_strain(&params, &sources)?),
-        Show::Cracks => Box::new(run::cracks(&sources)?),
+        Show::Cracks => run::cracks(&sources)?,
         Show::CrackRose => Box::new(run::rose(&sources)?),
         Show::ForceChains => Box::new(run::chains(&sources)?),
-        Show::Specimen => Box::new(run::specimen(&sources)?),
+        Show::Specimen => run::specimen(&sources)?,
         Show::MainEffects => Box::new(design::main_effects(&params, &sources)?),
         Show::Range => Box::new(design::range(&params, &sources)?),
         Show::Points => Box::new(design::points(&params, &sources)?),

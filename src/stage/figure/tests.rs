@@ -1,4 +1,5 @@
 use super::*;
+
 use crate::artifact::calibration::{
     Alternatives, Evaluations, Prediction, Solution, Solved, Summary, Verification, VerifiedRuns,
 };
@@ -14,6 +15,8 @@ use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use ndarray::{Array2, Array3};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+
+mod space;
 
 fn words<const N: usize>(values: [&str; N]) -> Vec<String> {
     values.map(String::from).to_vec()
