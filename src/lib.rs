@@ -8,7 +8,7 @@
 //! cli → { report, export }; report → run → { cluster, exec, plan, store }
 //! cluster → { plan, store, stage }
 //! export → stage
-//! { run, plan } → stage → { dem, design, stats, optim, figure } → math
+//! { run, plan } → stage → { dem, design, stats, optim, shape, figure } → math
 //! { run, plan, stage, store } → artifact
 //! { plan, stage } → expression → unit
 //! { plan, stage, artifact } → unit
@@ -27,10 +27,11 @@
 //! | [`stage`] | one file per kind of stage: where domains meet workflows and artifacts |
 //! | [`artifact`] | what can be stored, as plain data with a content hash |
 //! | [`dem`] | the discrete-element engine, specimens and tests |
+//! | [`shape`] | solids of stones, and the clumps of balls that stand for them |
 //! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
 //! | [`math`], [`unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
 //!
-//! The domains (`dem`, `design`, `stats`, `optim`, `figure`) are pure and know nothing of one another, of files or of TOML.
+//! The domains (`dem`, `design`, `stats`, `optim`, `shape`, `figure`) are pure and know nothing of one another, of files or of TOML.
 //!
 //! # The life of `flow run`
 //! 1. `plan` reads the file: every table into the config type of its kind, every fault at once.

@@ -36,6 +36,7 @@ const KEEPERS: &[(&str, &[&str])] = &[
     ("design", &["stage"]),
     ("stats", &["stage"]),
     ("optim", &["stage"]),
+    ("shape", &["stage", "export"]),
     ("figure", &["stage", "report", "cli"]),
     ("hdf5", &["store"]),
     ("toml", &["plan", "cluster"]),

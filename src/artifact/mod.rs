@@ -23,6 +23,7 @@ pub mod results;
 pub mod run;
 pub mod specimen;
 pub mod statistics;
+pub mod validity;
 
 pub use cells::{Cells, Numbered};
 pub use declare::expect_kind;

@@ -6,7 +6,7 @@ use crate::cluster::script::{Order, script};
 use crate::cluster::site::{self, Needs};
 use crate::plan::Workflow;
 use crate::run::{TaskState, decide};
-use crate::stage::work;
+use crate::stage::is_far;
 use crate::store::Store;
 use clap::{Args, Subcommand};
 use std::path::Path;
@@ -111,7 +111,7 @@ pub(super) fn show_submission(workflow: &Workflow, store: &Store, site: &Site, s
     for task in report.tasks().filter(|task| task.state == TaskState::Open) {
         let stage = &workflow.stages[task.stage].name;
         let name = task.text.as_deref().and_then(|text| text.lines().nth(1)?.split(' ').nth(1));
-        if !name.is_some_and(|name| site.sends(stage, work(name).is_some_and(|work| work.far))) {
+        if !name.is_some_and(|name| site.sends(stage, is_far(name))) {
             continue;
         }
         let needs = site.needs(stage);

@@ -105,9 +105,10 @@ pub use contact::{Contact, Other};
 pub use engine::{Ended, Engine, Masses, Model, Settings, Watch};
 pub use error::{Failure, Fault, Faults};
 pub use interaction::{
-    Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Interaction, Linear, NormalForce,
-    ParallelBond, ShearBreak, Stiffness,
+    Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Division, FlatJoint, Interaction, Linear,
+    NormalForce, ParallelBond, Shares, ShearBreak, Stiffness,
 };
+pub use law::Interface;
 pub use particle::{Clump, Group, Particle};
 pub use space::{D2, D3, Space, Spin, Vector};
 pub use strength::{Distribution, Scatter};

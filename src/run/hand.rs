@@ -5,7 +5,7 @@ use super::far::{Far, Heard, Leave};
 use super::{Answer, Cluster, Event, Loop, Past, Watch, task};
 use crate::artifact::{ContentHash, Key};
 use crate::cluster::Line;
-use crate::stage::{Failure, StageError, work};
+use crate::stage::{Failure, StageError, is_far};
 use crate::store::{Claim, Store, StoreError};
 use std::sync::atomic::Ordering;
 
@@ -27,7 +27,7 @@ impl Loop<'_, '_> {
         let Some(far) = &mut self.far else { return };
         let goes = |node: &NodeId| {
             let stage = &self.workflow.stages[self.board.stage(*node)].name;
-            far.takes(stage, work(self.board.task(*node).work).is_some_and(|work| work.far))
+            far.takes(stage, is_far(self.board.task(*node).work))
         };
         let nodes: Vec<NodeId> = self.ready.iter().copied().filter(goes).collect();
         for node in nodes {

@@ -64,7 +64,7 @@ impl Kind for Census {
     const ABOUT: &'static str = "how many runs of a table ended in which way";
     const GIVES: &'static [ArtifactKind] = &[CENSUS];
     const CLASS: Class = Class::Statistics;
-    const WORKS: &'static [Work] = &[Work { name: "census", version: 1, run: count, far: false }];
+    const WORKS: &'static [Work] = &[Work { name: "census", version: 1, run: count }];
 }
 
 fn count(job: &Job) -> Result<Artifact, Failure> {

@@ -84,7 +84,7 @@ impl Kind for Data {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
     // 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
-    const WORKS: &'static [Work] = &[Work { name: "data", version: 2, run: read, far: false }];
+    const WORKS: &'static [Work] = &[Work { name: "data", version: 2, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {

@@ -124,7 +124,7 @@ impl Kind for Design {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::DESIGN];
     const CLASS: Class = Class::Design;
     // 2: tables of 12, 20, 24, 40 and 48 runs more, among which the smallest is looked for
-    const WORKS: &'static [Work] = &[Work { name: "design", version: 2, run, far: false }];
+    const WORKS: &'static [Work] = &[Work { name: "design", version: 2, run }];
 }
 
 /// A fault of the design, at the key it concerns.

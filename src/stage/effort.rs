@@ -61,7 +61,7 @@ impl Kind for Effort {
     const ABOUT: &'static str = "evaluations that calibrations needed, side by side";
     const GIVES: &'static [ArtifactKind] = &[EFFORT];
     const CLASS: Class = Class::Calibration;
-    const WORKS: &'static [Work] = &[Work { name: "effort", version: 1, run: gather, far: false }];
+    const WORKS: &'static [Work] = &[Work { name: "effort", version: 1, run: gather }];
 }
 
 /// How a solution names the columns of its effort: what is counted, and the deviation in percent.

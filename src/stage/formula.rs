@@ -138,7 +138,7 @@ impl Kind for Formula {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
     // 2: powers from the right, products from the left, smallest and largest of any number of values
-    const WORKS: &'static [Work] = &[Work { name: "formula", version: 2, run: evaluate, far: false }, GATHER];
+    const WORKS: &'static [Work] = &[Work { name: "formula", version: 2, run: evaluate }, GATHER];
 }
 
 fn evaluate(job: &Job) -> Result<Artifact, Failure> {

@@ -115,8 +115,6 @@ pub struct Work {
     pub version: u32,
     /// Computes the artifact of one task.
     pub run: fn(&Job) -> Result<Artifact, Failure>,
-    /// Whether it takes long enough to be sent to the workers of a cluster.
-    pub far: bool,
 }
 
 /// A task at the moment it runs: its inputs are there.

@@ -1,7 +1,7 @@
 //! The contact list: searched again when some body came half the margin far; contacts keep their state.
 //!
 //! A pair is listed while its surfaces are nearer than the margin, while it is bonded, and while it has a reference gap
-//! and is nearer than the smallest radius, so that a reference gap outlives a loss of contact. The margin follows the
+//! or a broken interface and is nearer than the smallest radius, so that both outlive a loss of contact. The margin follows the
 //! motion: it widens when lists grow old fast and narrows when they last, by step counts alone.
 
 use super::Engine;
@@ -97,11 +97,9 @@ impl<S: Space> Engine<S> {
         let ranks: BTreeSet<Rank> = old.keys().chain(found.keys()).copied().collect();
         for rank in ranks {
             let (ends, sections) = (found.remove(&rank).unwrap_or_default(), old.remove(&rank).unwrap_or_default());
-            let cemented = bonded.contains(&rank.class) || sections.iter().any(|s| s.law == LawKind::ParallelBond);
-            let law = match self.classes[rank.class].law {
-                LawKind::ParallelBond if !cemented => LawKind::Linear,
-                law => law,
-            };
+            let law = self.classes[rank.class].law;
+            let cemented = bonded.contains(&rank.class) || sections.iter().any(|s| s.law == law);
+            let law = if law.begins_linear() && !cemented { LawKind::Linear } else { law };
             let mut writer = Writer::new(rank, law, &cuts, ends.len());
             self.merge(rank, &ends, Reader::new(sections), |key, mut memory| {
                 change(self, key, &mut memory);
@@ -145,7 +143,8 @@ impl<S: Space> Engine<S> {
         if key.at_wall && !self.walls[key.j as usize].present {
             return false;
         }
-        bonded::<S>(memory) || (memory[REFERENCE] != 0.0 && self.gap(key) < self.smallest_radius)
+        let near = memory[REFERENCE] != 0.0 || !memory.tail.is_empty();
+        bonded::<S>(memory) || (near && self.gap(key) < self.smallest_radius)
     }
 
     /// Everything nearer than the margin.
@@ -218,7 +217,7 @@ impl<S: Space> Engine<S> {
     }
 
     /// Gives a contact the stiffness of its class and radii. An incremental spring keeps its force.
-    pub(super) fn set_stiffness(&self, key: Key, rows: &mut [f64]) {
+    pub(super) fn set_stiffness(&self, key: Key, rows: &mut Memory) {
         let (class, kn) = (self.class_of(key), self.linear_stiffness(key));
         if self.classes[class as usize].constants.incremental && rows[KN] > 0.0 && rows[KN] != kn {
             let gap = self.gap(key);
@@ -227,7 +226,8 @@ impl<S: Space> Engine<S> {
                 rows[REFERENCE] = gap + overlap * rows[KN] / kn;
             }
         }
-        rows[KN] = kn;
+        // An interface stands in place of the spring.
+        rows[KN] = if rows.tail.is_empty() { kn } else { 0.0 };
     }
 
     /// Radii that a contact stands between, ∞ for a wall.

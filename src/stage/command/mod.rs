@@ -206,7 +206,8 @@ impl Kind for Command {
     const ABOUT: &'static str = "an external program, once or per design row";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute, far: true }, GATHER];
+    const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
+    const FAR: Option<&'static str> = Some("command");
 }
 
 impl Command {

@@ -77,7 +77,8 @@ impl Kind for Specimen {
         "balls packed to a porosity or a stress, in the plane or the solid; polygons of aggregate";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SPECIMEN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "specimen", version: 2, run: make, far: true }];
+    const WORKS: &'static [Work] = &[Work { name: "specimen", version: 2, run: make }];
+    const FAR: Option<&'static str> = Some("specimen");
 }
 
 fn make(job: &Job) -> Result<Artifact, Failure> {

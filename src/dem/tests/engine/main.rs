@@ -20,6 +20,7 @@ mod curve;
 mod disc;
 mod energy;
 mod faults;
+mod flat_joint;
 mod friction;
 mod genesis;
 mod impact;
