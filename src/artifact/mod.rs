@@ -24,6 +24,7 @@ pub mod run;
 pub mod shapes;
 pub mod specimen;
 pub mod statistics;
+pub mod validity;
 
 pub use cells::{Cells, Numbered};
 pub use declare::expect_kind;

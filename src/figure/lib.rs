@@ -24,6 +24,7 @@ pub mod effect_plot;
 pub mod effects;
 pub mod escape;
 pub mod font;
+mod footnote;
 mod geometry;
 pub mod heatmap;
 pub mod histogram;

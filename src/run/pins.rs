@@ -152,25 +152,25 @@ effort cf49a99b0418
 agreement bd06fe72410e
 table 464517716712
 figure e5375085b080
-agreement 1
-anova 2
+agreement 2
+anova 3
 calibrate 3
 command 1
 data 2
 design 2
 effort 1
-figure 10
-fit 2
+figure 11
+fit 3
 formula 2
-gather 1
-groups 1
-range 2
-screening 3
+gather 2
+groups 2
+range 3
+screening 4
 shapes 1
 simulate 3
 specimen 2
-table 4
-verify 1
+table 5
+verify 2
 ";
 
 /// What the workflow gives, in the form of the pins.

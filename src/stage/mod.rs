@@ -16,8 +16,9 @@
 //!
 //! # Artifacts that several kinds exchange
 //! * `results`: a table `runs` with one row per run: factors (in their units), `replicate`, responses (in the units of
-//!   `[response.NAME]`), `failure` (text, empty when all went well; the responses are then missing). From `simulate`,
-//!   `command` and `data`.
+//!   `[response.NAME]`), `failure` (text, empty when all went well; the responses are then missing), and where runs have
+//!   checks of their own `validity` and `cautions` (texts: the checks that are not met; [`invalid::Invalid`] says what a
+//!   stage does with runs that are not valid). From `simulate`, `command` and `data`.
 //! * `design`: a table `design` with `point_type` and the factors, and a table `report`.
 //! * `run`: one run of a simulator: a table `responses` (`response,value,unit`) and, for `simulate`, curve, cracks, ….
 //! * `surfaces`: fitted models (tables `coefficients`, `fit`, `residuals`, `stationary` and what prediction needs).
@@ -49,6 +50,7 @@ pub mod effort;
 pub mod figure;
 pub mod fitted;
 pub mod formula;
+pub mod invalid;
 pub mod ledger;
 pub mod material;
 mod memory;
@@ -85,7 +87,7 @@ use serde::{Deserializer, Serialize};
 use serde_json::Value;
 
 /// Names of columns that stand beside factors and responses in one table or template, so that neither can bear them.
-pub const OWN_COLUMNS: [&str; 20] = [
+pub const OWN_COLUMNS: [&str; 21] = [
     "run",
     "row",
     "standard_order",
@@ -93,6 +95,7 @@ pub const OWN_COLUMNS: [&str; 20] = [
     "point_type",
     "failure",
     "validity",
+    "cautions",
     "set",
     "specimen",
     "evaluation",

@@ -16,4 +16,5 @@ mod reruns;
 mod space;
 mod stop;
 mod trust;
+mod validity;
 mod vocabulary;

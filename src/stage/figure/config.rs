@@ -2,6 +2,7 @@
 
 use super::plot::{Bars, Direction, Fit};
 use crate::artifact::{Accepts, ArtifactKind as Of};
+use crate::stage::invalid::Invalid;
 use crate::unit::Length;
 use figure::palette::Map;
 use figure::{DOUBLE, SINGLE};
@@ -64,6 +65,10 @@ pub struct Figure {
     pub overlay: Option<String>,
     /// Number of bins of a `histogram`; chosen from the scatter when not given.
     pub bins: Option<usize>,
+    /// What becomes of runs that are not valid: left out of what draws the runs of a table, drawn where the picture is of
+    /// one run, when nothing is said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub invalid: Option<Invalid>,
     /// `single` (90 mm), `double` (190 mm) or a length.
     #[serde(default)]
     pub width: Width,

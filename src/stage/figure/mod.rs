@@ -36,8 +36,10 @@ mod run;
 mod solution;
 mod source;
 mod space;
+mod validity;
 
 use super::beside::Beside;
+use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::presentation::Picture as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
@@ -107,6 +109,12 @@ struct Params {
     /// The stages of a graph.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     outline: Vec<Outline>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    invalid: Invalid,
+    /// What is said of the runs that curves are drawn of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
 }
 
 impl Stage for Figure {
@@ -149,6 +157,9 @@ impl Stage for Figure {
             found.push(Complaint::new("points", format!("{points} points is no size of text")).hint("4 to 30"));
         }
         found.extend(Plot::of(self).check(self.show, &|key| self.without_effect(key)));
+        if self.invalid == Some(Invalid::LeaveOut) && !self.show.draws_runs() {
+            found.push(self.without_effect("invalid"));
+        }
         if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
             found.push(self.without_effect("band"));
         }
@@ -169,6 +180,8 @@ impl Stage for Figure {
             plot,
             labels,
             groups: runs.groups,
+            notes: runs.notes,
+            invalid: if self.show == Show::Dag { Invalid::default() } else { self.choice() },
             show: self.show,
             width: self.width.millimetres(),
             points: self.points.unwrap_or(8.0),
@@ -308,8 +321,8 @@ impl Kind for Figure {
     /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
-    /// one another.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 10, run: draw }];
+    /// one another. 11: runs that are not valid are left out or marked, and it is said below the picture.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 11, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -345,15 +358,16 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Dag => Box::new(flow::dag(&params.outline)),
     };
     let style = Style { points: params.points, map: params.colors, ..Style::wide(params.width) };
-    picture_artifact(&*picture, &style)
+    picture_artifact(&*picture, &style, &validity::sentences(&params, &sources)?)
 }
 
 /// Resolution of the PNG in dots per inch.
 const DPI: f64 = 300.0;
 
 /// A picture as it is stored: the three files, the words for those who cannot see it, and its numbers.
-fn picture_artifact(picture: &dyn Picture, style: &Style) -> Result<Artifact, Failure> {
-    let scene = picture.scene(style);
+fn picture_artifact(picture: &dyn Picture, style: &Style, below: &[String]) -> Result<Artifact, Failure> {
+    let mut scene = picture.scene(style);
+    scene.footnotes(below, style);
     let png = figure::png::png(&scene, DPI).map_err(|e| StageError::new(e.to_string()))?;
     let stored = Stored {
         svg: figure::svg::svg(&scene),
