@@ -186,8 +186,15 @@ fn found() -> String {
     });
     let kinds: BTreeSet<&str> = workflow.stages.iter().map(|stage| stage.kind).collect();
     let store = Store::open(&folder.path().join("store")).unwrap();
-    let settings =
-        Settings { jobs: 2, keep_going: true, dry: false, targets: Vec::new(), again: Vec::new(), memos: false };
+    let settings = Settings {
+        jobs: 2,
+        keep_going: true,
+        dry: false,
+        targets: Vec::new(),
+        again: Vec::new(),
+        memos: false,
+        cluster: None,
+    };
     let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
     let mut text = String::new();
     for stage in &report.stages {

@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod cases;
+mod cluster;
 mod columns;
 mod command;
 mod export;
