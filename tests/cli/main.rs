@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod cases;
+mod cluster;
 mod columns;
 mod command;
 mod export;
@@ -16,4 +17,5 @@ mod reruns;
 mod space;
 mod stop;
 mod trust;
+mod validity;
 mod vocabulary;
