@@ -62,6 +62,7 @@ pub mod regression;
 pub mod rows;
 pub mod rsm;
 pub mod screening;
+pub mod shapes;
 mod sheet;
 pub mod simulate;
 pub mod specimen;
@@ -365,6 +366,7 @@ kinds! {
     regression::Regression,
     rsm::Rsm,
     screening::Screening,
+    shapes::Shapes,
     simulate::Simulate,
     specimen::Specimen,
     table::Table,
