@@ -200,6 +200,7 @@ impl Stage for Anova {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: true,
+            scales: false,
             invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;

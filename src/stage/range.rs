@@ -55,6 +55,7 @@ impl Stage for Range {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: true,
+            scales: false,
             invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;

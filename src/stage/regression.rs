@@ -137,8 +137,13 @@ impl Stage for Regression {
             let factors = terms.map(|terms| factors_of(terms)).unwrap_or_default();
             let responses = [response.to_owned()];
             let weights = self.weights.as_deref();
-            let wanted =
-                Wanted { factors: &factors, responses: &responses, weights, levels: false, invalid: self.invalid };
+            let wanted = Wanted {
+                factors: &factors,
+                responses: &responses,
+                weights,
+                invalid: self.invalid,
+                ..Wanted::default()
+            };
             let columns = Columns::of(table, known.context, wanted)?;
             let terms = terms.map_or_else(|| Term::first_order(&columns.factor_names()), |terms| with_constant(terms));
             let constant = |term: &Term| term.degree() == 0;

@@ -1,5 +1,8 @@
 //! `kind = "rsm"`: second-order response surfaces, each response from its own table or all from one.
 //!
+//! A factor with `scale = "log"` enters by its logarithm: −1, 0 and +1 in coded units are the levels of a design on that
+//! scale, and coefficients are per unit of ln(value in the factor's unit).
+//!
 //! The result is an artifact `surfaces`, as [`super::regression`] gives it.
 
 use super::beside::Beside;
@@ -132,7 +135,14 @@ impl Rsm {
         let factors = own.map(|terms| factors_of(terms)).unwrap_or_default();
         let responses = [response.to_owned()];
         let weights = self.weights.as_deref();
-        let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false, invalid: self.invalid };
+        let wanted = Wanted {
+            factors: &factors,
+            responses: &responses,
+            weights,
+            scales: true,
+            invalid: self.invalid,
+            ..Wanted::default()
+        };
         let columns = Columns::of(table, context, wanted)?;
         let varied = |name: &String| {
             let values = table.shown(name).unwrap_or_default().0;

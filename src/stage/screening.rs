@@ -80,6 +80,7 @@ impl Stage for Screening {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: false,
+            scales: false,
             invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;

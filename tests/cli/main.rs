@@ -13,6 +13,7 @@ mod nodes;
 mod readme;
 mod report;
 mod reruns;
+mod scales;
 mod space;
 mod stop;
 mod trust;
