@@ -15,6 +15,7 @@ pub(super) mod origin;
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
@@ -118,6 +119,7 @@ impl Stage for Regression {
             let path = vec!["terms".to_owned(), response.clone()];
             found.extend(check_doubled(terms, &path));
             found.extend(own.into_iter().map(|c| Complaint { path: path.clone(), ..c }));
+            found.extend(check_given(context, &format!("terms.{response}"), &[&self.table], [response]));
         }
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(self.check_groups());

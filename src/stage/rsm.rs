@@ -8,9 +8,10 @@
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict};
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
-use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -59,6 +60,10 @@ impl Stage for Rsm {
         ArtifactKind::SURFACES
     }
 
+    fn sketch(&self) -> Sketch {
+        Sketch { responses: Some(self.responses.clone()), ..Sketch::default() }
+    }
+
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = check_names(context, &[], &self.responses);
         if self.responses.is_empty() {
@@ -73,6 +78,9 @@ impl Stage for Rsm {
             );
         }
         for (i, response) in self.responses.iter().enumerate() {
+            let table = self.tables.get(i).or(self.tables.last().filter(|_| self.tables.len() == 1));
+            let table: Vec<&String> = table.into_iter().collect();
+            found.extend(check_given(context, "responses", &table, [response]));
             if self.responses[..i].contains(response) {
                 found.push(Complaint::new("responses", format!("`{response}` is listed twice")));
             }
