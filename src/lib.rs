@@ -5,7 +5,8 @@
 //! below `src/`, so Cargo holds them to it; `tests/layers.rs` holds the modules of this crate to it.
 //!
 //! ```text
-//! cli → { report, export }; report → run → { exec, plan, store }
+//! cli → { report, export }; report → run → { cluster, exec, plan, store }
+//! cluster → { plan, store, stage }
 //! export → stage
 //! { run, plan } → stage → { dem, design, stats, optim, shape, figure } → math
 //! { run, plan, stage, store } → artifact
@@ -19,6 +20,7 @@
 //! | [`export`] | results as files: CSV, pictures, ParaView, lists of particles |
 //! | [`report`] | a campaign as one HTML page |
 //! | [`run`] | the run loop, and the only state that changes during a run |
+//! | [`cluster`] | workers on other machines: lists, reports, site files, schedulers |
 //! | [`exec`] | threads that take work; knows neither tasks nor physics |
 //! | [`plan`] | TOML text → checked workflow; tasks → texts and keys; reasons of reruns |
 //! | [`store`] | the folder of results: HDF5, journals, locks |
@@ -54,6 +56,7 @@
 
 pub mod artifact;
 pub mod cli;
+pub mod cluster;
 pub mod exec;
 pub mod export;
 pub mod expression;

@@ -21,6 +21,7 @@ pub mod range;
 mod read;
 pub mod results;
 pub mod run;
+pub mod shapes;
 pub mod specimen;
 pub mod statistics;
 pub mod validity;

@@ -172,6 +172,7 @@ impl Watch for Progress<'_> {
                 }
                 self.ended(stage, count);
             }
+            Event::Word { text } => self.say(&format!("cluster: {text}")),
             Event::Stage { report } => self.closed(report),
         }
     }

@@ -44,6 +44,7 @@ pub mod scene;
 pub mod solid;
 pub mod solutions;
 pub mod specimen;
+pub mod stones;
 pub mod surface;
 pub mod svg;
 pub mod table;
@@ -51,6 +52,7 @@ pub mod text;
 pub mod verification;
 pub mod view;
 pub mod xy;
+pub mod zingg;
 
 use column::Column;
 use scene::Scene;

@@ -16,7 +16,7 @@
 use super::Ball;
 use super::mesh::Mesh;
 use super::moments::Moments;
-use super::vector::{minus, norm};
+use super::vector::{dot, minus, norm};
 use super::voxels::Voxels;
 use super::{medial, transform, union};
 use math::elementary::acos;
@@ -116,6 +116,20 @@ pub struct Clump {
     pub growth: f64,
     /// Whether it is within the bounds.
     pub met: bool,
+}
+
+impl Clump {
+    /// The same in another frame: the pebbles about their centre of mass, with rows of `axes` as unit vectors.
+    #[must_use]
+    pub fn about_centre(&self, axes: [[f64; 3]; 3]) -> Self {
+        let into = |v: [f64; 3]| axes.map(|axis| dot(axis, v));
+        let turned = |ball: &Ball| Ball { centre: into(minus(ball.centre, self.moments.centre)), radius: ball.radius };
+        let inertia = self.moments.inertia;
+        let entry = |i: usize, j: usize| dot(axes[i], inertia.map(|row| dot(row, axes[j])));
+        let inertia = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+        let moments = Moments { centre: [0.0; 3], inertia, ..self.moments };
+        Self { balls: self.balls.iter().map(turned).collect(), moments, ..self.clone() }
+    }
 }
 
 /// Why there is no clump.
@@ -362,6 +376,23 @@ mod tests {
         };
         assert!(count(0.3, 150.0) > count(0.3, 100.0));
         assert!(count(0.2, 120.0) > count(0.6, 120.0));
+    }
+
+    /// In its own principal axes a clump has a diagonal inertia of the same values.
+    #[test]
+    fn a_clump_turns_into_its_principal_axes() {
+        let ball = |x: f64, y: f64, radius: f64| Ball { centre: [x, y, 0.3], radius };
+        let balls = vec![ball(0.0, 0.0, 1.0), ball(1.0, 1.0, 0.8), ball(2.0, 2.5, 0.6)];
+        let moments = union::moments(&balls, 128).unwrap();
+        let clump = Clump { balls, moments, surface: 0.0, errors: Errors::default(), growth: 0.0, met: true };
+        let (values, axes) = moments.principal();
+        let own = clump.about_centre(axes);
+        for (k, value) in values.into_iter().enumerate() {
+            assert!((own.moments.inertia[k][k] / value - 1.0).abs() < 1e-9);
+        }
+        assert!(own.moments.inertia[0][1].abs() + own.moments.inertia[1][2].abs() < 1e-9 * values[0]);
+        let again = union::moments(&own.balls, 256).unwrap();
+        assert!((again.inertia[2][2] / values[2] - 1.0).abs() < 1e-3 && norm(again.centre) < 1e-3);
     }
 
     #[test]

@@ -39,12 +39,29 @@ impl Mended {
     /// In words, one each.
     pub fn words(&self) -> Vec<String> {
         let said = [
-            (self.dropped, "facets without area, or given twice, were dropped"),
-            (self.turned, "facets faced inwards and were turned"),
-            (self.holes, "holes were closed by a fan about the middle of their rim"),
-            (self.strays, "small shells beside the largest were left out"),
+            (
+                self.dropped,
+                "facet without area, or given twice, was dropped",
+                "facets without area, or given twice, were dropped",
+            ),
+            (self.turned, "facet faced inwards and was turned", "facets faced inwards and were turned"),
+            (
+                self.holes,
+                "hole was closed by a fan about the middle of its rim",
+                "holes were closed by fans about the middles of their rims",
+            ),
+            (
+                self.strays,
+                "small shell beside the largest was left out",
+                "small shells beside the largest were left out",
+            ),
         ];
-        said.iter().filter(|(count, _)| *count > 0).map(|(count, words)| format!("{count} {words}")).collect()
+        let words = |&(count, one, many): &(usize, &str, &str)| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            _ => Some(format!("{count} {many}")),
+        };
+        said.iter().filter_map(words).collect()
     }
 }
 

@@ -21,6 +21,12 @@ pub struct Edge {
 }
 
 impl Mesh {
+    /// A surface from its own parts, such as a stored one; `None` where a triangle names a vertex that is not there.
+    pub fn of(vertices: Vec<[f64; 3]>, facets: Vec<[u32; 3]>) -> Option<Self> {
+        let there = facets.iter().flatten().all(|&v| (v as usize) < vertices.len());
+        there.then_some(Self { vertices, facets })
+    }
+
     /// The corners of the triangles.
     pub fn vertices(&self) -> &[[f64; 3]] {
         &self.vertices

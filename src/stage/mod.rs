@@ -63,6 +63,7 @@ pub mod regression;
 pub mod rows;
 pub mod rsm;
 pub mod screening;
+pub mod shapes;
 mod sheet;
 pub mod simulate;
 pub mod specimen;
@@ -196,6 +197,8 @@ pub trait Kind: Stage + DeserializeOwned + JsonSchema + 'static {
     const CLASS: Class;
     /// The work that its tasks name.
     const WORKS: &'static [Work];
+    /// Which of it takes long enough to be sent to the workers of a cluster.
+    const FAR: Option<&'static str> = None;
 }
 
 /// Classes of stages, as pictures of a workflow tell them apart.
@@ -316,6 +319,8 @@ pub struct KindEntry {
     pub class: Class,
     /// The work its tasks name.
     pub works: &'static [Work],
+    /// Which of it takes long enough to be sent to the workers of a cluster.
+    pub far: Option<&'static str>,
     /// Schema of its table.
     pub schema: fn(&mut SchemaGenerator) -> Schema,
 }
@@ -331,6 +336,7 @@ macro_rules! kinds {
             gives: <$config as Kind>::GIVES,
             class: <$config as Kind>::CLASS,
             works: <$config as Kind>::WORKS,
+            far: <$config as Kind>::FAR,
             schema: <$config as JsonSchema>::json_schema,
         }),*];
 
@@ -361,6 +367,7 @@ kinds! {
     regression::Regression,
     rsm::Rsm,
     screening::Screening,
+    shapes::Shapes,
     simulate::Simulate,
     specimen::Specimen,
     table::Table,
@@ -380,4 +387,9 @@ pub fn artifact_kind(artifact: &Artifact) -> Option<ArtifactKind> {
 /// The work called `name`.
 pub fn work(name: &str) -> Option<&'static Work> {
     KINDS.iter().flat_map(|kind| kind.works).find(|work| work.name == name)
+}
+
+/// Whether work takes long enough to be sent to the workers of a cluster.
+pub fn is_far(work: &str) -> bool {
+    KINDS.iter().any(|kind| kind.far == Some(work))
 }

@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod cases;
+mod cluster;
 mod columns;
 mod command;
 mod export;
@@ -14,6 +15,7 @@ mod readme;
 mod report;
 mod reruns;
 mod scales;
+mod share;
 mod space;
 mod stop;
 mod trust;

@@ -210,6 +210,10 @@ pub enum Show {
     Box,
     /// A column over two others as a matrix of colours and numbers.
     HeatMap,
+    /// Stones with their clumps.
+    Stones,
+    /// Zingg's diagram of stones.
+    Zingg,
     /// The stages that lead to those named, and what flows between them.
     Dag,
 }
@@ -241,6 +245,7 @@ impl Show {
             Show::StressStrain => needs(&[Of::RUN], &[], [0, 0], [0, 0]),
             Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0]),
             Show::Specimen => needs(&[Of::SPECIMEN], &[], [0, 0], [0, 0]),
+            Show::Stones | Show::Zingg => needs(&[Of::SHAPES], &[], [0, 0], [0, 0]),
             Show::MainEffects | Show::Range => needs(&[Of::RANGE], &[Of::RANGE], [1, 1], [0, MANY]),
             Show::Points => needs(POINTS, &[], [0, 0], [0, 3]),
             Show::Agreement => needs(RESULTS, RESULTS, [0, MANY], [0, MANY]),

@@ -8,6 +8,7 @@
 //! | `stress-strain` | runs | `curve`, `cracks` |
 //! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces`, `snapshots` |
 //! | `specimen` | a specimen | its arrays; one in space is shaded, and cut open where it holds clumps |
+//! | `stones`, `zingg` | shapes | their arrays; `shapes` |
 //! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
 //! | `points` | a design or results | `design` or `runs`: two or three factors |
 //! | `agreement` | results (`compare`: as many results) | `runs`; rows are matched by their factors |
@@ -355,6 +356,8 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Histogram => Box::new(own::histogram(&params, &sources)?),
         Show::Box => Box::new(own::boxes(&params, &sources)?),
         Show::HeatMap => Box::new(own::heat_map(&params, &sources)?),
+        Show::Stones => Box::new(space::stones(&sources)?),
+        Show::Zingg => Box::new(space::zingg(&sources)?),
         Show::Dag => Box::new(flow::dag(&params.outline)),
     };
     let style = Style { points: params.points, map: params.colors, ..Style::wide(params.width) };

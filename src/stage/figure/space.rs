@@ -1,11 +1,14 @@
-//! Specimens and cracks in space. The axis of loading, the second of a specimen, points up on the page.
+//! Specimens, cracks and stones in space. The axis of loading, the second of a specimen, points up on the page.
 
-use super::super::StageError;
+use super::super::{StageError, shapes};
 use super::run::{MM, groups, modes};
 use super::source::Sources;
 use crate::artifact::run::Run;
+use crate::artifact::shapes::Shapes;
 use crate::artifact::specimen::Specimen as StoredSpecimen;
 use figure::solid::{Cut, Penny, Solid};
+use figure::stones::{Stone, Stones};
+use figure::zingg::Zingg;
 
 /// A place or direction of the specimen as the page shows it, in mm.
 fn upright([x, y, z]: [f64; 3]) -> [f64; 3] {
@@ -54,4 +57,25 @@ pub(super) fn cracks(run: &Run, sources: &Sources) -> Result<Solid, StageError> 
     };
     let modes = found.into_iter().map(|mode| mode.word().to_owned()).collect();
     Ok(Solid { cracks, modes, ..solid })
+}
+
+/// Stones with their clumps, the longest side to the right.
+pub(super) fn stones(sources: &Sources) -> Result<Stones, StageError> {
+    let millimetres = |v: [f64; 3]| v.map(|x| x * MM);
+    let stone = |shape: shapes::Shape| Stone {
+        note: match shape.clump.balls.len() {
+            1 => "1 pebble".to_owned(),
+            many => format!("{many} pebbles"),
+        },
+        name: figure::text::plain_text(&shape.name),
+        facets: shape.mesh.triangles().map(|corners| corners.map(millimetres)).collect(),
+        pebbles: shape.clump.balls.iter().map(|ball| (millimetres(ball.centre), ball.radius * MM)).collect(),
+    };
+    Ok(Stones { stones: shapes::load(sources.first()?.0)?.into_iter().map(stone).collect() })
+}
+
+/// Stones by their proportions.
+pub(super) fn zingg(sources: &Sources) -> Result<Zingg, StageError> {
+    let stored = Shapes::from_artifact(sources.first()?.0)?.shapes;
+    Ok(Zingg { names: stored.shape, flatness: stored.flatness, elongation: stored.elongation, share: stored.share })
 }
