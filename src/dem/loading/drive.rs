@@ -204,10 +204,10 @@ impl<S: Space> Drive<'_, S> {
         if self.fallen(&sample) || bench.done(&self.run.cracks, stress / self.largest) {
             return false;
         }
+        let share = if self.largest > 0.0 { stress / self.largest } else { 1.0 };
+        let paced = self.governor.as_mut().map_or(Ok(()), |governor| governor.look(engine, axial, share));
+        debug_assert!(paced.is_ok(), "a governor asks for factors and dampings that an engine takes: {paced:?}");
         self.run.failure = self.given_up(engine, axial);
-        if let Some(governor) = &mut self.governor {
-            governor.look(engine, axial);
-        }
         self.run.failure.is_none()
     }
 
