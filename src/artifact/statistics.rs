@@ -1,6 +1,7 @@
 //! Results of the statistics as they are stored. A column that mixes responses has no unit: each row is in that of its
 //! response, which stands in `[response.NAME]`.
 
+use super::validity::NotValid;
 use super::{ArtifactKind, Cells, Table, Unread};
 use ndarray::Array2;
 use std::collections::BTreeMap;
@@ -16,6 +17,8 @@ crate::artifact! {
         pub notes: Remarks, "";
         /// every row seen by every model
         pub residuals: Residuals, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -32,6 +35,8 @@ crate::artifact! {
         pub notes: Remarks, "";
         /// every row seen by every model
         pub residuals: Residuals, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -64,6 +69,8 @@ crate::artifact! {
         pub with_constant: Option<WithConstant>, "";
         /// predictions at the points that were asked for
         pub predictions: Option<Predictions>, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -90,14 +97,26 @@ crate::table! {
     pub struct CodedFactors {
         /// the factor
         pub factor: Vec<String>, "";
-        /// natural value at coded 0
+        /// value at coded 0; on a logarithmic scale its logarithm
         pub centre: Vec<f64>, "";
-        /// natural length of a coded unit
+        /// length of a coded unit; on a logarithmic scale that of the logarithm
         pub half: Vec<f64>, "";
         /// least value fitted
         pub low: Vec<f64>, "";
         /// greatest value fitted
         pub high: Vec<f64>, "";
+        /// how the model takes each, where it takes some by their logarithms
+        pub scale: Option<Vec<TakenAs>>, "";
+    }
+}
+
+crate::words! {
+    /// How a model takes the values of a factor.
+    pub enum TakenAs {
+        /// As they are.
+        Linear = "linear",
+        /// By their natural logarithms.
+        Log = "log",
     }
 }
 
@@ -194,7 +213,7 @@ crate::table! {
         pub response: Vec<String>, "";
         /// runs used
         pub n: Vec<i64>, "";
-        /// runs without a value
+        /// runs without a value, or left out
         pub missing: Vec<i64>, "";
         /// residual degrees of freedom
         pub df_residual: Vec<i64>, "";
@@ -308,6 +327,8 @@ crate::table! {
         pub low: Vec<f64>, "";
         /// greatest value fitted
         pub high: Vec<f64>, "";
+        /// how the model takes each, where it takes some by their logarithms
+        pub scale: Option<Vec<TakenAs>>, "";
     }
 }
 

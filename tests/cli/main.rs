@@ -4,6 +4,7 @@
 
 mod calibrate;
 mod cases;
+mod cluster;
 mod columns;
 mod command;
 mod export;
@@ -13,7 +14,10 @@ mod nodes;
 mod readme;
 mod report;
 mod reruns;
+mod scales;
+mod share;
 mod space;
 mod stop;
 mod trust;
+mod validity;
 mod vocabulary;

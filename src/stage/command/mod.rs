@@ -172,7 +172,8 @@ impl Stage for Command {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { material: self.material.clone(), varies: true, ..Sketch::default() }
+        let responses = Some(self.read.keys().cloned().collect());
+        Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -207,6 +208,7 @@ impl Kind for Command {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
+    const FAR: Option<&'static str> = Some("command");
 }
 
 impl Command {

@@ -60,12 +60,16 @@ impl Stage for Simulate {
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = rows::check_units(context);
+        let given = self.test.responses().iter();
+        found.extend(given.filter_map(|own| rows::check_response("test", own.name, own.unit, context)));
         found.extend(self.faults(context));
         found
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { material: Some(self.material.clone()), varies: true, ..Sketch::default() }
+        let responses = self.test.responses().iter().map(|response| response.name.to_owned()).collect();
+        let material = Some(self.material.clone());
+        Sketch { material, responses: Some(responses), varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -135,6 +139,7 @@ impl Kind for Simulate {
     /// 2: the same numbers in another layout: states and their centres stand beside the curve, positions and normals are
     /// `position_x`, `normal_x`, ….
     const WORKS: &'static [Work] = &[Work { name: "simulate", version: 3, run: simulate }, GATHER];
+    const FAR: Option<&'static str> = Some("simulate");
 }
 
 /// Looks at the run between two reports of progress.
