@@ -34,6 +34,7 @@ mod curve;
 mod effort;
 mod faults;
 mod goal;
+mod instrument;
 mod outlook;
 mod params;
 mod read;
@@ -49,6 +50,7 @@ mod words;
 pub use config::{Calibrate, Constraint, MethodName, Unmet};
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
+pub use instrument::{Instrument, Parameter, Surface, instrument};
 pub use slope::Slope;
 pub use words::parameters_in_words;
 
