@@ -5,9 +5,10 @@
 //! below `src/`, so Cargo holds them to it; `tests/layers.rs` holds the modules of this crate to it.
 //!
 //! ```text
-//! cli → { report, export }; report → run → { exec, plan, store }
+//! cli → { report, export }; report → run → { cluster, exec, plan, store }
+//! cluster → { plan, store, stage }
 //! export → stage
-//! { run, plan } → stage → { dem, design, stats, optim, figure } → math
+//! { run, plan } → stage → { dem, design, stats, optim, shape, figure } → math
 //! { run, plan, stage, store } → artifact
 //! { plan, stage } → expression → unit
 //! { plan, stage, artifact } → unit
@@ -19,16 +20,18 @@
 //! | [`export`] | results as files: CSV, pictures, ParaView, lists of particles |
 //! | [`report`] | a campaign as one HTML page |
 //! | [`run`] | the run loop, and the only state that changes during a run |
+//! | [`cluster`] | workers on other machines: lists, reports, site files, schedulers |
 //! | [`exec`] | threads that take work; knows neither tasks nor physics |
 //! | [`plan`] | TOML text → checked workflow; tasks → texts and keys; reasons of reruns |
 //! | [`store`] | the folder of results: HDF5, journals, locks |
 //! | [`stage`] | one file per kind of stage: where domains meet workflows and artifacts |
 //! | [`artifact`] | what can be stored, as plain data with a content hash |
 //! | [`dem`] | the discrete-element engine, specimens and tests |
+//! | [`shape`] | solids of stones, and the clumps of balls that stand for them |
 //! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
 //! | [`math`], [`unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
 //!
-//! The domains (`dem`, `design`, `stats`, `optim`, `figure`) are pure and know nothing of one another, of files or of TOML.
+//! The domains (`dem`, `design`, `stats`, `optim`, `shape`, `figure`) are pure and know nothing of one another, of files or of TOML.
 //!
 //! # The life of `flow run`
 //! 1. `plan` reads the file: every table into the config type of its kind, every fault at once.
@@ -53,6 +56,7 @@
 
 pub mod artifact;
 pub mod cli;
+pub mod cluster;
 pub mod exec;
 pub mod export;
 pub mod expression;

@@ -9,12 +9,17 @@ use std::path::{Path, PathBuf};
 /// What each module of `flow` may import directly or further along. `exec` starts what it is given and imports nothing of
 /// ours. The domains are crates of their own: Cargo holds them to their manifests.
 const ORDER: &[(&str, &[&str])] = &[
-    ("cli", &["report", "export", "run", "exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
+    (
+        "cli",
+        &["report", "export", "run", "cluster", "exec", "plan", "store", "stage", "artifact", "expression", "unit"],
+    ),
     // Files of results; told what to write, it knows neither workflow nor store.
     ("export", &["stage", "artifact", "expression", "unit"]),
     // A page is made of what a dry run finds and the store holds; it prints nothing, so the command line calls it.
-    ("report", &["run", "exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
-    ("run", &["exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
+    ("report", &["run", "cluster", "exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
+    ("run", &["cluster", "exec", "plan", "store", "stage", "artifact", "expression", "unit"]),
+    // What goes to the workers of a cluster and comes back; it knows no graph of tasks.
+    ("cluster", &["plan", "store", "stage", "artifact", "expression", "unit"]),
     ("exec", &[]),
     ("plan", &["stage", "artifact", "expression", "unit"]),
     ("store", &["artifact", "unit"]),
@@ -31,9 +36,10 @@ const KEEPERS: &[(&str, &[&str])] = &[
     ("design", &["stage"]),
     ("stats", &["stage"]),
     ("optim", &["stage"]),
+    ("shape", &["stage", "export"]),
     ("figure", &["stage", "report", "cli"]),
     ("hdf5", &["store"]),
-    ("toml", &["plan"]),
+    ("toml", &["plan", "cluster"]),
     ("clap", &["cli"]),
     ("annotate_snippets", &["cli"]),
     ("indicatif", &["cli"]),
@@ -41,7 +47,7 @@ const KEEPERS: &[(&str, &[&str])] = &[
     ("signal_hook", &["cli"]),
     ("csv", &["stage", "export"]),
     ("maud", &["report"]),
-    ("regex", &["stage"]),
+    ("regex", &["stage", "cluster"]),
 ];
 
 /// The layer that a file of `src` belongs to; none for `lib.rs` and `main.rs`.

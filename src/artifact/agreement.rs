@@ -1,6 +1,7 @@
 //! Computed results beside values from elsewhere, as they are stored.
 
 use super::ArtifactKind;
+use super::validity::NotValid;
 
 crate::artifact! {
     /// Computed results beside values from elsewhere.
@@ -11,6 +12,8 @@ crate::artifact! {
         pub trends: Trends, "";
         /// every pair
         pub pairs: Pairs, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 

@@ -4,6 +4,7 @@
 //! table that is printed. The tables `solution`, `history`, `solution_set` and `runs` have a column for each factor and response of the
 //! workflow besides those that are declared here; [`Table::numbers`] reads such a column by its name.
 
+use super::validity::NotValid;
 use super::{ArtifactKind, Table};
 
 crate::artifact! {
@@ -27,6 +28,8 @@ crate::artifact! {
         pub summary: Summary, "";
         /// the runs: [`VerifiedRuns`] with factors and responses
         pub runs: Table, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 

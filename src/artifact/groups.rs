@@ -2,6 +2,7 @@
 
 use super::field::table_of;
 use super::statistics::Remarks;
+use super::validity::NotValid;
 use super::{Artifact, ArtifactKind, Field, Table, Wanted};
 
 crate::artifact! {
@@ -14,6 +15,8 @@ crate::artifact! {
         pub residuals: Table, "";
         /// what should be looked at before the numbers are trusted
         pub notes: Remarks, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -56,7 +59,7 @@ crate::table! {
         pub p: Vec<f64>, "";
         /// runs used
         pub n: Vec<i64>, "";
-        /// runs without a value
+        /// runs without a value, or left out
         pub missing: Vec<i64>, "";
         /// residual standard deviation
         pub s: Vec<f64>, "";

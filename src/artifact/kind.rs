@@ -16,6 +16,8 @@ pub struct ArtifactKind {
 impl ArtifactKind {
     /// A specimen: discs in a vessel, with aggregate as rigid clumps.
     pub const SPECIMEN: Self = Self::new("specimen", 2).main("quality");
+    /// Shapes of stones, as solids and as clumps.
+    pub const SHAPES: Self = Self::new("shapes", 1).main("shapes");
     /// A design of experiments.
     pub const DESIGN: Self = Self::new("design", 1).main("design");
     /// One run of a simulator.

@@ -21,8 +21,10 @@ pub mod range;
 mod read;
 pub mod results;
 pub mod run;
+pub mod shapes;
 pub mod specimen;
 pub mod statistics;
+pub mod validity;
 
 pub use cells::{Cells, Numbered};
 pub use declare::expect_kind;

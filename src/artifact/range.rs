@@ -1,6 +1,7 @@
 //! A range analysis as it is stored.
 
 use super::statistics::Remarks;
+use super::validity::NotValid;
 use super::{ArtifactKind, Cells, Numbered, Table, Unread, Values};
 
 crate::artifact! {
@@ -12,6 +13,8 @@ crate::artifact! {
         pub levels: LevelValues, "";
         /// what should be looked at before the numbers are trusted
         pub notes: Remarks, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -28,7 +31,7 @@ crate::table! {
         pub range: Vec<f64>, "";
         /// 1 has the largest range
         pub rank: Vec<i64>, "";
-        /// runs without a value
+        /// runs without a value, or left out
         pub missing: Vec<i64>, "";
     }
 }

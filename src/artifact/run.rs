@@ -2,6 +2,7 @@
 
 use super::{Artifact, ArtifactKind, Node, Unread, Wanted};
 use ndarray::{Array2, Array3};
+use std::borrow::Cow;
 
 crate::artifact! {
     /// One run of a simulator. External programs and formulas give responses only.
@@ -176,6 +177,9 @@ crate::table! {
 }
 
 impl Run {
+    /// How a warning begins that repeats [`Run::validity`].
+    pub const NOT_VALID: &'static str = "not valid: ";
+
     /// A run that holds responses only.
     pub fn plain(failure: &str, responses: Responses) -> Self {
         Self {
@@ -194,8 +198,7 @@ impl Run {
         }
     }
 
-    /// Why a run gave no result (empty when it did), and name, value and unit of each response, without a copy of the
-    /// rest: for gathering many runs.
+    /// What gathering and calibration take from a run, without a copy of the rest.
     ///
     /// # Errors
     /// The artifact is no run.
@@ -208,12 +211,48 @@ impl Run {
         let values = table.numbers("value", "").map_err(wrong)?;
         let all =
             names.iter().zip(values).zip(units).map(|((name, value), unit)| (name.as_str(), value, unit.as_str()));
-        Ok((failure, all.collect()))
+        let (validity, cautions) = match (artifact.root.get("checks"), artifact.root.get("validity")) {
+            (Some(Node::Table(table)), _) => {
+                let checks = Checks::from_table(table);
+                let checks = checks.map_err(|unread| Wanted::new("checks", "its columns", unread.to_string()))?;
+                (Some(Cow::Owned(checks.unmet(true))), checks.unmet(false))
+            }
+            (_, Some(Node::Text(why))) => (Some(Cow::Borrowed(why.as_str())), String::new()),
+            (_, _) => (None, String::new()),
+        };
+        Ok(Outcome { failure, validity, cautions: Cow::Owned(cautions), responses: all.collect() })
     }
 }
 
-/// Failure (empty when there is none), and name, value and unit of every response.
-pub type Outcome<'a> = (&'a str, Vec<(&'a str, f64, &'a str)>);
+impl Checks {
+    /// Names of the checks that are not met: of those that make the run invalid, or of the others.
+    fn unmet(&self, decisive: bool) -> String {
+        let all = self.check.iter().zip(self.met.iter().zip(&self.decisive));
+        let unmet = all.filter(|(_, (met, own))| !**met && **own == decisive).map(|(name, _)| name.as_str());
+        unmet.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// What gathering and calibration take from a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome<'a> {
+    /// Why it gave no result; empty when it did.
+    pub failure: &'a str,
+    /// The checks that it does not meet and that make it invalid, by name; empty when it is valid, none when the
+    /// simulator has no checks.
+    pub validity: Option<Cow<'a, str>>,
+    /// The checks that it does not meet and that are no more than a reason to look at it.
+    pub cautions: Cow<'a, str>,
+    /// Name, value and unit of each response.
+    pub responses: Vec<(&'a str, f64, &'a str)>,
+}
+
+impl Outcome<'_> {
+    /// Why a run that gave a result is not valid.
+    pub fn invalid(&self) -> Option<&str> {
+        self.validity.as_deref().filter(|why| self.failure.is_empty() && !why.is_empty())
+    }
+}
 
 impl Responses {
     /// Responses from names, values and units.

@@ -1,6 +1,7 @@
 //! Results of the statistics as they are stored. A column that mixes responses has no unit: each row is in that of its
 //! response, which stands in `[response.NAME]`.
 
+use super::validity::NotValid;
 use super::{ArtifactKind, Cells, Table, Unread};
 use ndarray::Array2;
 use std::collections::BTreeMap;
@@ -16,6 +17,8 @@ crate::artifact! {
         pub notes: Remarks, "";
         /// every row seen by every model
         pub residuals: Residuals, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -32,6 +35,8 @@ crate::artifact! {
         pub notes: Remarks, "";
         /// every row seen by every model
         pub residuals: Residuals, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -64,6 +69,8 @@ crate::artifact! {
         pub with_constant: Option<WithConstant>, "";
         /// predictions at the points that were asked for
         pub predictions: Option<Predictions>, "";
+        /// runs that are not valid, and what became of them
+        pub not_valid: Option<NotValid>, "";
     }
 }
 
@@ -194,7 +201,7 @@ crate::table! {
         pub response: Vec<String>, "";
         /// runs used
         pub n: Vec<i64>, "";
-        /// runs without a value
+        /// runs without a value, or left out
         pub missing: Vec<i64>, "";
         /// residual degrees of freedom
         pub df_residual: Vec<i64>, "";

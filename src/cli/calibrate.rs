@@ -198,7 +198,7 @@ impl Calibrate {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&asked.workflow, &asked.store), jobs)),
         };
-        let report = asked.run(&asked.checks, jobs, &*watch, &interruption());
+        let report = asked.run(&asked.checks, jobs, &*watch, &interruption(None));
         if report.interrupted {
             return (Vec::new(), Exit::Interrupted);
         }
@@ -216,8 +216,15 @@ impl Calibrate {
 
 impl Asked {
     fn run(&self, stages: &[String], jobs: usize, watch: &dyn Watch, stop: &Arc<AtomicBool>) -> Report {
-        let settings =
-            Settings { jobs, keep_going: false, dry: false, targets: stages.to_vec(), again: Vec::new(), memos: true };
+        let settings = Settings {
+            jobs,
+            keep_going: false,
+            dry: false,
+            targets: stages.to_vec(),
+            again: Vec::new(),
+            memos: true,
+            cluster: None,
+        };
         run(&self.workflow, &self.store, &settings, watch, stop)
     }
 

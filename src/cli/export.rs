@@ -6,11 +6,11 @@ use super::output::replace;
 use super::show::{object, parts};
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash};
-use crate::export::{File, files, paraview, particles, tables};
+use crate::export::{File, files, paraview, particles, shapes, tables};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
-use crate::stage::specimen;
 use crate::stage::units::presented;
+use crate::stage::{self, specimen};
 use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
 use dem::genesis::specimen::Specimen;
@@ -40,10 +40,13 @@ enum Form {
     Files,
     /// Every table as CSV, with units in the heads.
     Csv,
-    /// Specimens and runs for ParaView: VTU, and PVD for the states of a run.
+    /// Specimens, runs and shapes for ParaView: VTU, and PVD for the states of a run.
     Vtu,
-    /// Specimens, and runs with their microparameters, as lists of particles, clumps, groups and contacts (CSV, SI).
+    /// Specimens, and runs with their microparameters, as lists of particles, clumps, groups and contacts (CSV, SI); clumps
+    /// of shapes as PFC, LAMMPS and YADE read them.
     Particles,
+    /// Surfaces of shapes as STL, in mm.
+    Stl,
 }
 
 /// A result that is exported: its name in the names of files, and the task that made it.
@@ -101,6 +104,16 @@ impl Export {
         match self.to {
             Form::Files => Ok(files(name, artifact)),
             Form::Csv => Ok(tables(name, artifact)),
+            Form::Vtu | Form::Particles | Form::Stl if artifact.is(ArtifactKind::SHAPES) => {
+                let shapes = stage::shapes::load(artifact).map_err(|e| e.to_string())?;
+                Ok(match self.to {
+                    Form::Stl => shapes::stl(name, &shapes),
+                    Form::Particles => shapes::particles(name, &shapes),
+                    Form::Vtu | Form::Files | Form::Csv => shapes::vtu(name, &shapes),
+                })
+            }
+            Form::Stl if self.stages.is_empty() => Ok(Vec::new()),
+            Form::Stl => Err(format!("`{}` holds no shapes of stones", artifact.kind)),
             Form::Vtu | Form::Particles if artifact.is(ArtifactKind::SPECIMEN) => {
                 let specimen = load(artifact)?;
                 if self.to == Form::Vtu {

@@ -21,7 +21,9 @@ mod report;
 mod run;
 mod schema;
 mod show;
+mod site;
 mod store;
+mod work;
 
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
@@ -57,6 +59,11 @@ enum Command {
     Diff(diff::Diff),
     /// Look after the store: list, verify, sizes, remove what nothing reaches.
     Store(store::StoreCommand),
+    /// Describe a cluster for `flow run --executor slurm`.
+    Site(site::SiteCommand),
+    /// Take tasks from a queue of a cluster; started by the jobs of `flow run --executor slurm`.
+    #[command(hide = true)]
+    Work(work::Work),
     /// Write a commented workflow to start from.
     New(new::New),
     /// Print the JSON Schema of workflow files, for editors.
@@ -96,6 +103,8 @@ fn execute<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Command::Calibrate(calibrate) => calibrate.go(),
         Command::Diff(diff) => diff.go(),
         Command::Store(store) => store.go(),
+        Command::Site(site) => site.go(),
+        Command::Work(work) => work.go(),
         Command::Check(check) => check.go(),
         Command::Graph(graph) => graph.go(),
         Command::New(new) => new.go(),

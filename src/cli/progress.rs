@@ -3,7 +3,7 @@
 use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, Watch};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -31,8 +31,8 @@ struct Live {
     failed: usize,
     /// Where the stage itself says it stands; empty for stages that do not decide by outcomes.
     note: String,
-    /// What was warned of, without its numbers, and how often.
-    warned: HashMap<String, usize>,
+    /// What was warned of, without its numbers, and the rows that were.
+    warned: BTreeMap<String, BTreeSet<Option<usize>>>,
     bar: Option<ProgressBar>,
 }
 
@@ -70,20 +70,21 @@ impl<'a> Progress<'a> {
         let mut stages = self.stages();
         if !stages.contains_key(stage) {
             let now = Instant::now();
-            let (note, warned, bar) = (String::new(), HashMap::new(), self.bar(stage));
+            let (note, warned, bar) = (String::new(), BTreeMap::new(), self.bar(stage));
             stages.insert(stage.to_owned(), Live { started: now, told: now, ended: 0, failed: 0, note, warned, bar });
         }
     }
 
-    /// A warning stays on the screen: of each kind the first of a stage, as rows differ in its numbers only.
+    /// A warning stays on the screen: of each kind the first of a stage, as rows differ in its numbers only. The others are
+    /// counted when the stage ends.
     fn warn(&self, stage: &str, row: Option<usize>, words: &str) {
-        let kind: String = words.chars().filter(|c| !c.is_ascii_digit()).collect();
-        let times = self.stages().get_mut(stage).map(|live| {
-            let times = live.warned.entry(kind).or_default();
-            *times += 1;
-            *times
+        let first = self.stages().get_mut(stage).is_some_and(|live| {
+            let rows = live.warned.entry(kind_of(words)).or_default();
+            let first = rows.is_empty();
+            rows.insert(row);
+            first
         });
-        if times == Some(1) {
+        if first {
             self.say(&format!("warning: {}: {words}", place(stage, row)));
         }
     }
@@ -129,11 +130,10 @@ impl<'a> Progress<'a> {
             bar.finish_and_clear();
         }
         let name = &report.name;
-        let more: usize = live.iter().flat_map(|live| live.warned.values()).map(|times| times - 1).sum();
-        if more > 0 {
-            self.say(&format!(
-                "warning: {name}: {more} more of its rows are warned of alike, each with its own numbers"
-            ));
+        for (kind, rows) in live.iter().flat_map(|live| &live.warned).filter(|(_, rows)| rows.len() > 1) {
+            let more = rows.len() - 1;
+            let rows = if more == 1 { "row is" } else { "rows are" };
+            self.say(&format!("warning: {name}: {more} more {rows} warned of alike: {kind}"));
         }
         match &report.status {
             StageStatus::Failed(why) => match live.map_or(0, |live| live.failed) {
@@ -172,9 +172,16 @@ impl Watch for Progress<'_> {
                 }
                 self.ended(stage, count);
             }
+            Event::Word { text } => self.say(&format!("cluster: {text}")),
             Event::Stage { report } => self.closed(report),
         }
     }
+}
+
+/// What a warning is about: its words up to the first number.
+fn kind_of(words: &str) -> String {
+    let end = words.find(|c: char| c.is_ascii_digit()).unwrap_or(words.len());
+    words[..end].trim_end_matches([' ', ':', '(', '-', '~']).trim_end_matches(" is").to_owned()
 }
 
 /// A stage or one row of it, as `flow show` takes it.
@@ -194,6 +201,13 @@ fn pace(ended: usize, left: usize, elapsed: f64, expected: Option<f64>) -> Strin
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn warnings_are_of_one_kind_when_they_differ_in_numbers_only() {
+        assert_eq!(kind_of("not valid: rotation: 0.031 rad is above 0.018 rad"), "not valid: rotation");
+        assert_eq!(kind_of("strain per step is 4.1e-8, above 3e-8"), "strain per step");
+        assert_eq!(kind_of("no number"), "no number");
+    }
 
     #[test]
     fn the_rest_is_expected_from_earlier_runs_until_this_one_has_told_enough() {

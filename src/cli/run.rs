@@ -4,10 +4,12 @@ use super::Exit;
 use super::common::{Campaign, system, workers};
 use super::progress::{Progress, place};
 use super::remarks::remarks;
+use super::site;
+use crate::cluster::Site;
 use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
-use crate::run::{Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, record, run};
+use crate::run::{Cluster, Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, record, run};
 use crate::stage::command::leftover;
 use crate::store::Store;
 use clap::{Args, ValueEnum};
@@ -32,6 +34,12 @@ pub(super) struct Run {
     /// What runs the tasks.
     #[arg(long, value_enum, value_name = "NAME", default_value = "threads")]
     executor: Executor,
+    /// The cluster: the name of a site file (see `flow site`), or a path to one. The site `default` when not given.
+    #[arg(long, value_name = "NAME")]
+    site: Option<String>,
+    /// Show what would be submitted to the cluster, and submit nothing.
+    #[arg(long)]
+    dry_run: bool,
     /// Go on with what does not depend on a failed task.
     #[arg(long)]
     keep_going: bool,
@@ -49,6 +57,9 @@ pub(super) struct Run {
 enum Executor {
     /// Threads of this process.
     Threads,
+    /// Workers that a scheduler starts on other machines; by its site file it may be another one than Slurm.
+    #[value(alias = "cluster")]
+    Slurm,
 }
 
 impl Run {
@@ -60,8 +71,12 @@ impl Run {
         let started = SystemTime::now();
         let workflow = self.campaign.load_to_run(&self.stages)?;
         self.campaign.known(&workflow, &self.again)?;
+        let cluster = self.cluster()?;
         let store = self.campaign.open()?;
-        let stop = interruption();
+        if let Some(cluster) = cluster.as_ref().filter(|_| self.dry_run) {
+            return Ok(site::show_submission(&workflow, &store, &cluster.site, &self.stages));
+        }
+        let stop = interruption(cluster.as_ref().map(|cluster| &cluster.leave));
         leftover::sweep().iter().for_each(|line| err!("warning: {line}"));
         let jobs = self.jobs.unwrap_or_else(cores);
         let settings = Settings {
@@ -71,14 +86,13 @@ impl Run {
             targets: self.stages.clone(),
             again: self.again.clone(),
             memos: self.again.is_empty(),
+            cluster,
         };
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
             false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
         };
-        let report = match self.executor {
-            Executor::Threads => run(&workflow, &store, &settings, &*watch, &stop),
-        };
+        let report = run(&workflow, &store, &settings, &*watch, &stop);
         drop(watch);
         for damage in store.take_damages() {
             err!("warning: {damage}");
@@ -107,6 +121,25 @@ impl Run {
         Ok(exit)
     }
 
+    /// The cluster that runs the tasks, when one does.
+    fn cluster(&self) -> Result<Option<Cluster>, Exit> {
+        match self.executor {
+            Executor::Threads if self.site.is_some() || self.dry_run => {
+                let option = if self.dry_run { "--dry-run" } else { "--site" };
+                err!("error: `{option}` needs `--executor slurm`\n  what a run would do here is told by `flow plan`");
+                Err(Exit::BadInput)
+            }
+            Executor::Threads => Ok(None),
+            Executor::Slurm => {
+                let site = Site::load(self.site.as_deref()).map_err(|error| {
+                    err!("error: {error}");
+                    Exit::BadInput
+                })?;
+                Ok(Some(Cluster { site, leave: Arc::default() }))
+            }
+        }
+    }
+
     /// Every task that failed, and every stage that did so by itself, with the command that runs them again.
     fn failures(&self, workflow: &Workflow, report: &Report) {
         let mut by_stage: Vec<Vec<String>> = vec![Vec::new(); workflow.stages.len()];
@@ -130,20 +163,24 @@ impl Run {
 }
 
 /// A flag that Ctrl-C, a termination request or the end of the terminal sets; a second one, or tasks that do not end within
-/// a second, end the process at once.
-pub(super) fn interruption() -> Arc<AtomicBool> {
+/// a second, end the process at once. Of workers on other machines only Ctrl-C is the end: at the others `leave` is set.
+pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
+    let (flag, leave) = (Arc::clone(&stop), leave.map(Arc::clone));
+    let patience = if leave.is_some() { PATIENCE_FAR } else { PATIENCE };
     let wanted: &[i32] = if hangup_is_ignored() { &[SIGINT, SIGTERM] } else { &[SIGINT, SIGTERM, SIGHUP] };
     match Signals::new(wanted) {
         Ok(mut signals) => drop(std::thread::spawn(move || {
-            for _ in signals.forever() {
+            for signal in signals.forever() {
+                if let Some(leave) = leave.as_ref().filter(|_| signal != SIGINT) {
+                    leave.store(true, Ordering::Relaxed);
+                }
                 if flag.swap(true, Ordering::Relaxed) {
                     at_once();
                 }
                 err!("stopping: what is finished is kept; once more to stop at once");
-                std::thread::spawn(|| {
-                    std::thread::sleep(PATIENCE);
+                std::thread::spawn(move || {
+                    std::thread::sleep(patience);
                     err!("interrupted: a second run goes on; what ran did not end by itself and begins anew then");
                     at_once();
                 });
@@ -157,6 +194,9 @@ pub(super) fn interruption() -> Arc<AtomicBool> {
 /// How long tasks may take to end by themselves. Statistics and packings look at the flag only now and then, and a store is
 /// sound whenever a campaign is killed.
 const PATIENCE: Duration = Duration::from_millis(850);
+
+/// The same, when a scheduler must be told to cancel jobs meanwhile.
+const PATIENCE_FAR: Duration = Duration::from_secs(20);
 
 /// Ends this process and the programs that it runs.
 fn at_once() -> ! {

@@ -2,6 +2,7 @@
 
 use super::Exit;
 use super::common::{Campaign, provenance, system};
+use crate::artifact::validity::said;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::export::{cells, csv_text, head};
 use crate::plan::Workflow;
@@ -119,8 +120,8 @@ impl Show {
         let artifact = presented(&stored, &workflow.context);
         let tables = self.chosen(what, &artifact)?;
         // Beside its numbers, in whatever form they are shown.
-        if let Some(why) = super::remarks::failure(&artifact) {
-            err!("warning: {what}: the run gave no result: {}", on_screen(why));
+        for said in said(&artifact) {
+            err!("warning: {what}: {}", on_screen(&said));
         }
         if self.json {
             let value = match &self.table {

@@ -164,6 +164,130 @@ pub struct ParallelBond {
     pub scatter: Scatter,
 }
 
+/// How an interface is divided: `rings` rings of equal area by `sectors` equal sectors in space; `rings * sectors` equal
+/// segments in the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Division {
+    /// Rings.
+    pub rings: u32,
+    /// Sectors of a ring.
+    pub sectors: u32,
+}
+
+impl Division {
+    /// Most elements of an interface.
+    pub const MOST: u32 = 32;
+
+    /// Elements of the interface.
+    pub fn count(&self) -> u32 {
+        self.rings.saturating_mul(self.sectors)
+    }
+}
+
+/// State in which interfaces are made: a share of them gapped (unbonded, open by `gap`), a share slit (unbonded, closed), the
+/// rest bonded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shares {
+    /// Share of gapped interfaces.
+    pub gapped: f64,
+    /// Share of slit interfaces.
+    pub slit: f64,
+    /// Gap g₀ of the gapped ones, m.
+    pub gap: f64,
+}
+
+/// Interface of finite size instead of the linear contact, divided into elements that break one by one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatJoint {
+    /// λ: radius of the interface over the smaller particle radius.
+    pub radius_multiplier: f64,
+    /// Its elements.
+    pub division: Division,
+    /// Stiffness of the interface.
+    pub stiffness: BondStiffness,
+    /// σ_b, Pa.
+    pub tensile_strength: f64,
+    /// c_b, Pa.
+    pub cohesion: f64,
+    /// φ_b, rad: an element breaks in shear at c_b − σ tan φ_b, tension positive.
+    pub friction_angle: f64,
+    /// Bonded, gapped and slit interfaces.
+    pub shares: Shares,
+    /// Scatter of both strengths, from interface to interface.
+    pub scatter: Scatter,
+}
+
+impl FlatJoint {
+    /// A bonded interface of the full radius in four elements, with its modulus (Pa), k_n / k_s and strengths (Pa): no angle
+    /// of friction, no scatter. The friction of broken elements is that of the linear contact.
+    pub fn new(modulus: f64, ratio: f64, tensile_strength: f64, cohesion: f64) -> Self {
+        Self {
+            radius_multiplier: 1.0,
+            division: Division { rings: 1, sectors: 4 },
+            stiffness: BondStiffness::Modulus { modulus, ratio },
+            tensile_strength,
+            cohesion,
+            friction_angle: 0.0,
+            shares: Shares::default(),
+            scatter: Scatter::default(),
+        }
+    }
+
+    /// Area of the interface, m².
+    pub fn section<S: Space>(&self, radii: [f64; 2]) -> f64 {
+        S::section(self.radius_multiplier * radii[0].min(radii[1]))
+    }
+
+    /// k_n A, N/m.
+    pub fn normal<S: Space>(&self, radii: [f64; 2]) -> f64 {
+        self.stiffness.per_area(radii) * self.section::<S>(radii)
+    }
+}
+
+/// Bond of a smooth joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointBond {
+    /// σ, Pa.
+    pub tensile_strength: f64,
+    /// c, Pa.
+    pub cohesion: f64,
+    /// φ, rad: τ = c − σ_n tan φ, tension positive.
+    pub friction_angle: f64,
+}
+
+/// What acts between grains on the two sides of a fracture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothJoint {
+    /// λ: radius of the section over the smaller particle radius.
+    pub radius_multiplier: f64,
+    /// Stiffness.
+    pub stiffness: BondStiffness,
+    /// μ.
+    pub friction: f64,
+    /// ψ, rad: a slip parts the faces by its tangent.
+    pub dilation: f64,
+    /// The bond, if any.
+    pub bond: Option<JointBond>,
+}
+
+impl SmoothJoint {
+    /// Unbonded, without dilation: stiffnesses per area (Pa/m) and μ.
+    pub fn new(kn: f64, ks: f64, friction: f64) -> Self {
+        let stiffness = BondStiffness::PerArea { kn, ks };
+        Self { radius_multiplier: 1.0, stiffness, friction, dilation: 0.0, bond: None }
+    }
+
+    /// Section of a contact, m².
+    pub fn section<S: Space>(&self, radii: [f64; 2]) -> f64 {
+        S::section(self.radius_multiplier * radii[0].min(radii[1]))
+    }
+
+    /// k_n A, N/m.
+    pub fn normal<S: Space>(&self, radii: [f64; 2]) -> f64 {
+        self.stiffness.per_area(radii) * self.section::<S>(radii)
+    }
+}
+
 /// The bond that [`install_bonds`](super::Engine::install_bonds) puts into a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Bond {
@@ -174,6 +298,8 @@ pub enum Bond {
     Contact(ContactBond),
     /// Cement.
     Parallel(ParallelBond),
+    /// Interface in place of the contact.
+    Flat(FlatJoint),
 }
 
 /// Law and values between two groups.
@@ -287,18 +413,24 @@ impl ParallelBond {
 
     /// k̄_n A, N/m.
     pub fn normal<S: Space>(&self, radii: [f64; 2]) -> f64 {
-        let per_area = match self.stiffness {
-            BondStiffness::Modulus { modulus, .. } => modulus / length(radii),
-            BondStiffness::PerArea { kn, .. } => kn,
-        };
-        per_area * self.section::<S>(radii)
+        self.stiffness.per_area(radii) * self.section::<S>(radii)
+    }
+}
+
+impl BondStiffness {
+    /// k̄_n between two radii, Pa/m.
+    fn per_area(&self, radii: [f64; 2]) -> f64 {
+        match *self {
+            Self::Modulus { modulus, .. } => modulus / length(radii),
+            Self::PerArea { kn, .. } => kn,
+        }
     }
 
     /// k̄_s / k̄_n.
     pub fn shear_share(&self) -> f64 {
-        match self.stiffness {
-            BondStiffness::Modulus { ratio, .. } => 1.0 / ratio,
-            BondStiffness::PerArea { kn, ks } => ks / kn,
+        match *self {
+            Self::Modulus { ratio, .. } => 1.0 / ratio,
+            Self::PerArea { kn, ks } => ks / kn,
         }
     }
 }

@@ -21,6 +21,8 @@ pub enum Law {
     Contact,
     /// The parallel bond.
     Parallel,
+    /// The flat joint.
+    Flat,
 }
 
 impl fmt::Display for Law {
@@ -29,6 +31,7 @@ impl fmt::Display for Law {
             Self::Spring => "linear spring",
             Self::Contact => "contact bond",
             Self::Parallel => "parallel bond",
+            Self::Flat => "flat joint",
         })
     }
 }
@@ -44,6 +47,8 @@ pub enum Quantity {
     StiffnessPerArea,
     /// Angle, rad.
     Angle,
+    /// Length, m.
+    Length,
     /// A pure number.
     Number,
     /// Standard deviation of a stress: a stress, or a share of the mean.
@@ -58,6 +63,7 @@ impl Quantity {
             Self::Stiffness => "N/m",
             Self::StiffnessPerArea => "Pa/m",
             Self::Angle => "rad",
+            Self::Length => "m",
             Self::Number => "",
         }
     }
@@ -69,6 +75,7 @@ impl Quantity {
             Self::Stiffness => "\"1.7e7 N/m\"",
             Self::StiffnessPerArea => "\"5.3e11 Pa/m\"",
             Self::Angle => "\"30 deg\"",
+            Self::Length => "\"20 um\"",
             Self::Number => "2.5",
             Self::Deviation => "\"3 MPa\" or \"20 %\"",
         }
@@ -86,6 +93,8 @@ pub enum Range {
     Share,
     /// 0 to below 90°.
     Acute,
+    /// A whole number from 1 to [`Division::MOST`](crate::Division::MOST).
+    Count,
 }
 
 impl Range {
@@ -97,6 +106,7 @@ impl Range {
                 Self::NotNegative => value >= 0.0,
                 Self::Share => (0.0..=1.0).contains(&value),
                 Self::Acute => (0.0..std::f64::consts::FRAC_PI_2).contains(&value),
+                Self::Count => (1.0..=f64::from(crate::Division::MOST)).contains(&value) && value.fract() == 0.0,
             }
     }
 
@@ -107,6 +117,7 @@ impl Range {
             Self::NotNegative => "0 or more",
             Self::Share => "0 to 1",
             Self::Acute => "0 to below 90°",
+            Self::Count => "a whole number from 1 to 32",
         }
     }
 }
@@ -163,13 +174,14 @@ macro_rules! parameters {
 }
 
 parameters! {
-    Modulus, "Ec", "E_c", Stress, Positive, f64::NAN, [Spring Parallel],
-        "contact modulus of the linear spring, and of the cement when that has none of its own";
-    Ratio, "kn_ks", "k_n/k_s", Number, Positive, f64::NAN, [Spring Parallel],
-        "normal over shear stiffness of the linear spring, and of the cement when that has none of its own";
+    Modulus, "Ec", "E_c", Stress, Positive, f64::NAN, [Spring Parallel Flat],
+        "contact modulus of the linear spring and of a flat joint, and of the cement when that has none of its own";
+    Ratio, "kn_ks", "k_n/k_s", Number, Positive, f64::NAN, [Spring Parallel Flat],
+        "normal over shear stiffness of the linear spring and of a flat joint, and of the cement when that has none of its own";
     Kn, "kn", "k_n", Stiffness, Positive, f64::NAN, [Spring], "normal stiffness of the linear spring, in place of `Ec`";
     Ks, "ks", "k_s", Stiffness, NotNegative, f64::NAN, [Spring], "shear stiffness of the linear spring, in place of `kn_ks`";
-    Friction, "mu", r"\mu", Number, NotNegative, f64::NAN, [Spring], "friction of the linear spring; it acts where no bond holds";
+    Friction, "mu", r"\mu", Number, NotNegative, f64::NAN, [Spring Flat],
+        "friction of the linear spring and of the broken elements of a flat joint; it acts where no bond holds";
     BondModulus, "pb_Ec", r"\bar E_c", Stress, Positive, f64::NAN, [Parallel], "modulus of the cement; `Ec` when not given";
     BondRatio, "pb_kn_ks", r"\bar k_n/\bar k_s", Number, Positive, f64::NAN, [Parallel],
         "normal over shear stiffness of the cement; `kn_ks` when not given";
@@ -177,18 +189,25 @@ parameters! {
         "normal stiffness of the cement per area, in place of a modulus";
     BondKs, "pb_ks", r"\bar k_s", StiffnessPerArea, NotNegative, f64::NAN, [Parallel],
         "shear stiffness of the cement per area, in place of a ratio";
-    TensileStrength, "sigma_c", r"\bar\sigma_c", Stress, Positive, f64::NAN, [Contact Parallel], "mean tensile strength of the bond";
-    ShearStrength, "tau_c", r"\bar\tau_c", Stress, Positive, f64::NAN, [Contact Parallel],
+    TensileStrength, "sigma_c", r"\bar\sigma_c", Stress, Positive, f64::NAN, [Contact Parallel Flat], "mean tensile strength of the bond";
+    ShearStrength, "tau_c", r"\bar\tau_c", Stress, Positive, f64::NAN, [Contact Parallel Flat],
         "mean shear strength of the bond; with a friction angle its cohesion";
-    TensileDeviation, "sigma_c_deviation", r"s_{\bar\sigma_c}", Deviation, NotNegative, 0.0, [Contact Parallel],
+    TensileDeviation, "sigma_c_deviation", r"s_{\bar\sigma_c}", Deviation, NotNegative, 0.0, [Contact Parallel Flat],
         "standard deviation of the tensile strength from bond to bond";
-    ShearDeviation, "tau_c_deviation", r"s_{\bar\tau_c}", Deviation, NotNegative, 0.0, [Contact Parallel],
+    ShearDeviation, "tau_c_deviation", r"s_{\bar\tau_c}", Deviation, NotNegative, 0.0, [Contact Parallel Flat],
         "standard deviation of the shear strength from bond to bond";
-    FrictionAngle, "friction_angle", r"\bar\phi", Angle, Acute, 0.0, [Parallel],
-        "friction angle of the bond: compression adds its tangent times the mean normal stress to the shear strength";
-    RadiusMultiplier, "radius_multiplier", r"\bar\lambda", Number, Positive, 1.0, [Parallel],
-        "radius of the cement over the smaller radius of the two particles";
+    FrictionAngle, "friction_angle", r"\bar\phi", Angle, Acute, 0.0, [Parallel Flat],
+        "friction angle of the bond: compression adds its tangent times the mean normal stress (flat joint: of each element) to the shear strength";
+    RadiusMultiplier, "radius_multiplier", r"\bar\lambda", Number, Positive, 1.0, [Parallel Flat],
+        "radius of the cement or the interface over the smaller radius of the two particles";
     MomentFactor, "moment_factor", r"\bar\beta", Number, Share, 1.0, [Parallel], "share of the moments in the stresses of the bond";
+    Elements, "fj_elements", "N_e", Number, Count, 4.0, [Flat],
+        "elements of an interface: equal segments in the plane, sectors of a ring in space (3 or more)";
+    Rings, "fj_rings", "N_r", Number, Count, 1.0, [Flat],
+        "rings of an interface in space, of equal area; in the plane it multiplies the segments";
+    Gapped, "fj_gapped", r"\phi_G", Number, Share, 0.0, [Flat], "share of interfaces that are made unbonded and open by `fj_gap`";
+    Slit, "fj_slit", r"\phi_S", Number, Share, 0.0, [Flat], "share of interfaces that are made unbonded and closed";
+    InitialGap, "fj_gap", "g_0", Length, NotNegative, 0.0, [Flat], "gap of the gapped interfaces";
 }
 
 impl Parameter {

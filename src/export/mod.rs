@@ -1,11 +1,12 @@
 //! Results as files for people and other programs.
 //!
-//! [`files`] and [`tables`] take any artifact; [`paraview`] and [`particles`] take specimens and runs.
+//! [`files`] and [`tables`] take any artifact; [`paraview`] and [`particles`] take specimens and runs, [`shapes`] shapes of stones.
 
 mod bodies;
 mod csv;
 pub mod paraview;
 pub mod particles;
+pub mod shapes;
 mod vtu;
 
 pub use csv::{cells, csv_text, head};

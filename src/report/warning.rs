@@ -4,8 +4,9 @@
 use super::paper::Part;
 use crate::artifact::calibration::{Prediction, Solution, Summary, Verification};
 use crate::artifact::groups::{GroupResiduals, Groups};
-use crate::artifact::results::Results;
+use crate::artifact::run::Run;
 use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
+use crate::artifact::validity::said;
 use crate::artifact::{Artifact, Node, Wanted};
 
 /// Adjusted and predicted R² of a sound model differ by less than this (a rule of thumb of designed experiments).
@@ -19,28 +20,23 @@ const LEVEL: f64 = 0.05;
 /// The warnings of a stage.
 pub(super) fn warnings(part: &Part) -> Vec<String> {
     let Some(artifact) = part.artifact() else { return Vec::new() };
-    let mut found = own(artifact);
-    if let Some(Node::Text(why)) = artifact.root.get("failure")
-        && !why.is_empty()
-    {
-        found.push(format!("the run failed: {why}"));
-    }
+    let mut found = said(artifact);
+    found.extend(own(artifact));
     // A result of another version says nothing here; whoever shows its tables tells.
     found.extend(judged(artifact).unwrap_or_default());
     found
 }
 
-/// Texts that the stage left as warnings.
+/// Texts that the stage left as warnings; what makes a run invalid is said with it.
 fn own(artifact: &Artifact) -> Vec<String> {
-    artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default().to_vec()
+    let all = artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default();
+    all.iter().filter(|text| !text.starts_with(Run::NOT_VALID)).cloned().collect()
 }
 
 /// What the numbers of a result warn of.
 fn judged(artifact: &Artifact) -> Result<Vec<String>, Wanted> {
     let mut found = Vec::new();
-    if artifact.is(Results::KIND) {
-        found.extend(failures(Results::failures(Results::table(artifact)?)));
-    } else if artifact.is(Anova::KIND) {
+    if artifact.is(Anova::KIND) {
         let Anova { fit, residuals, .. } = Anova::from_artifact(artifact)?;
         found.extend(fits(&fit).into_iter().chain(flags(&residuals)));
     } else if artifact.is(Screening::KIND) {
@@ -55,27 +51,9 @@ fn judged(artifact: &Artifact) -> Result<Vec<String>, Wanted> {
     } else if artifact.is(Solution::KIND) {
         found.extend(reach(&Solution::from_artifact(artifact)?.prediction));
     } else if artifact.is(Verification::KIND) {
-        let Verification { summary, runs } = Verification::from_artifact(artifact)?;
-        found.extend(failures(Results::failures(&runs)).into_iter().chain(outside(&summary)));
+        found.extend(outside(&Verification::from_artifact(artifact)?.summary));
     }
     Ok(found)
-}
-
-fn failures(all: &[String]) -> Vec<String> {
-    let mut reasons: Vec<(&str, usize)> = Vec::new();
-    for why in all.iter().filter(|why| !why.is_empty()) {
-        match reasons.iter_mut().find(|(known, _)| known == why) {
-            Some((_, count)) => *count += 1,
-            None => reasons.push((why, 1)),
-        }
-    }
-    let count: usize = reasons.iter().map(|(_, count)| count).sum();
-    let told: Vec<String> = reasons.iter().map(|(why, count)| format!("{why} ({count})")).collect();
-    if count == 0 {
-        Vec::new()
-    } else {
-        vec![format!("{count} of {} runs have no result: {}", all.len(), told.join("; "))]
-    }
 }
 
 /// The values that are numbers, with the responses that they belong to.
@@ -169,9 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_flags_and_targets_are_counted_by_name() {
-        let runs = words(&["", "no peak", "no peak", "lost"]);
-        assert_eq!(failures(&runs), ["3 of 4 runs have no result: no peak (2); lost (1)"]);
+    fn flags_and_targets_are_counted_by_name() {
         let (response, row, flag) = (words(&["E", "E"]), vec![4, 26], words(&["", "outlier"]));
         let residuals = Residuals { response, row, flag, ..Residuals::default() };
         assert_eq!(flags(&residuals), ["suspicious runs, kept in the fit: E, row 26 (outlier)"]);

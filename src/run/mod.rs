@@ -10,10 +10,13 @@
 //! whose inputs are known by looking its key up in the store; start what is ready; wait for one answer. `plan` is the
 //! same loop that starts nothing, so it cannot disagree with `run`.
 
+mod audit;
 mod board;
 mod commit;
 mod elsewhere;
+mod far;
 mod files;
+mod hand;
 mod ledger;
 mod library;
 mod memo;
@@ -23,24 +26,30 @@ mod record;
 mod stages;
 mod streamed;
 mod task;
+mod worker;
 
+pub use audit::{Audited, audit};
 pub use board::{TaskCount, TaskState};
 pub use commit::commit;
 pub use memo::remembered;
 pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
+pub use worker::{Worked, Worker, program};
 
 use crate::artifact::{ContentHash, Key};
+use crate::cluster::Site;
 use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
 use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
 use elsewhere::Elsewhere;
+use far::Far;
 use stages::Stages;
 use std::any::Any;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use streamed::Streamed;
@@ -60,6 +69,17 @@ pub struct Settings {
     pub again: Vec<String>,
     /// Believe what is remembered about unchanged stages; without it every task is looked up.
     pub memos: bool,
+    /// The cluster whose workers compute what takes long; none when all is computed here.
+    pub cluster: Option<Cluster>,
+}
+
+/// A cluster, for one run.
+#[derive(Clone, Debug)]
+pub struct Cluster {
+    /// What is known of it.
+    pub site: Site,
+    /// Set before the run is stopped when its workers are to go on.
+    pub leave: Arc<AtomicBool>,
 }
 
 /// What the person watching is told.
@@ -99,6 +119,11 @@ pub enum Event<'a> {
         count: TaskCount,
         /// Why it failed.
         failure: Option<&'a str>,
+    },
+    /// Something about the workers on other machines.
+    Word {
+        /// In words.
+        text: &'a str,
     },
     /// A stage ended.
     Stage {
@@ -169,6 +194,8 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
     let (answers, inbox) = channel();
     let jobs = if settings.dry { 1 } else { settings.jobs };
     let ran = with_threads(jobs, |pool| {
+        let cluster = settings.cluster.as_ref().filter(|_| !settings.dry);
+        let (far, refused) = hand::cluster(store, cluster, watch);
         let run = Loop {
             workflow,
             store,
@@ -182,6 +209,10 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             ready: BTreeSet::new(),
             running: 0,
             elsewhere: Elsewhere::default(),
+            far,
+            far_nodes: HashMap::new(),
+            most_seconds: HashMap::new(),
+            refused,
             streamed: Streamed::default(),
             failed: false,
             untold: Vec::new(),
@@ -211,8 +242,15 @@ fn panicked(panic: &(dyn Any + Send)) -> Failure {
 /// Decides what is done of `workflow` and what is left, by the decisions of [`run`], and starts nothing. `targets` are the
 /// stages that are wanted, all when empty; without `memos` every task is looked up.
 pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Report {
-    let settings =
-        Settings { jobs: 0, keep_going: true, dry: true, targets: targets.to_vec(), again: Vec::new(), memos };
+    let settings = Settings {
+        jobs: 0,
+        keep_going: true,
+        dry: true,
+        targets: targets.to_vec(),
+        again: Vec::new(),
+        memos,
+        cluster: None,
+    };
     run(workflow, store, &settings, &Silent, &AtomicBool::new(false))
 }
 
@@ -237,6 +275,13 @@ struct Loop<'pool, 'env> {
     running: usize,
     /// Tasks that other processes compute.
     elsewhere: Elsewhere,
+    /// Tasks that workers on other machines compute.
+    far: Option<Far<'env>>,
+    far_nodes: HashMap<Key, NodeId>,
+    /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.
+    most_seconds: HashMap<String, Option<f64>>,
+    /// Why the cluster cannot go on: nothing more is started.
+    refused: Option<String>,
     /// What gathering takes from the runs that were computed.
     streamed: Streamed,
     failed: bool,
@@ -257,7 +302,7 @@ impl Loop<'_, '_> {
         loop {
             while !self.again && self.advance() {}
             self.start();
-            if self.running == 0 && (self.again || self.ends() || self.elsewhere.is_empty()) {
+            if self.running == 0 && self.far_rests() && (self.again || self.ends() || self.elsewhere.is_empty()) {
                 if !self.again {
                     break;
                 }
@@ -267,23 +312,29 @@ impl Loop<'_, '_> {
             self.wait(inbox);
         }
         self.tell_without_result(true);
+        self.leave();
         let interrupted = self.stop.load(Ordering::Relaxed);
-        let broken = self.fatal.map(|error| error.to_string());
+        let broken = self.fatal.map(|error| error.to_string()).or(self.refused);
         let stages = self.stages.reports(self.workflow, &self.board);
         Report { stages, interrupted, broken, board: self.board, places: self.stages }
     }
 
     /// Waits for an answer, or for another process to let go of a task.
     fn wait(&mut self, inbox: &Receiver<Answer>) {
-        let answer = match self.elsewhere.is_empty() {
-            true => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
-            false => inbox.recv_timeout(self.elsewhere.pause()),
+        let pauses = [
+            (!self.elsewhere.is_empty()).then(|| self.elsewhere.pause()),
+            self.far.as_ref().filter(|far| !far.is_idle()).map(Far::pause),
+        ];
+        let answer = match pauses.into_iter().flatten().min() {
+            None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            Some(pause) => inbox.recv_timeout(pause),
         };
         match answer {
             Ok(answer) => self.take(answer),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => panic!("BUG: the run loop lost its own inbox"),
         }
+        self.listen();
         // What they have finished is found when it is started.
         self.ready.extend(self.elsewhere.over());
         if let Some((node, holder)) = self.elsewhere.first().filter(|_| self.running == 0) {
@@ -295,7 +346,7 @@ impl Loop<'_, '_> {
 
     /// Whether nothing more is started.
     fn ends(&self) -> bool {
-        let ended = self.stop.load(Ordering::Relaxed) || self.fatal.is_some();
+        let ended = self.stop.load(Ordering::Relaxed) || self.fatal.is_some() || self.refused.is_some();
         self.settings.dry || ended || (self.failed && !self.settings.keep_going)
     }
 
@@ -392,6 +443,7 @@ impl Loop<'_, '_> {
         if self.again || self.ends() {
             return;
         }
+        self.hand_over();
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
             let again = self.forced(node);
@@ -422,6 +474,7 @@ impl Loop<'_, '_> {
         self.untold.clear();
         self.ready.clear();
         self.elsewhere.clear();
+        self.far_nodes.clear();
         self.board = Board::default();
         self.stages = Stages::new(self.workflow, &self.settings.targets, false);
     }

@@ -68,6 +68,11 @@ read.y = { file = "out.json", pointer = "/y", unit = "MPa" }
 kind = "data"
 file = "data.csv"
 
+[stage.shapes]
+kind = "shapes"
+sections = "sections.csv"
+within = { inertia = 0.1 }
+
 [stage.range]
 kind = "range"
 table = "formula"
@@ -125,6 +130,8 @@ of = "table"
 
 const DATA: &str = "a [GPa],b,y [MPa]\n1,10,11\n3,10,17\n1,30,19\n3,30,25.5\n";
 
+const SECTIONS: &str = "shape,position [mm],thickness [mm],height [mm]\nslab,0,20,8\nslab,15,24,10\nslab,30,18,8\n";
+
 /// Stage and the first digits of the hash of its result, then work and version.
 const PINS: &str = "\
 specimen 3dc1aee5970f
@@ -133,6 +140,7 @@ design 4707cd1886b9
 formula c57272d7c660
 command ab7cb869a592
 data 76fbb067e6c6
+shapes c041015d0836
 range c56236dde0d0
 anova 2a92fd32596a
 screening a2868be9d3d3
@@ -144,24 +152,25 @@ effort cf49a99b0418
 agreement bd06fe72410e
 table 464517716712
 figure e5375085b080
-agreement 1
-anova 2
+agreement 2
+anova 3
 calibrate 3
 command 1
 data 2
 design 2
 effort 1
-figure 10
-fit 2
+figure 11
+fit 3
 formula 2
-gather 1
-groups 1
-range 2
-screening 3
+gather 2
+groups 2
+range 3
+screening 4
+shapes 1
 simulate 3
 specimen 2
-table 4
-verify 1
+table 5
+verify 2
 ";
 
 /// What the workflow gives, in the form of the pins.
@@ -170,14 +179,22 @@ fn found() -> String {
     let path = folder.path().join("pins.toml");
     std::fs::write(&path, WORKFLOW).unwrap();
     std::fs::write(folder.path().join("data.csv"), DATA).unwrap();
+    std::fs::write(folder.path().join("sections.csv"), SECTIONS).unwrap();
     let workflow = load(&path, &Overrides::default());
     let workflow = workflow.unwrap_or_else(|faults| {
         panic!("{}", faults.iter().map(|fault| fault.message.clone()).collect::<Vec<_>>().join("\n"))
     });
     let kinds: BTreeSet<&str> = workflow.stages.iter().map(|stage| stage.kind).collect();
     let store = Store::open(&folder.path().join("store")).unwrap();
-    let settings =
-        Settings { jobs: 2, keep_going: true, dry: false, targets: Vec::new(), again: Vec::new(), memos: false };
+    let settings = Settings {
+        jobs: 2,
+        keep_going: true,
+        dry: false,
+        targets: Vec::new(),
+        again: Vec::new(),
+        memos: false,
+        cluster: None,
+    };
     let report = run(&workflow, &store, &settings, &Silent, &AtomicBool::new(false));
     let mut text = String::new();
     for stage in &report.stages {

@@ -109,6 +109,14 @@ impl<'a> Past<'a> {
         like.min_by_key(Vec::len).unwrap_or_else(|| vec![Reason::New])
     }
 
+    /// Seconds that 19 of 20 tasks of a stage took less than, from what was recorded.
+    pub fn most_seconds(&self, stage: &str) -> Option<f64> {
+        let old = remembered(self.store, self.memos.get(stage)?)?;
+        let mut seconds: Vec<f64> = old.iter().filter_map(|(_, key)| self.store.seconds(key).ok()?).collect();
+        seconds.sort_by(f64::total_cmp);
+        seconds.get((seconds.len() * 19).div_ceil(20).checked_sub(1)?).copied()
+    }
+
     /// Mean duration of a task of a stage, seconds, from what was recorded.
     pub fn seconds(&self, stage: &str) -> Option<f64> {
         let old = remembered(self.store, self.memos.get(stage)?)?;

@@ -123,24 +123,35 @@ impl Order {
         say: &(dyn Fn(Progress) + Sync),
         stop: &AtomicBool,
     ) -> Result<Finished, Failure> {
-        let Some(work) = work(self.task.work) else { panic!("BUG: no work is called `{}`", self.task.work) };
-        let job = Job {
-            params: &self.task.params.value(),
-            seed: self.task.seed,
-            inputs: &self.inputs,
-            files: &self.task.files,
-            threads: &|| share.threads(),
-            time_limit: self.task.time_limit,
-            say,
-            stop,
-        };
-        let (started, clock) = (SystemTime::now(), Instant::now());
-        let artifact = (work.run)(&job)?;
-        let timing = Timing { started, seconds: clock.elapsed().as_secs_f64() };
+        let (artifact, timing) = compute(&self.task, &self.inputs, share, say, stop)?;
         let (record, artifact) = store.finish(claim, self.text, artifact, &timing).map_err(failure)?;
         let brief = streamed::brief(&artifact);
         Ok(Finished { content: record.content, shared: false, seconds: timing.seconds, brief })
     }
+}
+
+/// Computes the result of a task whose inputs are there, and how long that took.
+pub(super) fn compute(
+    task: &Task,
+    inputs: &[(String, Arc<Artifact>)],
+    share: &Share,
+    say: &(dyn Fn(Progress) + Sync),
+    stop: &AtomicBool,
+) -> Result<(Artifact, Timing), Failure> {
+    let Some(work) = work(task.work) else { panic!("BUG: no work is called `{}`", task.work) };
+    let job = Job {
+        params: &task.params.value(),
+        seed: task.seed,
+        inputs,
+        files: &task.files,
+        threads: &|| share.threads(),
+        time_limit: task.time_limit,
+        say,
+        stop,
+    };
+    let (started, clock) = (SystemTime::now(), Instant::now());
+    let artifact = (work.run)(&job)?;
+    Ok((artifact, Timing { started, seconds: clock.elapsed().as_secs_f64() }))
 }
 
 pub(super) fn failure(error: impl std::fmt::Display) -> Failure {

@@ -10,8 +10,9 @@
 
 use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use super::{Context, figure::Names};
+use super::{Context, figure::Names, invalid::Invalid};
 use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
+use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +36,9 @@ pub struct Agreement {
     /// Largest relative difference of a level that still counts as the same: published levels are rounded.
     #[serde(default = "tolerance")]
     pub tolerance: f64,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
 }
 
 fn tolerance() -> f64 {
@@ -84,7 +88,7 @@ impl Stage for Agreement {
         for ((name, ours), theirs) in self.of.list().into_iter().zip(known.port("of")).zip(known.port("compare")) {
             let (a, b) = (known.load(ours)?, known.load(theirs)?);
             let (a, b) = (runs(&a)?, runs(&b)?);
-            let all = Wanted::default();
+            let all = Wanted { invalid: self.invalid, ..Wanted::default() };
             let (first, second) = (Columns::of(a, known.context, all)?, Columns::of(b, known.context, all)?);
             let shared = |own: Vec<String>, other: Vec<String>| -> Vec<String> {
                 own.into_iter().filter(|name| other.contains(name)).collect()
@@ -96,7 +100,7 @@ impl Stage for Agreement {
                 let message = format!("`{name}` and its reference share no factor, or no response");
                 return Err(StageError::new(message).hint("rows are paired by the factors that both tables hold"));
             }
-            let wanted = Wanted { factors: &factors, responses: &responses, ..Wanted::default() };
+            let wanted = Wanted { factors: &factors, responses: &responses, ..all };
             let (ours, theirs) = (Columns::of(a, known.context, wanted)?, Columns::of(b, known.context, wanted)?);
             tables.push(Pair { name, ours, theirs });
         }
@@ -116,7 +120,8 @@ impl Kind for Agreement {
     const ABOUT: &'static str = "computed results beside values from elsewhere: ratios, ranks, trends";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::AGREEMENT];
     const CLASS: Class = Class::Statistics;
-    const WORKS: &'static [Work] = &[Work { name: "agreement", version: 1, run: compare }];
+    // 2: runs that are not valid are left out
+    const WORKS: &'static [Work] = &[Work { name: "agreement", version: 2, run: compare }];
 }
 
 /// A pair of values of one point.
@@ -147,9 +152,12 @@ struct Trend {
 fn compare(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let of = |port: &'static str| job.inputs.iter().filter(move |(name, _)| name == port).map(|(_, artifact)| artifact);
-    let (mut points, mut trends) = (Vec::new(), Vec::new());
+    let (mut points, mut trends, mut not_valid) = (Vec::new(), Vec::new(), NotValid::default());
     for ((pair, ours), theirs) in params.tables.iter().zip(of("of")).zip(of("compare")) {
-        let (ours, theirs) = (pair.ours.sample(runs(ours)?)?, pair.theirs.sample(runs(theirs)?)?);
+        let (ours, theirs) = (runs(ours)?, runs(theirs)?);
+        not_valid.append(pair.ours.not_valid(ours)?);
+        not_valid.append(pair.theirs.not_valid(theirs)?);
+        let (ours, theirs) = (pair.ours.sample(ours)?, pair.theirs.sample(theirs)?);
         let rows = pair_rows(&levels(&ours), &levels_like(&theirs, &ours), params.tolerance);
         for response in &ours.responses {
             let Some(other) = theirs.responses.iter().find(|r| r.name == response.name) else { continue };
@@ -173,6 +181,7 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
         summary: summary_table(&summaries(&points)),
         trends: trend_table(&trends),
         pairs: pair_table(&points),
+        not_valid: not_valid.some(),
     };
     Ok(stored.to_artifact())
 }

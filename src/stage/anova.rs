@@ -5,12 +5,14 @@
 //! flagged; `notes` says what to look at. With `published` the printed F values stand beside the computed ones.
 
 use super::beside::Beside;
-use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
+use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused_without, runs};
 use super::fitted::{fit_table, residual_table};
+use super::invalid::Invalid;
 use super::notes::{Notes, short};
 use super::published::{Computed, beside, prints};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::statistics::{Anova as Stored, Fits, Variances};
+use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,6 +64,9 @@ pub struct Anova {
     pub outlier_alpha: f64,
     /// Column with the number of replicates that each row is the mean of.
     pub weights: Option<String>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
     /// Step to which a response of the table is rounded; adds what that does to F.
     #[serde(default)]
     pub rounding: BTreeMap<String, f64>,
@@ -195,6 +200,7 @@ impl Stage for Anova {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: true,
+            invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
         let mut task = Task::new("anova", json!(self.params(columns))).input("table", input.content);
@@ -210,8 +216,8 @@ impl Kind for Anova {
     const ABOUT: &'static str = "analysis of variance: sums of squares, F, p and contribution of every factor";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::ANOVA];
     const CLASS: Class = Class::Statistics;
-    // 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "anova", version: 2, run: analyse }];
+    // 3: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "anova", version: 3, run: analyse }];
 }
 
 fn settings(params: &Params) -> Settings {
@@ -233,8 +239,9 @@ fn settings(params: &Params) -> Settings {
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let sample = params.columns.sample(runs(job.input("table")?)?)?;
-    let analyses = anova(&sample, &settings(&params)).map_err(refused)?;
+    let runs = runs(job.input("table")?)?;
+    let (sample, not_valid) = (params.columns.sample(runs)?, params.columns.not_valid(runs)?);
+    let analyses = anova(&sample, &settings(&params)).map_err(|faults| refused_without(faults, &not_valid))?;
     let lines: Vec<(&Analysis, &Line)> = analyses.iter().flat_map(|a| a.lines.iter().map(move |l| (a, l))).collect();
     let rounding = |(a, line): &(&Analysis, &Line)| a.f_rounding(line, *params.rounding.get(&a.response)?);
     let mut table = variance_table(&lines);
@@ -275,13 +282,13 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         not_estimable: Some(about.texts(|a| a.not_estimable.join(" "))),
         ..fit_table(&fits)
     };
-    let (notes, residuals) = (notes(&analyses, &params).table(), residual_table(residuals));
-    Ok(Stored { anova: table, fit, notes, residuals }.to_artifact())
+    let (notes, residuals) = (notes(&analyses, &params, &not_valid).table(), residual_table(residuals));
+    Ok(Stored { anova: table, fit, notes, residuals, not_valid: not_valid.some() }.to_artifact())
 }
 
 /// What a person should see at once.
-fn notes(analyses: &[Analysis], params: &Params) -> Notes {
-    let mut notes = Notes::default();
+fn notes<'a>(analyses: &[Analysis], params: &Params, not_valid: &'a NotValid) -> Notes<'a> {
+    let mut notes = Notes::of(not_valid);
     for analysis in analyses {
         let response = analysis.response.as_str();
         for line in analysis.lines.iter().filter(|line| params.empty.contains(&line.source)) {

@@ -51,9 +51,11 @@ pub use config::{Calibrate, Constraint, MethodName, Unmet};
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
 pub use instrument::{Instrument, Parameter, Surface, instrument};
+pub(super) use read::Judgement;
 pub use slope::Slope;
 pub use words::parameters_in_words;
 
+use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use course::Course;
@@ -66,14 +68,20 @@ use std::collections::BTreeMap;
 pub(super) fn read_response(
     runs: &[(&str, &Artifact)],
     from: &BTreeMap<String, String>,
-    response: &str,
-    unit: &str,
+    (response, unit): (&str, &str),
+    invalid: Invalid,
 ) -> Result<Result<f64, String>, StageError> {
     let strain = response.strip_prefix(params::ORDINATE).and_then(|strain| strain.parse().ok());
     let (response, unit) = (response.to_owned(), unit.to_owned());
     let target = params::TargetParam { response, unit, low: None, high: None, weight: 1.0, tolerance: None, strain };
     let parts: Vec<read::Part<'_>> = runs.iter().map(|&(stage, run)| read::Part { stage, run }).collect();
-    Ok(read::evaluation(&parts, from, &[target])?.map(|values| values[0]))
+    Ok(read::evaluation(&parts, from, &[target], invalid)?.map(|values| values[0]))
+}
+
+/// What is said of the runs of a point.
+pub(super) fn judgement(runs: &[(&str, &Artifact)]) -> Result<Judgement, StageError> {
+    let parts: Vec<read::Part<'_>> = runs.iter().map(|&(stage, run)| read::Part { stage, run }).collect();
+    Judgement::of(&parts)
 }
 
 impl Stage for Calibrate {

@@ -1,9 +1,11 @@
 //! From a table of runs to the statistician's sample and back: shared by every stage that analyses.
 
 use super::derived::Derived;
+use super::invalid::Invalid;
 use super::{Complaint, Context, StageError};
 use crate::artifact::groups::Groups;
 use crate::artifact::results::Results;
+use crate::artifact::validity::NotValid;
 use crate::artifact::{Artifact, Table, Values};
 use serde::{Deserialize, Serialize};
 use stats::error::Faults;
@@ -21,6 +23,9 @@ pub(super) struct Columns {
     /// Column with the number of replicates that a row is the mean of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<String>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    invalid: Invalid,
 }
 
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -55,6 +60,8 @@ pub(super) struct Wanted<'a> {
     pub weights: Option<&'a str>,
     /// Whether factors are categories, so that every value must be a declared level.
     pub levels: bool,
+    /// What becomes of runs that are not valid.
+    pub invalid: Invalid,
 }
 
 /// The table `runs` of an artifact, or the table `groups` of fits by groups.
@@ -107,6 +114,7 @@ impl Columns {
             responses: known.iter().filter_map(response).collect(),
             derived,
             weights: wanted.weights.map(str::to_owned),
+            invalid: wanted.invalid,
         };
         if (columns.factors.is_empty() && columns.derived.is_empty()) || columns.responses.is_empty() {
             let message = "the table has no column that is a [factor], or none that is a [response]";
@@ -148,7 +156,21 @@ impl Columns {
         all.find(|(name, _)| *name == factor).map_or("", |(_, unit)| unit.as_str())
     }
 
-    /// The sample that the columns of `table` make. A response without a number is a missing row.
+    /// The runs of a table that are not valid, for each response that they gave, and what becomes of them.
+    ///
+    /// # Errors
+    /// Such runs are refused, or a response cannot be read.
+    pub(super) fn not_valid(&self, table: &Table) -> Result<NotValid, StageError> {
+        let judged = self.invalid.judge(table)?;
+        let mut list = NotValid::default();
+        for own in &self.responses {
+            list.append(judged.listed(&own.name, &table.numbers(&own.name, &own.unit)?));
+        }
+        Ok(list)
+    }
+
+    /// The sample that the columns of `table` make. A response without a number is a missing row, as is that of a run that
+    /// is left out.
     pub(super) fn sample(&self, table: &Table) -> Result<Sample, StageError> {
         let factor = |own: &FactorColumn| {
             if !own.labels.is_empty() {
@@ -162,10 +184,12 @@ impl Columns {
             let values = own.values(&parts.collect::<Result<Vec<_>, StageError>>()?)?;
             Ok(Factor::new(&own.name, values))
         };
+        let judged = self.invalid.judge(table)?;
         let plain = self.factors.iter().map(factor);
         let response = |own: &ResponseColumn| {
             let values = table.numbers(&own.name, &own.unit)?;
-            let values = values.into_iter().map(|v| (!v.is_nan()).then_some(v)).collect();
+            let counts = |(row, value): (usize, f64)| (!value.is_nan() && !judged.leaves_out(row)).then_some(value);
+            let values = values.into_iter().enumerate().map(counts).collect();
             Ok(Response { name: own.name.clone(), values })
         };
         Ok(Sample {
@@ -206,6 +230,13 @@ fn named(table: &Table, own: &FactorColumn) -> Result<Factor, StageError> {
 /// The faults of a sample or a model as one error.
 pub(super) fn refused(Faults(faults): Faults) -> StageError {
     StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+}
+
+/// The faults of a sample from which runs may have been left out: it may lack what these had.
+pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageError {
+    let mut error = refused(faults);
+    not_valid.said().iter().for_each(|said| error.message += &format!("\n{said}"));
+    error
 }
 
 /// Complaints about names that the workflow does not declare.

@@ -1,7 +1,7 @@
 //! Fitted models as artifacts: the tables that people read and what prediction needs, written once for `regression`
 //! and `rsm`, and read back by every stage that predicts.
 
-use super::columns::{Columns, Rows, refused, runs};
+use super::columns::{Columns, Rows, refused_without, runs};
 use super::notes::Notes;
 use super::published::{Computed, beside, prints};
 use super::regression::origin::Beside;
@@ -10,6 +10,7 @@ use crate::artifact::Artifact;
 use crate::artifact::statistics::{
     Coefficients, Domains, Fits, PrincipalAxes, Residuals, Selections, Stationary, Surfaces, WithConstant,
 };
+use crate::artifact::validity::NotValid;
 use serde::{Deserialize, Serialize};
 use stats::canonical::canonical;
 use stats::diagnostics::Residual;
@@ -68,8 +69,11 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     let mut found: Vec<(&Fitting, Regression)> = Vec::new();
     let mut with_constant: Vec<(&str, Beside)> = Vec::new();
     let mut faults: Vec<StageError> = Vec::new();
+    let mut not_valid = NotValid::default();
     for fitting in &params.fittings {
-        let sample = fitting.columns.sample(runs(job.input(&fitting.input)?)?)?;
+        let table = runs(job.input(&fitting.input)?)?;
+        let sample = fitting.columns.sample(table)?;
+        let own = fitting.columns.not_valid(table)?;
         match regress(&sample, &fitting.response, &fitting.terms, &settings) {
             Ok(regression) => {
                 let beside =
@@ -77,8 +81,9 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
                 with_constant.extend(beside.flatten().map(|beside| (fitting.response.as_str(), beside)));
                 found.push((fitting, regression));
             }
-            Err(error) => faults.push(refused(error)),
+            Err(error) => faults.push(refused_without(error, &own)),
         }
+        not_valid.append(own);
     }
     if !faults.is_empty() {
         let all: Vec<String> = faults.into_iter().map(|f| f.message).collect();
@@ -111,17 +116,18 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         path: predict::path_table(&found),
         domain: domain_table(&found),
         selection: selection_table(&found),
-        notes: notes(&found, params.predict.as_ref()).table(),
+        notes: notes(&found, params.predict.as_ref(), &not_valid).table(),
         models: found.iter().map(|(f, r)| (f.response.clone(), keep::stored(&r.model))).collect(),
         with_constant: params.through_origin.then(|| constant_table(&with_constant)),
         predictions: params.predict.as_ref().map(|points| predict::prediction_table(&found, points)),
+        not_valid: not_valid.some(),
     };
     Ok(surfaces.to_artifact())
 }
 
 /// What a person should see at once.
-fn notes(found: &[(&Fitting, Regression)], points: Option<&Predict>) -> Notes {
-    let mut notes = Notes::default();
+fn notes<'a>(found: &[(&Fitting, Regression)], points: Option<&Predict>, not_valid: &'a NotValid) -> Notes<'a> {
+    let mut notes = Notes::of(not_valid);
     for (fitting, regression) in found {
         let response = fitting.response.as_str();
         notes.fit(&regression.fit);

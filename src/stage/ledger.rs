@@ -6,6 +6,7 @@
 
 use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
+use std::borrow::Cow;
 
 /// A run that was made before and need not be looked at again.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,10 +42,13 @@ impl KeptRuns {
     }
 }
 
-/// Failure of a run, empty when there is none, and name, unit and value of each response.
+/// Failure, validity and cautions of a run, as its [`Outcome`] has them.
+type Verdict = (String, Option<String>, String);
+
+/// What is said of a run, and name, unit and value of each response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brief<'a> {
-    failure: &'a str,
+    verdict: &'a Verdict,
     names: &'a [(String, String)],
     values: &'a [f64],
 }
@@ -53,17 +57,23 @@ impl<'a> Brief<'a> {
     /// As gathering sees a run.
     pub(super) fn responses(&self) -> Outcome<'a> {
         let found = self.names.iter().zip(self.values);
-        (self.failure, found.map(|((name, unit), value)| (name.as_str(), *value, unit.as_str())).collect())
+        let (failure, validity, cautions) = self.verdict;
+        Outcome {
+            failure,
+            validity: validity.as_deref().map(Cow::Borrowed),
+            cautions: Cow::Borrowed(cautions),
+            responses: found.map(|((name, unit), value)| (name.as_str(), *value, unit.as_str())).collect(),
+        }
     }
 }
 
-/// Briefs of many runs. Runs of one simulator have the same few failures and names of responses, so these stand once.
+/// Briefs of many runs. Runs of one simulator have the same few verdicts and names of responses, so these stand once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Briefs {
-    failures: Vec<String>,
+    verdicts: Vec<Verdict>,
     /// Names and units of the responses that some run has.
     shapes: Vec<Vec<(String, String)>>,
-    /// Of each run: failure, shape, and where its values begin.
+    /// Of each run: verdict, shape, and where its values begin.
     runs: Vec<[u32; 3]>,
     values: Vec<f64>,
 }
@@ -81,26 +91,27 @@ impl Briefs {
 
     /// Adds a run.
     pub fn push(&mut self, brief: Brief<'_>) {
-        let failure = place_of(&mut self.failures, |known| known == brief.failure, || brief.failure.to_owned());
+        let verdict = place_of(&mut self.verdicts, |known| known == brief.verdict, || brief.verdict.clone());
         let shape = place_of(&mut self.shapes, |known| known == brief.names, || brief.names.to_vec());
-        self.runs.push([failure, shape, self.values.len() as u32]);
+        self.runs.push([verdict, shape, self.values.len() as u32]);
         self.values.extend_from_slice(brief.values);
     }
 
     /// Adds a run as its artifact holds it; false when it holds no responses.
     pub fn push_run(&mut self, run: &Artifact) -> bool {
-        let Ok((failure, responses)) = Run::outcome(run) else { return false };
+        let Ok(Outcome { failure, validity, cautions, responses }) = Run::outcome(run) else { return false };
         let names: Vec<_> = responses.iter().map(|(name, _, unit)| ((*name).to_owned(), (*unit).to_owned())).collect();
         let values: Vec<f64> = responses.iter().map(|(_, value, _)| *value).collect();
-        self.push(Brief { failure, names: &names, values: &values });
+        let verdict = (failure.to_owned(), validity.map(Cow::into_owned), cautions.into_owned());
+        self.push(Brief { verdict: &verdict, names: &names, values: &values });
         true
     }
 
     /// One run.
     pub fn get(&self, run: usize) -> Option<Brief<'_>> {
-        let [failure, shape, first] = self.runs.get(run)?.map(|number| number as usize);
-        let (failure, names) = (self.failures.get(failure)?, self.shapes.get(shape)?);
-        Some(Brief { failure, names, values: self.values.get(first..first + names.len())? })
+        let [verdict, shape, first] = self.runs.get(run)?.map(|number| number as usize);
+        let (verdict, names) = (self.verdicts.get(verdict)?, self.shapes.get(shape)?);
+        Some(Brief { verdict, names, values: self.values.get(first..first + names.len())? })
     }
 
     /// As the input `kept` of a job, with the place of each run among the inputs.
@@ -113,7 +124,7 @@ impl Briefs {
 
     /// Length, texts as JSON, three numbers for each run, values; little-endian.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let texts = serde_json::to_vec(&(&self.failures, &self.shapes)).unwrap_or_else(|e| panic!("BUG: texts: {e}"));
+        let texts = serde_json::to_vec(&(&self.verdicts, &self.shapes)).unwrap_or_else(|e| panic!("BUG: texts: {e}"));
         let mut bytes = Vec::with_capacity(16 + texts.len() + 12 * self.runs.len() + 8 * self.values.len());
         bytes.extend_from_slice(&(texts.len() as u64).to_le_bytes());
         bytes.extend_from_slice(&(self.runs.len() as u64).to_le_bytes());
@@ -133,12 +144,12 @@ impl Briefs {
         };
         let mut number = || take(8)?.first_chunk().map(|number| u64::from_le_bytes(*number) as usize);
         let (texts, runs) = (number()?, number()?);
-        let (failures, shapes) = serde_json::from_slice(take(texts)?).ok()?;
+        let (verdicts, shapes) = serde_json::from_slice(take(texts)?).ok()?;
         let runs = take(runs.checked_mul(12)?)?.as_chunks::<4>().0.as_chunks::<3>().0;
         let runs = runs.iter().map(|run| run.map(u32::from_le_bytes)).collect();
         let (values, []) = rest.as_chunks::<8>() else { return None };
         let values = values.iter().map(|value| f64::from_bits(u64::from_le_bytes(*value))).collect();
-        Some(Self { failures, shapes, runs, values })
+        Some(Self { verdicts, shapes, runs, values })
     }
 }
 
@@ -168,17 +179,19 @@ mod tests {
             run("no peak", &[]),
             run("", &[("UCS", -0.0, "Pa"), ("E", f64::INFINITY, "Pa")]),
             run("", &[("E", 1.5, "GPa")]),
+            Run { validity: Some("rotation".to_owned()), ..Run::plain("", Responses::of(&[("E", 2.5, "GPa")])) }
+                .to_artifact(),
         ];
         let mut briefs = Briefs::default();
         assert!(runs.iter().all(|run| briefs.push_run(run)));
         assert!(!briefs.push_run(&Artifact::of(ArtifactKind::RUN, Group::new())));
         let bytes = briefs.to_bytes();
         let back = Briefs::from_bytes(&bytes).unwrap();
-        assert_eq!((back.len(), back.shapes.len(), back.failures.len()), (4, 3, 2));
+        assert_eq!((back.len(), back.shapes.len(), back.verdicts.len()), (5, 3, 3));
         for (number, run) in runs.iter().enumerate() {
             assert_eq!(back.get(number).unwrap().responses(), Run::outcome(run).unwrap());
         }
-        assert_eq!(back.get(4), None);
+        assert_eq!(back.get(5), None);
         assert!((0..bytes.len()).all(|end| Briefs::from_bytes(&bytes[..end]).is_none_or(|cut| cut != back)));
     }
 }

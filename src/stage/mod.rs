@@ -16,8 +16,9 @@
 //!
 //! # Artifacts that several kinds exchange
 //! * `results`: a table `runs` with one row per run: factors (in their units), `replicate`, responses (in the units of
-//!   `[response.NAME]`), `failure` (text, empty when all went well; the responses are then missing). From `simulate`,
-//!   `command` and `data`.
+//!   `[response.NAME]`), `failure` (text, empty when all went well; the responses are then missing), and where runs have
+//!   checks of their own `validity` and `cautions` (texts: the checks that are not met; [`invalid::Invalid`] says what a
+//!   stage does with runs that are not valid). From `simulate`, `command` and `data`.
 //! * `design`: a table `design` with `point_type` and the factors, and a table `report`.
 //! * `run`: one run of a simulator: a table `responses` (`response,value,unit`) and, for `simulate`, curve, cracks, ….
 //! * `surfaces`: fitted models (tables `coefficients`, `fit`, `residuals`, `stationary` and what prediction needs).
@@ -49,6 +50,7 @@ pub mod effort;
 pub mod figure;
 pub mod fitted;
 pub mod formula;
+pub mod invalid;
 pub mod ledger;
 pub mod material;
 mod memory;
@@ -60,6 +62,7 @@ pub mod regression;
 pub mod rows;
 pub mod rsm;
 pub mod screening;
+pub mod shapes;
 mod sheet;
 pub mod simulate;
 pub mod specimen;
@@ -84,7 +87,7 @@ use serde::{Deserializer, Serialize};
 use serde_json::Value;
 
 /// Names of columns that stand beside factors and responses in one table or template, so that neither can bear them.
-pub const OWN_COLUMNS: [&str; 20] = [
+pub const OWN_COLUMNS: [&str; 21] = [
     "run",
     "row",
     "standard_order",
@@ -92,6 +95,7 @@ pub const OWN_COLUMNS: [&str; 20] = [
     "point_type",
     "failure",
     "validity",
+    "cautions",
     "set",
     "specimen",
     "evaluation",
@@ -192,6 +196,8 @@ pub trait Kind: Stage + DeserializeOwned + JsonSchema + 'static {
     const CLASS: Class;
     /// The work that its tasks name.
     const WORKS: &'static [Work];
+    /// Which of it takes long enough to be sent to the workers of a cluster.
+    const FAR: Option<&'static str> = None;
 }
 
 /// Classes of stages, as pictures of a workflow tell them apart.
@@ -312,6 +318,8 @@ pub struct KindEntry {
     pub class: Class,
     /// The work its tasks name.
     pub works: &'static [Work],
+    /// Which of it takes long enough to be sent to the workers of a cluster.
+    pub far: Option<&'static str>,
     /// Schema of its table.
     pub schema: fn(&mut SchemaGenerator) -> Schema,
 }
@@ -327,6 +335,7 @@ macro_rules! kinds {
             gives: <$config as Kind>::GIVES,
             class: <$config as Kind>::CLASS,
             works: <$config as Kind>::WORKS,
+            far: <$config as Kind>::FAR,
             schema: <$config as JsonSchema>::json_schema,
         }),*];
 
@@ -357,6 +366,7 @@ kinds! {
     regression::Regression,
     rsm::Rsm,
     screening::Screening,
+    shapes::Shapes,
     simulate::Simulate,
     specimen::Specimen,
     table::Table,
@@ -376,4 +386,9 @@ pub fn artifact_kind(artifact: &Artifact) -> Option<ArtifactKind> {
 /// The work called `name`.
 pub fn work(name: &str) -> Option<&'static Work> {
     KINDS.iter().flat_map(|kind| kind.works).find(|work| work.name == name)
+}
+
+/// Whether work takes long enough to be sent to the workers of a cluster.
+pub fn is_far(work: &str) -> bool {
+    KINDS.iter().any(|kind| kind.far == Some(work))
 }

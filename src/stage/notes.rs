@@ -3,13 +3,18 @@
 //! A note repeats in words what stands in the other tables; nothing is left out of an analysis because of one.
 
 use crate::artifact::statistics::Remarks;
+use crate::artifact::validity::NotValid;
 use stats::diagnostics::Residual;
 use stats::fit::Fit;
 use stats::regression::Coefficient;
 
 /// Remarks with the responses they are about, in order.
 #[derive(Default)]
-pub(super) struct Notes(Vec<(String, String)>);
+pub(super) struct Notes<'a> {
+    remarks: Vec<(String, String)>,
+    /// Runs that are not valid.
+    not_valid: Option<&'a NotValid>,
+}
 
 /// Lack of fit up to this p is remarked upon.
 const LACK_OF_FIT: f64 = 0.05;
@@ -21,17 +26,26 @@ const INFLATION: f64 = 10.0;
 /// Rows named one by one.
 const ROWS: usize = 8;
 
-impl Notes {
-    /// Adds a remark.
-    pub(super) fn add(&mut self, response: &str, note: impl Into<String>) {
-        self.0.push((response.to_owned(), note.into()));
+impl<'a> Notes<'a> {
+    /// Begins with the runs that are not valid.
+    pub(super) fn of(not_valid: &'a NotValid) -> Self {
+        let mut notes = Self { remarks: Vec::new(), not_valid: Some(not_valid) };
+        not_valid.sentences().into_iter().for_each(|(response, said)| notes.add(response, said));
+        notes
     }
 
-    /// Runs without a value.
+    /// Adds a remark.
+    pub(super) fn add(&mut self, response: &str, note: impl Into<String>) {
+        self.remarks.push((response.to_owned(), note.into()));
+    }
+
+    /// Runs without a value, beside those that were left out.
     pub(super) fn missing(&mut self, response: &str, used: usize, missing: usize) {
-        if missing > 0 {
-            let all = used + missing;
-            self.add(response, format!("{missing} of {all} runs have no value; the analysis is of the other {used}"));
+        let left_out = self.not_valid.map_or(0, |list| list.left_out(response));
+        let (all, without) = (used + missing, missing - left_out.min(missing));
+        if without > 0 {
+            let have = if without == 1 { "has" } else { "have" };
+            self.add(response, format!("{without} of {all} runs {have} no value; the analysis is of {used}"));
         }
     }
 
@@ -99,7 +113,7 @@ impl Notes {
 
     /// The table.
     pub(super) fn table(self) -> Remarks {
-        let (response, note) = self.0.into_iter().unzip();
+        let (response, note) = self.remarks.into_iter().unzip();
         Remarks { response, note }
     }
 }

@@ -21,6 +21,27 @@ impl Packed {
         let mut rest = &*self.0;
         unpack(&mut rest).unwrap_or_else(|| panic!("BUG: packed parameters that cannot be read"))
     }
+
+    /// Its bytes as hexadecimal digits: a text that keeps every bit of every number.
+    pub fn to_hex(&self) -> String {
+        self.0.iter().fold(String::with_capacity(2 * self.0.len()), |mut text, byte| {
+            for digit in [byte >> 4, byte & 15] {
+                text.push(char::from_digit(digit.into(), 16).unwrap_or('0'));
+            }
+            text
+        })
+    }
+
+    /// The value of such a text; none when it is not one.
+    pub fn from_hex(text: &str) -> Option<Self> {
+        let digit = |byte: u8| char::from(byte).to_digit(16);
+        let (pairs, []) = text.as_bytes().as_chunks::<2>() else { return None };
+        let byte = |[high, low]: &[u8; 2]| u8::try_from(digit(*high)? << 4 | digit(*low)?).ok();
+        let bytes: Box<[u8]> = pairs.iter().map(byte).collect::<Option<_>>()?;
+        let mut rest = &*bytes;
+        unpack(&mut rest).filter(|_| rest.is_empty())?;
+        Some(Self(bytes))
+    }
 }
 
 const NULL: u8 = 0;
@@ -157,7 +178,16 @@ mod tests {
         #[test]
         fn every_value_comes_back(value in any_value()) {
             let packed = Packed::from(value.clone());
+            prop_assert_eq!(Packed::from_hex(&packed.to_hex()), Some(packed.clone()));
             prop_assert_eq!(packed.value(), value);
+        }
+    }
+
+    #[test]
+    fn a_text_that_is_no_packed_value_is_refused() {
+        let hex = Packed::from(serde_json::json!({ "a": [1.5, null, "x"] })).to_hex();
+        for wrong in ["", "0", "zz", "ff", &hex[..hex.len() - 2], &format!("{hex}00"), &format!("é{hex}")] {
+            assert_eq!(Packed::from_hex(wrong), None, "{wrong}");
         }
     }
 

@@ -3,10 +3,12 @@
 //! The result has the table `range` (`response,factor,level_1,…,range,rank`: mean response at each level, in the unit of
 //! the response) and the table `levels` (the values that level 1, 2, … stand for), and `notes`.
 
-use super::columns::{Columns, Rows, Wanted, check_names, refused, runs};
+use super::columns::{Columns, Rows, Wanted, check_names, refused_without, runs};
+use super::invalid::Invalid;
 use super::notes::Notes;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::range::{LevelValues, Levels, Range as Stored, Ranges};
+use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Numbered};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,6 +29,9 @@ pub struct Range {
     pub responses: Vec<String>,
     /// Column with the number of replicates that each row is the mean of.
     pub weights: Option<String>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
 }
 
 impl Stage for Range {
@@ -50,6 +55,7 @@ impl Stage for Range {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: true,
+            invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
         Ok(Step::Finish(Task::new("range", json!(columns)).input("table", input.content)))
@@ -61,14 +67,15 @@ impl Kind for Range {
     const ABOUT: &'static str = "range analysis: mean response per level, range and rank of every factor";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RANGE];
     const CLASS: Class = Class::Statistics;
-    // 2: notes
-    const WORKS: &'static [Work] = &[Work { name: "range", version: 2, run: analyse }];
+    // 3: runs that are not valid are left out. 2: notes
+    const WORKS: &'static [Work] = &[Work { name: "range", version: 3, run: analyse }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let columns: Columns = job.params()?;
-    let sample = columns.sample(runs(job.input("table")?)?)?;
-    let lines = range_analysis(&sample).map_err(refused)?;
+    let table = runs(job.input("table")?)?;
+    let (sample, not_valid) = (columns.sample(table)?, columns.not_valid(table)?);
+    let lines = range_analysis(&sample).map_err(|faults| refused_without(faults, &not_valid))?;
     let most = lines.iter().map(|line| line.levels.len()).max().unwrap_or(0);
     let rows = Rows(&lines);
     let range = Ranges {
@@ -80,12 +87,13 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         missing: rows.ints(|l| l.missing),
     };
     let levels = levels(&columns, &lines, most);
-    Ok(Stored { range, levels, notes: notes(&lines, sample.rows()).table() }.to_artifact())
+    let notes = notes(&lines, sample.rows(), &not_valid).table();
+    Ok(Stored { range, levels, notes, not_valid: not_valid.some() }.to_artifact())
 }
 
 /// Responses whose missing runs spoil the balance of the table.
-fn notes(lines: &[Line], rows: usize) -> Notes {
-    let mut notes = Notes::default();
+fn notes<'a>(lines: &[Line], rows: usize, not_valid: &'a NotValid) -> Notes<'a> {
+    let mut notes = Notes::of(not_valid);
     for lines in lines.chunk_by(|a, b| a.response == b.response) {
         let (response, missing) = (lines[0].response.as_str(), lines[0].missing);
         notes.missing(response, rows - missing, missing);

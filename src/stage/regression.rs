@@ -15,6 +15,7 @@ pub(super) mod origin;
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
+use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
@@ -52,6 +53,9 @@ pub struct Regression {
     pub outlier_alpha: f64,
     /// Column with the number of replicates that each row is the mean of.
     pub weights: Option<String>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
     /// Points at which the models are asked.
     pub predict: Option<Predict>,
     /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
@@ -133,7 +137,8 @@ impl Stage for Regression {
             let factors = terms.map(|terms| factors_of(terms)).unwrap_or_default();
             let responses = [response.to_owned()];
             let weights = self.weights.as_deref();
-            let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false };
+            let wanted =
+                Wanted { factors: &factors, responses: &responses, weights, levels: false, invalid: self.invalid };
             let columns = Columns::of(table, known.context, wanted)?;
             let terms = terms.map_or_else(|| Term::first_order(&columns.factor_names()), |terms| with_constant(terms));
             let constant = |term: &Term| term.degree() == 0;
@@ -141,7 +146,7 @@ impl Stage for Regression {
             Ok(Fitting { response: response.to_owned(), input: "table".to_owned(), columns, terms })
         };
         let fittings: Result<Vec<Fitting>, StageError> = if self.terms.is_empty() {
-            let all = Columns::of(table, known.context, Wanted::default())?;
+            let all = Columns::of(table, known.context, Wanted { invalid: self.invalid, ..Wanted::default() })?;
             all.response_names().iter().map(|response| one(response, None)).collect()
         } else {
             self.terms.iter().map(|(response, terms)| one(response, Some(terms))).collect()
@@ -204,7 +209,7 @@ impl Kind for Regression {
     const ABOUT: &'static str = "linear regression of responses on factors, from one table";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES, ArtifactKind::GROUPS];
     const CLASS: Class = Class::Statistics;
-    // 2: notes; what rounding leaves of an exact fit is no error
+    // 3, of groups 2: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
     const WORKS: &'static [Work] =
-        &[Work { name: "fit", version: 2, run: fit }, Work { name: "groups", version: 1, run: grouped::fit }];
+        &[Work { name: "fit", version: 3, run: fit }, Work { name: "groups", version: 2, run: grouped::fit }];
 }

@@ -13,7 +13,7 @@ use super::{
     Complaint, Context, Failure, Input, Job, Known, Parameter, Point, Source, Stage, StageError, Step, Task, Work, vary,
 };
 use crate::artifact::design::Design;
-use crate::artifact::results::Results;
+use crate::artifact::results::{Results, Verdicts};
 use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::expression::Measure;
@@ -149,8 +149,8 @@ fn gather(known: &Known, design: &Input<'_>, artifact: &Artifact) -> Result<Task
 /// Name of the inputs of a gathering task that are runs.
 pub const RUN: &str = "run";
 
-/// Work that every simulator kind lists.
-pub const GATHER: Work = Work { name: "gather", version: 1, run: gathered };
+/// Work that every simulator kind lists. 2: what the checks of the runs say.
+pub const GATHER: Work = Work { name: "gather", version: 2, run: gathered };
 
 /// Complaints about responses whose unit cannot be read; for [`super::Stage::check`] of simulator kinds.
 pub fn check_units(context: &Context) -> Vec<Complaint> {
@@ -174,7 +174,7 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
         table.columns.push(column.clone());
     }
     let mut names: Vec<&str> = Vec::new();
-    for (name, _, _) in results.iter().flat_map(|(_, found)| found) {
+    for (name, _, _) in results.iter().flat_map(|found| &found.responses) {
         if !names.contains(name) {
             names.push(name);
         }
@@ -182,8 +182,13 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     for name in names {
         table = response_column(table, name, params.units.get(name), &results)?;
     }
-    let failures = results.iter().map(|(failure, _)| (*failure).to_owned()).collect();
-    Ok(Results::of(table, failures).to_artifact())
+    let each = |pick: fn(&Outcome<'_>) -> String| results.iter().map(pick).collect::<Vec<_>>();
+    let checked = results.iter().any(|found| found.validity.is_some()).then(|| {
+        let validity = each(|found| found.validity.as_deref().unwrap_or_default().to_owned());
+        (validity, each(|found| found.cautions.as_ref().to_owned()))
+    });
+    let verdicts = Verdicts { failures: each(|found| found.failure.to_owned()), checked };
+    Ok(Results::of(table, verdicts).to_artifact())
 }
 
 /// Places among the inputs of the task, and briefs, of runs that were made before.
@@ -227,11 +232,12 @@ fn response_column(
     results: &[Outcome<'_>],
 ) -> Result<Table, StageError> {
     let mut last = None;
-    let own = results.iter().flat_map(|(_, found)| found).find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
+    let mut all = results.iter().flat_map(|found| &found.responses);
+    let own = all.find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
     let unit = shown.map_or(own, String::as_str);
     let mut values = Vec::with_capacity(results.len());
-    for (failure, found) in results {
-        let value = found.iter().find(|(n, _, _)| *n == name);
+    for Outcome { failure, responses, .. } in results {
+        let value = responses.iter().find(|(n, _, _)| *n == name);
         values.push(match value {
             Some((_, value, from)) if failure.is_empty() => {
                 // Nearly always the unit of the row before.

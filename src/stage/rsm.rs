@@ -5,6 +5,7 @@
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict};
+use super::invalid::Invalid;
 use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
@@ -36,6 +37,9 @@ pub struct Rsm {
     pub outlier_alpha: f64,
     /// Column with the number of replicates that each row is the mean of.
     pub weights: Option<String>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
     /// Points at which the models are asked.
     pub predict: Option<Predict>,
     /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
@@ -128,7 +132,7 @@ impl Rsm {
         let factors = own.map(|terms| factors_of(terms)).unwrap_or_default();
         let responses = [response.to_owned()];
         let weights = self.weights.as_deref();
-        let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false };
+        let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false, invalid: self.invalid };
         let columns = Columns::of(table, context, wanted)?;
         let varied = |name: &String| {
             let values = table.shown(name).unwrap_or_default().0;

@@ -4,12 +4,14 @@
 //! Pareto plots), `limits` (pseudo standard error and margins, critical value of the standardised effects), `fit`, `residuals` and `notes` (what stands out, and
 //! what to look at).
 
-use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused, runs};
+use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused_without, runs};
 use super::fitted::{fit_table, residual_table};
+use super::invalid::Invalid;
 use super::notes::Notes;
 use super::regression::{check_doubled, factors_of};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::statistics::{Effects, Limits, Screening as Stored};
+use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +37,9 @@ pub struct Screening {
     pub alpha: f64,
     /// Column with the number of replicates that each row is the mean of.
     pub weights: Option<String>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
 }
 
 fn alpha() -> f64 {
@@ -70,8 +75,13 @@ impl Stage for Screening {
         let input = known.one("table")?;
         let artifact = known.load(input)?;
         let factors = factors_of(&self.terms);
-        let wanted =
-            Wanted { factors: &factors, responses: &self.responses, weights: self.weights.as_deref(), levels: false };
+        let wanted = Wanted {
+            factors: &factors,
+            responses: &self.responses,
+            weights: self.weights.as_deref(),
+            levels: false,
+            invalid: self.invalid,
+        };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
         let terms = if self.terms.is_empty() { Term::first_order(&columns.factor_names()) } else { self.terms.clone() };
         let params = Params { columns, terms, alpha: self.alpha };
@@ -84,15 +94,18 @@ impl Kind for Screening {
     const ABOUT: &'static str = "effects of a two-level design with Lenth's limits";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SCREENING];
     const CLASS: Class = Class::Statistics;
-    // 3: standardised effects with their critical value. 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "screening", version: 3, run: analyse }];
+    // 4: runs that are not valid are left out. 3: standardised effects with their critical value. 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "screening", version: 4, run: analyse }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let sample = params.columns.sample(runs(job.input("table")?)?)?;
+    let table = runs(job.input("table")?)?;
+    let (sample, not_valid) = (params.columns.sample(table)?, params.columns.not_valid(table)?);
     let responses = params.columns.response_names();
-    let one = |response: &String| screen(&sample, response, &params.terms, params.alpha).map_err(refused);
+    let one = |response: &String| {
+        screen(&sample, response, &params.terms, params.alpha).map_err(|faults| refused_without(faults, &not_valid))
+    };
     let found = responses.iter().map(one).collect::<Result<Vec<Found>, StageError>>()?;
     let residuals = found.iter().map(|s| (s.response.as_str(), s.regression.residuals.as_slice()));
     let fits: Vec<_> = found.iter().map(|s| &s.regression.fit).collect();
@@ -100,15 +113,16 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
         effects: effect_table(&found),
         limits: limit_table(&found),
         fit: fit_table(&fits),
-        notes: notes(&found).table(),
+        notes: notes(&found, &not_valid).table(),
         residuals: residual_table(residuals),
+        not_valid: not_valid.some(),
     };
     Ok(screening.to_artifact())
 }
 
 /// What stands out of the noise, and what to look at.
-fn notes(found: &[Found]) -> Notes {
-    let mut notes = Notes::default();
+fn notes<'a>(found: &[Found], not_valid: &'a NotValid) -> Notes<'a> {
+    let mut notes = Notes::of(not_valid);
     for screened in found {
         let response = screened.response.as_str();
         let named = |picked: &dyn Fn(&&Effect) -> bool| {

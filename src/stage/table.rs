@@ -15,9 +15,11 @@
 mod beside;
 mod list;
 mod units;
+mod validity;
 
 use super::beside::Beside;
 use super::figure::{Names, stored};
+use super::invalid::{Invalid, sentence};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::presentation::Printed as Stored;
 use crate::artifact::{self, Accepts, Artifact, ArtifactKind};
@@ -82,6 +84,9 @@ pub struct Table {
     /// Symbols of single columns in LaTeX notation.
     #[serde(default)]
     pub symbols: BTreeMap<String, String>,
+    /// What becomes of runs that are not valid; kept and marked when nothing is said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub invalid: Option<Invalid>,
 }
 
 /// Everything that decides a printed table besides the data.
@@ -116,6 +121,16 @@ struct Params {
     /// Units of responses, for quantities that stand in rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     units: Option<BTreeMap<String, String>>,
+    #[serde(default = "keep", skip_serializing_if = "is_kept")]
+    invalid: Invalid,
+}
+
+fn keep() -> Invalid {
+    Invalid::Keep
+}
+
+fn is_kept(invalid: &Invalid) -> bool {
+    *invalid == Invalid::Keep
 }
 
 impl Stage for Table {
@@ -202,6 +217,7 @@ impl Stage for Table {
             stages: if stages.len() > 1 && given.is_none() { stages } else { Vec::new() },
             given,
             units: rowwise.then(units),
+            invalid: self.invalid.unwrap_or(Invalid::Keep),
         };
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
         // A list is in the parameters: what it was made from may change without another list.
@@ -231,8 +247,8 @@ impl Kind for Table {
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
-    /// 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
-    const WORKS: &'static [Work] = &[Work { name: "table", version: 4, run: print }];
+    /// 5: runs that are not valid are marked, and it is said below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 5, run: print }];
 }
 
 /// The table of that name, or the artifact's main one.
@@ -254,22 +270,19 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     let mut names: Vec<String> = Vec::new();
     let mut notes = params.notes.clone();
     for (k, (_, artifact)) in inputs.enumerate() {
-        if let Some(artifact::Node::Text(why)) = artifact.root.get("failure")
-            && !why.is_empty()
-        {
-            notes.push(format!("The run gave no result: {why}."));
-        }
-        let part = chosen(find(artifact, params.table.as_deref())?, &params)?;
+        let whose = params.stages.get(k).map_or_else(String::new, |stage| format!("{stage}: "));
+        let (part, said) = validity::printed(artifact, &params)?;
+        notes.extend(said.into_iter().map(|said| sentence(&format!("{whose}{said}"))));
         let rows = part.first().map_or(0, Column::len);
         names.extend(params.stages.get(k).map(|stage| vec![stage.clone(); rows]).unwrap_or_default());
-        if k == 0 {
+        if columns.is_empty() {
             columns = part;
-        } else {
+        } else if !part.is_empty() {
             stack(&mut columns, part)?;
         }
     }
     if let Some(given) = &params.given {
-        columns = chosen(&given.table(), &params)?;
+        columns = chosen(&given.table(), &params, &|_| true)?;
     }
     if job.files.iter().any(|file| file.name == "published") {
         let other = super::data::parse(&job.file("published")?)?;
@@ -294,9 +307,24 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     Ok(stored.to_artifact())
 }
 
-/// The chosen columns of the chosen rows.
-fn chosen(table: &artifact::Table, params: &Params) -> Result<Vec<Column>, StageError> {
-    let mut rows: Vec<usize> = (0..table.rows()).collect();
+/// The chosen columns of the chosen rows among those that are allowed.
+fn chosen(
+    table: &artifact::Table,
+    params: &Params,
+    allowed: &dyn Fn(usize) -> bool,
+) -> Result<Vec<Column>, StageError> {
+    let all: Vec<String> = table.columns.iter().map(|c| c.name.clone()).collect();
+    let names = if params.columns.is_empty() { &all } else { &params.columns };
+    named(table, names, params, &chosen_rows(table, params, allowed)?)
+}
+
+/// The rows that the settings ask for, among those that are allowed.
+fn chosen_rows(
+    table: &artifact::Table,
+    params: &Params,
+    allowed: &dyn Fn(usize) -> bool,
+) -> Result<Vec<usize>, StageError> {
+    let mut rows: Vec<usize> = (0..table.rows()).filter(|&row| allowed(row)).collect();
     for (name, wanted) in &params.only {
         let column = column_of(table, name)?;
         let number = wanted.parse::<f64>().ok();
@@ -306,9 +334,17 @@ fn chosen(table: &artifact::Table, params: &Params) -> Result<Vec<Column>, Stage
             artifact::Values::Reals(v) => number == Some(v[i]),
         });
     }
-    let all: Vec<String> = table.columns.iter().map(|c| c.name.clone()).collect();
-    let names = if params.columns.is_empty() { &all } else { &params.columns };
-    names.iter().map(|name| Ok(shown(column_of(table, name)?, &rows, params))).collect()
+    Ok(rows)
+}
+
+/// These columns of these rows.
+fn named(
+    table: &artifact::Table,
+    names: &[String],
+    params: &Params,
+    rows: &[usize],
+) -> Result<Vec<Column>, StageError> {
+    names.iter().map(|name| Ok(shown(column_of(table, name)?, rows, params))).collect()
 }
 
 fn column_of<'a>(table: &'a artifact::Table, name: &str) -> Result<&'a artifact::Column, StageError> {

@@ -7,12 +7,15 @@
 //!
 //! The artifact `verification` holds the tables `summary` and `runs`.
 
-use super::calibrate::{Unmet, read_response};
+use super::calibrate::{Judgement, Unmet, judgement, read_response};
+use super::invalid::{Invalid, refused};
 use super::notes::short;
 use super::{
     Class, Complaint, Context, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work,
 };
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::results::{Results, Verdicts};
+use crate::artifact::validity::NotValid;
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Field, Group, Node, Table};
 use math::distribution::t_for_coverage;
 use optim::misfit::Target;
 use schemars::JsonSchema;
@@ -41,6 +44,9 @@ pub struct Verify {
     /// What `flow run` makes of targets that lie outside the interval of the mean.
     #[serde(default)]
     pub unmet: Unmet,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
 }
 
 fn five() -> u64 {
@@ -62,6 +68,8 @@ struct Params {
     simulators: Vec<String>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     from: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    invalid: Invalid,
 }
 
 impl Stage for Verify {
@@ -113,6 +121,7 @@ impl Stage for Verify {
             replicates: self.replicates as usize,
             simulators: simulators.iter().map(|simulator| simulator.stage.to_owned()).collect(),
             from: self.from.clone(),
+            invalid: self.invalid,
         };
         let mut task = Task::new("verify", json!(params)).input("solution", input.content);
         for set in 0..table.rows() {
@@ -150,7 +159,8 @@ impl Kind for Verify {
     const ABOUT: &'static str = "calibrated parameters on fresh specimens";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::VERIFICATION];
     const CLASS: Class = Class::Calibration;
-    const WORKS: &'static [Work] = &[Work { name: "verify", version: 1, run: verify }];
+    // 2: runs that are not valid are left out
+    const WORKS: &'static [Work] = &[Work { name: "verify", version: 2, run: verify }];
 }
 
 /// One target and what its runs gave; NaN where a run failed.
@@ -180,27 +190,60 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
     let solution = job.input("solution")?;
     let runs: Vec<&Artifact> = job.inputs.iter().filter(|(name, _)| name == "run").map(|(_, run)| &**run).collect();
     let mut verified = targets(solution)?;
-    let mut failures = Vec::new();
+    let (mut verdicts, mut reasons, mut any) = (Verdicts::default(), Vec::new(), false);
     for (i, runs) in runs.chunks(params.simulators.len()).enumerate() {
         let set = (i / params.replicates) as i64 + 1;
         let runs: Vec<(&str, &Artifact)> =
             params.simulators.iter().map(String::as_str).zip(runs.iter().copied()).collect();
-        let mut failure = String::new();
-        for one in verified.iter_mut().filter(|one| one.set == set) {
-            match read_response(&runs, &params.from, &one.response, &one.unit)? {
-                Ok(value) => one.values.push(value),
-                Err(reason) => {
-                    one.values.push(f64::NAN);
-                    failure = reason;
-                }
-            }
+        let Judgement { mut failure, validity, checked } = judgement(&runs)?;
+        if params.invalid == Invalid::Refuse && !validity.is_empty() {
+            return Err(refused(&format!(
+                "set {set}, specimen {}: the run is not valid: {validity}",
+                i % params.replicates + 1
+            ))
+            .into());
         }
-        failures.push(failure);
+        for one in verified.iter_mut().filter(|one| one.set == set) {
+            // Of a run that is left out the table of runs shows what it gave.
+            one.values.push(match read_response(&runs, &params.from, (&one.response, &one.unit), Invalid::Keep)? {
+                Ok(value) => value,
+                Err(reason) => {
+                    failure = reason;
+                    f64::NAN
+                }
+            });
+        }
+        verdicts.failures.push(failure);
+        reasons.push(validity);
+        any |= checked;
     }
-    let root = Group::new()
-        .with("summary", Node::Table(summary(&verified)))
-        .with("runs", Node::Table(run_table(&params, solution, &verified, failures)?));
+    let without = vec![String::new(); reasons.len()];
+    verdicts.checked = any.then_some((reasons, without));
+    let table = run_table(&params, solution, &verified)?;
+    let runs = Results::of(table, verdicts).runs;
+    let not_valid = leave_out(&runs, &params, &mut verified)?;
+    let mut root = Group::new().with("summary", Node::Table(summary(&verified))).with("runs", Node::Table(runs));
+    not_valid.some().put(&mut root, "not_valid", "", "");
     Ok(Artifact::of(ArtifactKind::VERIFICATION, root))
+}
+
+/// Lists the runs that are not valid, and takes the values of those that are left out.
+fn leave_out(runs: &Table, params: &Params, verified: &mut [Verified]) -> Result<NotValid, StageError> {
+    let judged = params.invalid.judge(runs)?;
+    let mut list = NotValid::default();
+    for one in verified {
+        let first = (one.set as usize - 1) * params.replicates;
+        let place = |index: usize| first + index;
+        let mut values = vec![f64::NAN; first];
+        values.extend(&one.values);
+        let mut own = judged.listed(&one.response, &values);
+        // Runs of one set are counted among those of the set.
+        own.runs.fill(params.replicates as i64);
+        list.append(own);
+        let kept = |(index, value): (usize, &f64)| if judged.leaves_out(place(index)) { f64::NAN } else { *value };
+        one.values = one.values.iter().enumerate().map(kept).collect();
+    }
+    Ok(list)
 }
 
 /// The targets of all sets, from the solution's table `prediction`.
@@ -271,20 +314,16 @@ fn summary(verified: &[Verified]) -> Table {
         .ints_column("n", "runs with a value", moments.iter().map(|m| m.3 as i64).collect())
 }
 
-fn run_table(
-    params: &Params,
-    solution: &Artifact,
-    verified: &[Verified],
-    failures: Vec<String>,
-) -> Result<Table, StageError> {
+fn run_table(params: &Params, solution: &Artifact, verified: &[Verified]) -> Result<Table, StageError> {
     let source = solution.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
     let n = params.replicates;
+    let rows = 0..n * verified.iter().map(|one| one.set as usize).max().unwrap_or(0);
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() }
-        .ints_column("set", "target set, from 1", (0..failures.len()).map(|i| (i / n) as i64 + 1).collect())
-        .ints_column("specimen", "counted from 1", (0..failures.len()).map(|i| (i % n) as i64 + 1).collect());
+        .ints_column("set", "target set, from 1", rows.clone().map(|i| (i / n) as i64 + 1).collect())
+        .ints_column("specimen", "counted from 1", rows.clone().map(|i| (i % n) as i64 + 1).collect());
     for name in &params.factors {
         let (values, unit) = source.shown(name)?;
-        table = table.reals_column(name, unit, "", (0..failures.len()).map(|i| values[i / n]).collect());
+        table = table.reals_column(name, unit, "", rows.clone().map(|i| values[i / n]).collect());
     }
     let mut seen: Vec<&str> = Vec::new();
     for Verified { response, unit, .. } in verified {
@@ -296,9 +335,9 @@ fn run_table(
             let own = verified.iter().find(|one| one.response == *response && one.set == (i / n) as i64 + 1);
             own.and_then(|one| one.values.get(i % n).copied()).unwrap_or(f64::NAN)
         };
-        table = table.reals_column(response, unit, "", (0..failures.len()).map(value).collect());
+        table = table.reals_column(response, unit, "", rows.clone().map(value).collect());
     }
-    Ok(table.texts_column("failure", "why the run gave no result; empty when it did", failures))
+    Ok(table)
 }
 
 #[cfg(test)]

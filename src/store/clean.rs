@@ -9,7 +9,7 @@
 use super::disk::{Disk, is_temporary};
 use super::folder::{Entry, Folder};
 use super::presence::{self, short_of_name};
-use super::{Store, StoreError, journal, lock, locked, memo, object, root, verify};
+use super::{Store, StoreError, journal, lock, locked, memo, object, queue, root, verify};
 use crate::artifact::Key;
 use std::collections::HashSet;
 
@@ -153,7 +153,7 @@ impl Store {
                     Some([_, start]) if !starts.contains(&start) && !is_young(&place) => &mut swept.removed,
                     _ => return swept.kept.add(place.bytes()),
                 },
-                object::ASIDE | lock::FOLDER => &mut swept.rubbish,
+                object::ASIDE | lock::FOLDER | queue::FOLDER => &mut swept.rubbish,
                 memo::FOLDER if !self.memo_is_reachable(&place, reachable) => &mut swept.removed,
                 journal::FOLDER => {
                     swept.segments += 1;
@@ -168,6 +168,7 @@ impl Store {
             for (folder, name) in doomed {
                 self.disk.remove(&folder, &name)?;
             }
+            self.remove_empty_queues();
             self.compact()?;
         }
         Ok(swept)

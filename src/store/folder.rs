@@ -202,6 +202,11 @@ impl Folder {
         }
     }
 
+    /// Removes a folder inside that is empty.
+    pub(super) fn remove_empty(&self, name: &str) -> io::Result<()> {
+        Ok(rustix::fs::unlinkat(&self.0, name, AtFlags::REMOVEDIR)?)
+    }
+
     /// Makes its names survive a power cut.
     pub(super) fn sync(&self) -> io::Result<()> {
         fault::sync(|| Ok(rustix::fs::fsync(&self.0)?))

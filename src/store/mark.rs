@@ -55,6 +55,11 @@ impl Mark {
         mark
     }
 
+    /// The secret of a queue: whoever has it can write lists that the workers of this queue believe.
+    pub(super) fn queue(&self, name: &str) -> [u8; 32] {
+        self.note(b"queue", name.as_bytes())
+    }
+
     /// Of a note called `name`, so that none can stand in for another.
     pub(super) fn note(&self, name: &[u8], bytes: &[u8]) -> [u8; 32] {
         let mut hash = blake3::Hasher::new_keyed(&self.note);

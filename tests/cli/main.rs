@@ -5,6 +5,7 @@
 mod calibrate;
 mod calibrator;
 mod cases;
+mod cluster;
 mod columns;
 mod command;
 mod export;
@@ -14,7 +15,9 @@ mod nodes;
 mod readme;
 mod report;
 mod reruns;
+mod share;
 mod space;
 mod stop;
 mod trust;
+mod validity;
 mod vocabulary;

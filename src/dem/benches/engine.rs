@@ -1,9 +1,10 @@
 //! Time of a bonded contact and step in a whole uniaxial test: walls, contact search, measurement and cracks included.
 //!
-//! `cargo bench --bench engine -- [2d|3d] [PARTICLES] [books] [full]`: makes a dense random packing with the engine itself, bonds
+//! `cargo bench --bench engine -- [2d|3d] [PARTICLES] [books] [full] [joints]`: makes a dense random packing with the engine itself, bonds
 //! it, and compresses it between two platens. Every figure is the best and the median of several stretches of the test,
 //! because other work on the machine only ever adds time. `full` runs one test past its peak instead; `books` keeps the
-//! books of energy, as the stages do.
+//! books of energy, as the stages do. `joints` times the same specimen with flat joints (two elements in the plane, six in
+//! space) beside the parallel bonds.
 //!
 //! Specimens of all sizes go through the same strains: the platens' speed follows the height, and no stretch has more steps
 //! than that of the usual size. Otherwise a small one would be past its peak, with more contacts than bonds.
@@ -23,8 +24,15 @@ const PLATEN: Group = Group(1);
 const PLANE: usize = 22_000;
 const SOLID: usize = 70_000;
 
-/// Linear contacts, parallel bonds between balls, smooth platens.
-fn table(friction: f64) -> ContactTable {
+/// Which bonds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law {
+    Parallel,
+    Flat,
+}
+
+/// Linear contacts, bonds between balls, smooth platens.
+fn table<S: Space>(friction: f64, law: Law) -> ContactTable {
     let linear = Linear::modulus(20e9, 2.5, friction);
     let bond = ParallelBond {
         radius_multiplier: 1.0,
@@ -35,11 +43,14 @@ fn table(friction: f64) -> ContactTable {
         moment_factor: 1.0,
         scatter: Scatter::default(),
     };
-    ContactTable::new().with(MORTAR, MORTAR, Interaction { linear, bond: Bond::Parallel(bond) }).with(
-        MORTAR,
-        PLATEN,
-        Interaction::unbonded(Linear::modulus(20e9, 2.5, 0.0)),
-    )
+    let sectors = if S::DIMENSION == 2 { 2 } else { 6 };
+    let joint = FlatJoint { division: Division { rings: 1, sectors }, ..FlatJoint::new(20e9, 2.5, 20e6, 20e6) };
+    let bond = match law {
+        Law::Parallel => Bond::Parallel(bond),
+        Law::Flat => Bond::Flat(joint),
+    };
+    let platen = Interaction::unbonded(Linear::modulus(20e9, 2.5, 0.0));
+    ContactTable::new().with(MORTAR, MORTAR, Interaction { linear, bond }).with(MORTAR, PLATEN, platen)
 }
 
 /// A box twice as high as wide, filled with balls of mean radius 0.5 mm (largest over smallest 2.5 or 1.66).
@@ -73,11 +84,11 @@ fn cloud<S: Space>(count: usize, porosity: f64, spread: f64) -> (Model<S>, Vecto
         walls.push(Wall { point: axis(size.at(k)), normal: axis(-1.0), motion: still, group: PLATEN });
     }
     let settings = Settings { overlap_limit: f64::INFINITY, ..Settings::default() };
-    (Model { particles, clumps: vec![], walls, contacts: table(0.0), settings }, size)
+    (Model { particles, clumps: vec![], walls, contacts: table::<S>(0.0, Law::Parallel), settings }, size)
 }
 
 /// A bonded specimen between two platens that close at `speed` each.
-fn specimen<S: Space>(count: usize, speed: f64) -> (Engine<S>, Vector<S>) {
+fn specimen<S: Space>(count: usize, speed: f64, law: Law) -> (Engine<S>, Vector<S>) {
     let (porosity, spread) = if S::DIMENSION == 2 { (0.12, 2.5) } else { (0.36, 1.66) };
     let (model, size) = cloud::<S>(count, porosity, spread);
     let mut engine = Engine::new(&model).expect("a sound model");
@@ -95,7 +106,7 @@ fn specimen<S: Space>(count: usize, speed: f64) -> (Engine<S>, Vector<S>) {
         }
     }
     engine.calm();
-    engine.set_contacts(&table(0.5)).expect("a sound table");
+    engine.set_contacts(&table::<S>(0.5, law)).expect("a sound table");
     engine.absorb_overlaps();
     engine.install_bonds(1e-9, 1).expect("a small gap");
     for k in (0..S::DIMENSION).filter(|&k| k != 1) {
@@ -108,7 +119,7 @@ fn specimen<S: Space>(count: usize, speed: f64) -> (Engine<S>, Vector<S>) {
     }
     let around = measure::coordination(&engine);
     println!(
-        "{} {count} balls, {} bonds, {:.2} contacts a ball, unbalanced {ratio:.1e}, step {:.2e} s, {} listed",
+        "{} {law:?} {count} balls, {} bonds, {:.2} contacts a ball, unbalanced {ratio:.1e}, step {:.2e} s, {} listed",
         S::NAME,
         engine.bond_count(),
         around.contacts,
@@ -167,9 +178,9 @@ fn memory() -> Option<f64> {
     Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024.0)
 }
 
-fn rates<S: Space>(count: usize, usual: usize, books: bool) {
+fn rates<S: Space>(count: usize, usual: usize, books: bool, law: Law) {
     let speed = 0.02 * pow(count as f64 / usual as f64, 1.0 / S::DIMENSION as f64);
-    let (mut engine, _) = specimen::<S>(count, speed);
+    let (mut engine, _) = specimen::<S>(count, speed, law);
     if books {
         engine.keep_books();
     }
@@ -192,7 +203,7 @@ fn rates<S: Space>(count: usize, usual: usize, books: bool) {
 
 /// One test past its peak at the converged speed.
 fn full<S: Space>(count: usize, threads: usize, masses: Masses) {
-    let (mut engine, size) = specimen::<S>(count, 0.02);
+    let (mut engine, size) = specimen::<S>(count, 0.02, Law::Parallel);
     engine.set_masses(masses);
     engine.set_threads(threads);
     let area: f64 = (0..S::DIMENSION).filter(|&k| k != 1).map(|k| size.at(k)).product();
@@ -227,9 +238,11 @@ fn main() {
     let books = words.iter().any(|w| w == "books");
     let threads = if words.iter().any(|w| w == "one") { 1 } else { 2 };
     let masses = if words.iter().any(|w| w == "equal") { Masses::EqualStep } else { Masses::Real };
+    let joints = words.iter().any(|w| w == "joints");
+    let laws = if joints { &[Law::Parallel, Law::Flat][..] } else { &[Law::Parallel] };
     match (solid, whole) {
-        (false, false) => rates::<D2>(number.unwrap_or(PLANE), PLANE, books),
-        (true, false) => rates::<D3>(number.unwrap_or(SOLID), SOLID, books),
+        (false, false) => laws.iter().for_each(|&law| rates::<D2>(number.unwrap_or(PLANE), PLANE, books, law)),
+        (true, false) => laws.iter().for_each(|&law| rates::<D3>(number.unwrap_or(SOLID), SOLID, books, law)),
         (false, true) => full::<D2>(number.unwrap_or(PLANE), threads, masses),
         (true, true) => full::<D3>(number.unwrap_or(SOLID), threads, masses),
     }

@@ -5,7 +5,7 @@
 //! stands beside it.
 
 use crate::interaction::Bond;
-use crate::law::{ContactBondLaw, LEDGER, Law, LinearLaw, Memory, ParallelBondLaw, Rows, fresh};
+use crate::law::{LEDGER, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
 use crate::simd::{Row, WIDEST};
 use crate::space::Space;
 use std::ops::Range;
@@ -19,6 +19,11 @@ pub(crate) enum LawKind {
     Linear,
     ContactBond,
     ParallelBond,
+    FlatJoint {
+        /// Elements of an interface.
+        elements: u32,
+    },
+    SmoothJoint,
 }
 
 impl LawKind {
@@ -27,16 +32,24 @@ impl LawKind {
             Bond::None => Self::Linear,
             Bond::Contact(_) => Self::ContactBond,
             Bond::Parallel(_) => Self::ParallelBond,
+            Bond::Flat(joint) => Self::FlatJoint { elements: joint.division.count() },
         }
     }
 
     /// Rows of memory of a contact.
     fn rows<S: Space>(self) -> usize {
         match self {
-            Self::Linear => <LinearLaw as Law<S>>::ROWS,
-            Self::ContactBond => <ContactBondLaw as Law<S>>::ROWS,
-            Self::ParallelBond => <ParallelBondLaw as Law<S>>::ROWS,
+            Self::Linear => Rows::<S>::TENSION,
+            Self::ContactBond => Rows::<S>::BOND,
+            Self::ParallelBond => Rows::<S>::COUNT,
+            Self::FlatJoint { elements } => flat_joint_rows::<S>(elements),
+            Self::SmoothJoint => smooth_joint_rows::<S>(),
         }
+    }
+
+    /// Whether a contact that is not bonded comes to the same bits by the linear law, with fewer rows.
+    pub(crate) fn begins_linear(self) -> bool {
+        matches!(self, Self::ParallelBond | Self::FlatJoint { .. })
     }
 }
 
@@ -139,8 +152,14 @@ impl Section {
         let (chunk, block, lane) = place(c);
         let rows = self.law.rows::<S>();
         let mut memory = fresh::<S>();
-        for (value, row) in memory.iter_mut().zip(&self.chunks[chunk].rows[block * rows..(block + 1) * rows]) {
+        let own = &self.chunks[chunk].rows[block * rows..(block + 1) * rows];
+        let (shared, tail) = own.split_at(rows.min(Rows::<S>::COUNT));
+        for (value, row) in memory.iter_mut().zip(shared) {
             *value = row.0[lane];
+        }
+        // Rows of elements matter where there is an interface.
+        if memory[Rows::<S>::BOND] > 0.0 {
+            memory.tail.extend(tail.iter().map(|row| row.0[lane]));
         }
         memory
     }
@@ -157,7 +176,11 @@ impl Section {
         let chunk = &mut self.chunks[chunk];
         if block == chunk.ends.len() {
             chunk.ends.push([[self.dummy; WIDEST], [self.dummy + 1; WIDEST]]);
-            chunk.rows.extend(fresh::<S>()[..rows].iter().map(|&x| Row([x; WIDEST])));
+            let (idle_memory, shared) = (fresh::<S>(), Rows::<S>::COUNT);
+            let flat = matches!(self.law, LawKind::FlatJoint { .. });
+            let tail = |row| if flat { idle::<S>(row) } else { 0.0 };
+            let value = |row| if row < shared { idle_memory[row] } else { tail(row) };
+            chunk.rows.extend((0..rows).map(|row| Row([value(row); WIDEST])));
             if self.rank.at_wall {
                 chunk.reactions.resize(chunk.ends.len() * S::DIMENSION, Row::default());
             }
@@ -167,7 +190,12 @@ impl Section {
         if !key.at_wall {
             ends[1][lane] = key.j;
         }
-        for (row, value) in chunk.rows[block * rows..].iter_mut().zip(memory) {
+        let own = &mut chunk.rows[block * rows..(block + 1) * rows];
+        let (shared, tail) = own.split_at_mut(rows.min(Rows::<S>::COUNT));
+        for (row, value) in shared.iter_mut().zip(&**memory) {
+            row.0[lane] = *value;
+        }
+        for (row, value) in tail.iter_mut().zip(&memory.tail) {
             row.0[lane] = *value;
         }
         self.count += 1;
@@ -176,6 +204,11 @@ impl Section {
     /// Whether contact `c` is bonded.
     pub(crate) fn bonded<S: Space>(&self, c: usize) -> bool {
         self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
+    }
+
+    /// Whether contact `c` is bonded or an interface, bonded or not.
+    pub(crate) fn joined<S: Space>(&self, c: usize) -> bool {
+        self.bonded::<S>(c) || self.value::<S>(c, Rows::<S>::BOND) > 0.0
     }
 
     /// Force of contact `c` on the wall; the third component is 0 in the plane.

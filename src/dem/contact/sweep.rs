@@ -2,7 +2,8 @@
 
 use super::section::{Chunk, LawKind, Rank, Section};
 use crate::boundary::Image;
-use crate::law::{BOUNDARY, Constants, ContactBondLaw, KN, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw, Viscous};
+use crate::law::{BOUNDARY, Constants, ContactBondLaw, FlatJointLaw, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw};
+use crate::law::{Piece, SmoothJointLaw, Viscous};
 use crate::simd::{Lane, Quad, Row, WIDEST, prefetch, prefetch_rows};
 use crate::space::{End, Load, Space, Touch, Tuple, Vector};
 
@@ -52,6 +53,8 @@ pub(crate) struct Break {
     pub(crate) i: u32,
     pub(crate) j: u32,
     pub(crate) at_wall: bool,
+    /// Its element; 0 for a bond that breaks as a whole.
+    pub(crate) element: u32,
     /// Tension, else shear.
     pub(crate) tensile: bool,
     /// Gap, unit normal from i and contact point when it broke; the third coordinate is 0 in the plane.
@@ -115,6 +118,10 @@ pub(crate) fn sweep_section<S: Space, L: Lane>(
             LawKind::ParallelBond => {
                 blocks::<S, L, ParallelBondLaw>(constants, second, rank, chunk, task, loads, breaks);
             }
+            LawKind::FlatJoint { .. } => {
+                blocks::<S, L, FlatJointLaw>(constants, second, rank, chunk, task, loads, breaks);
+            }
+            LawKind::SmoothJoint => blocks::<S, L, SmoothJointLaw>(constants, second, rank, chunk, task, loads, breaks),
         }
     }
 }
@@ -131,12 +138,13 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
 ) {
     let viscous = constants.dashpot != [0.0; 2];
     let dt = L::splat(task.dt);
+    let count = K::rows(&constants.layout);
     let mut after = &mut chunk.rows[..];
     for (b, ends) in chunk.ends.iter().enumerate() {
-        let (rows, rest) = after.split_at_mut(K::ROWS);
+        let (rows, rest) = after.split_at_mut(count);
         after = rest;
-        if K::ROWS >= LONG
-            && let Some(next) = after.get((AHEAD - 1) * K::ROWS..AHEAD * K::ROWS)
+        if count >= LONG
+            && let Some(next) = after.get((AHEAD - 1) * count..AHEAD * count)
         {
             prefetch_rows(next);
         }
@@ -155,7 +163,7 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
                 Second::Wall(face) => wall_touch(&i, face, dt),
             };
             let balls = (!matches!(second, Second::Wall(_))).then_some(others);
-            let drag = viscous.then(|| drag(constants, task, first, balls, rows, at));
+            let drag = viscous.then(|| drag(constants, task, first, balls, K::stiffness::<L>(rows, at)));
             let mut ledger = Ledger(chunk.ledger.get_mut(b * LEDGER..(b + 1) * LEDGER));
             let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at, &mut ledger);
             match second {
@@ -177,7 +185,8 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
             if let Some(broken) = broken {
                 let (tension, shear) = (L::bits(broken.tension), L::bits(broken.shear));
                 let places = Places::new(&i, &touch);
-                note(rank, [first, others], [tension, tension | shear], &places, breaks);
+                let masks = [tension, tension | shear];
+                note::<S, K>(constants, rank, [first, others], masks, &places, (rows, at), breaks);
             }
         }
     }
@@ -185,14 +194,7 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
 
 /// Dashpot coefficients over the time step, 2 β √(m_eff k) / dt.
 #[inline(always)]
-fn drag<L: Lane>(
-    constants: &Constants,
-    task: &Sweep<'_>,
-    first: &[u32],
-    second: Option<&[u32]>,
-    rows: &[Row],
-    at: usize,
-) -> Viscous<L> {
+fn drag<L: Lane>(constants: &Constants, task: &Sweep<'_>, first: &[u32], second: Option<&[u32]>, kn: L) -> Viscous<L> {
     let mut inverse = Row::default();
     for (k, &i) in first.iter().enumerate() {
         inverse.0[k] = task.inverse_mass[i as usize] + second.map_or(0.0, |j| task.inverse_mass[j[k] as usize]);
@@ -201,7 +203,6 @@ fn drag<L: Lane>(
     let inverse = L::load(&inverse, 0);
     let free = inverse.above(L::splat(0.0));
     let inverse = inverse.max(L::splat(f64::MIN_POSITIVE));
-    let kn = L::load(&rows[KN], at);
     let critical = |k: L| L::select(free, (k / inverse).sqrt(), L::splat(0.0));
     Viscous {
         normal: L::splat(2.0 * constants.dashpot[0] / task.dt) * critical(kn),
@@ -226,17 +227,20 @@ fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L
 }
 
 /// Where the contacts of a lane are, out of the registers.
+#[derive(Default)]
 struct Places {
     gap: Row,
     normal: [Row; 3],
     point: [Row; 3],
+    radius: Row,
 }
 
 impl Places {
     #[inline(always)]
     fn new<S: Space, L: Lane>(i: &End<S, L>, touch: &Touch<S, L>) -> Self {
-        let mut places = Self { gap: Row::default(), normal: [Row::default(); 3], point: [Row::default(); 3] };
+        let mut places = Self::default();
         touch.gap.store(&mut places.gap, 0);
+        touch.radius.store(&mut places.radius, 0);
         let point = i.position.plus(touch.normal.times(touch.arm_i));
         for k in 0..S::DIMENSION {
             touch.normal.at(k).store(&mut places.normal[k], 0);
@@ -246,22 +250,46 @@ impl Places {
     }
 }
 
-/// Notes the contacts of a lane that broke: in tension (first mask) or at all (second).
+/// Notes the contacts of a lane that broke, piece by piece: in tension (first mask) or at all (second).
 #[cold]
 #[inline(never)]
-fn note(rank: Rank, ends: [&[u32]; 2], masks: [u8; 2], places: &Places, breaks: &mut Vec<Break>) {
+fn note<S: Space, K: Law<S>>(
+    constants: &Constants,
+    rank: Rank,
+    ends: [&[u32]; 2],
+    masks: [u8; 2],
+    places: &Places,
+    (rows, at): (&mut [Row], usize),
+    breaks: &mut Vec<Break>,
+) {
     for k in (0..ends[0].len()).filter(|k| masks[1] >> k & 1 == 1) {
-        breaks.push(Break {
-            class: rank.class,
-            i: ends[0][k],
-            j: if rank.at_wall { rank.second } else { ends[1][k] },
-            at_wall: rank.at_wall,
-            tensile: masks[0] >> k & 1 == 1,
-            gap: places.gap.0[k],
-            normal: places.normal.map(|row| row.0[k]),
-            point: places.point.map(|row| row.0[k]),
+        let (normal, point) = (places.normal.map(|row| row.0[k]), places.point.map(|row| row.0[k]));
+        K::pieces(constants, rows, at + k, masks[0] >> k & 1 == 1, |piece| {
+            let arm = offset::<S>(&piece, normal);
+            breaks.push(Break {
+                class: rank.class,
+                i: ends[0][k],
+                j: if rank.at_wall { rank.second } else { ends[1][k] },
+                at_wall: rank.at_wall,
+                element: piece.element,
+                tensile: piece.tensile,
+                gap: places.gap.0[k],
+                normal,
+                point: std::array::from_fn(|a| point[a] + arm[a] * places.radius.0[k]),
+            });
         });
     }
+}
+
+/// From the contact point to a piece of its bond, over the smaller radius.
+fn offset<S: Space>(piece: &Piece, n: [f64; 3]) -> [f64; 3] {
+    let [x, y] = piece.arm;
+    if S::DIMENSION == 2 {
+        return [-n[1] * x, n[0] * x, 0.0];
+    }
+    let t = piece.frame;
+    let across = crate::space::D3::moment(n, t);
+    std::array::from_fn(|k| t[k] * x + across[k] * y)
 }
 
 #[cfg(test)]
@@ -286,7 +314,7 @@ mod tests {
             scatter: Scatter::default(),
         };
         let constants =
-            Constants::new(&Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) });
+            Constants::new::<S>(&Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) });
         let mut rows = vec![Row::default(); Rows::<S>::COUNT];
         rows[Rows::<S>::TENSION] = Row([f64::MAX; WIDEST]);
         rows[Rows::<S>::COHESION] = Row([f64::MAX; WIDEST]);

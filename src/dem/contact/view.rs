@@ -1,5 +1,6 @@
 //! One contact as a caller sees it.
 
+use crate::law::Interface;
 use crate::space::{Space, Spin, Tuple, Vector};
 
 /// The other end of a contact.
@@ -36,9 +37,9 @@ pub struct Contact<S: Space> {
     pub active: bool,
     /// Normal and shear stiffness of the linear spring, N/m.
     pub stiffness: [f64; 2],
-    /// Normal and shear stiffness of the bond, N/m; 0 without a parallel bond.
+    /// Normal and shear stiffness of the bond, N/m, of a flat joint as it was made; 0 without a bond that has its own.
     pub bond_stiffness: [f64; 2],
-    /// Tensile and shear force at which its bond breaks when nothing else loads it, N; 0 where unbonded.
+    /// Tensile and shear force at which its bond (all of its elements) breaks when nothing else loads it, N; 0 where unbonded.
     pub capacity: [f64; 2],
     /// I/A of the bond's section, m².
     pub gyration: f64,
@@ -50,6 +51,8 @@ pub struct Contact<S: Space> {
     pub moment: Spin<S>,
     /// Its part about the normal (solid only), N·m.
     pub twist: f64,
+    /// The interface, for a flat or smooth joint. `cement` and `moment` are its resultants.
+    pub interface: Option<Interface>,
 }
 
 impl<S: Space> Contact<S> {
@@ -68,6 +71,9 @@ impl<S: Space> Contact<S> {
         let ([kn, ks], [bn, bs]) = (self.stiffness, self.bond_stiffness);
         let (normal, shear) = parts(self.spring);
         let spring = half(normal, kn) + half(shear, ks);
+        if let Some(interface) = self.interface {
+            return [spring, interface.energy];
+        }
         let (normal, shear) = parts(self.cement);
         let twist = self.twist * self.twist;
         let bend = (self.moment.dot(self.moment) - twist).max(0.0);

@@ -3,8 +3,8 @@
 
 use super::{Engine, Settings};
 use crate::body::{self, Rigid};
-use crate::contact::{Contact, Key, Other, Section};
-use crate::law::{KN, REFERENCE, Rows, SHEAR};
+use crate::contact::{Contact, Key, LawKind, Other, Section};
+use crate::law::{Interface, KN, REFERENCE, Rows, SHEAR, joint_energy};
 use crate::measure::Crack;
 use crate::particle::{Clump, Group, Particle};
 use crate::space::{Load, Space, Spin, Touch, Tuple, Vector};
@@ -197,10 +197,12 @@ impl<S: Space> Engine<S> {
         let reach = self.radii[i] + 0.5 * gap;
         let value = |row: usize| section.value::<S>(c, row);
         let bonded = section.bonded::<S>(c);
-        let point_bond = bonded && self.classes[section.rank.class].law == crate::contact::LawKind::ContactBond;
+        let point_bond = bonded && self.classes[section.rank.class].law == LawKind::ContactBond;
         let overlap = value(REFERENCE) - gap;
         let push = value(KN) * if point_bond { overlap } else { overlap.max(0.0) };
         let shear = |first: usize| S::Shear::<f64>::build(|k| value(first + k));
+        let interface = self.interface(section, c, gap);
+        let touches = interface.is_some() && value(Rows::<S>::BOND_NORMAL) != 0.0;
         let solid = S::DIMENSION == 3;
         let cement = Load::<S, f64> {
             normal: value(Rows::<S>::BOND_NORMAL),
@@ -223,7 +225,7 @@ impl<S: Space> Engine<S> {
             gap,
             reference: value(REFERENCE),
             bonded,
-            active: bonded || overlap > 0.0,
+            active: bonded || touches || (interface.is_none() && overlap > 0.0),
             stiffness: [value(KN), value(KN) * constants.shear_share],
             bond_stiffness: [value(Rows::<S>::BOND), value(Rows::<S>::BOND) * constants.bond_share],
             capacity: if bonded { [Rows::<S>::TENSION, Rows::<S>::COHESION].map(value) } else { [0.0; 2] },
@@ -232,6 +234,19 @@ impl<S: Space> Engine<S> {
             cement: S::force(&touch, &cement),
             moment: S::bond_moment(&touch, &cement),
             twist: cement.twist,
+            interface,
         }
+    }
+
+    /// The interface of a flat or smooth joint.
+    fn interface(&self, section: &Section, c: usize, gap: f64) -> Option<Interface> {
+        let constants = &self.classes[section.rank.class].constants;
+        if section.law == LawKind::SmoothJoint {
+            let energy = joint_energy::<S>(&section.memory::<S>(c), constants)?;
+            return Some(Interface { elements: 1, intact: u32::from(section.bonded::<S>(c)), energy });
+        }
+        let LawKind::FlatJoint { .. } = section.law else { return None };
+        let [first, second] = self.contact_radii(section.key(c));
+        Interface::read::<S>(&section.memory::<S>(c), constants, gap, constants.multiplier * first.min(second))
     }
 }

@@ -58,7 +58,7 @@ impl<S: Space> Engine<S> {
         Self {
             settings: model.settings.clone(),
             table: model.contacts.clone(),
-            classes: classes(&model.contacts),
+            classes: classes::<S>(&model.contacts),
             caller,
             place,
             groups: Vec::with_capacity(n),
@@ -79,6 +79,7 @@ impl<S: Space> Engine<S> {
             clump_caller: Vec::with_capacity(model.clumps.len()),
             walls: Vec::with_capacity(model.walls.len()),
             cell: model.settings.cell.as_ref().map(MovingCell::new),
+            joints: super::joints::Joints::default(),
             domains: Vec::new(),
             threads: 1,
             width: Width::detect(),
@@ -204,10 +205,10 @@ fn add_load<S: Space>(load: &mut [Quad], force: Vector<S>, moment: Spin<S>) {
 }
 
 /// The classes of a table.
-pub(super) fn classes(table: &ContactTable) -> Vec<Class> {
+pub(super) fn classes<S: Space>(table: &ContactTable) -> Vec<Class> {
     let class = |e: &(_, _, crate::interaction::Interaction)| Class {
         law: LawKind::of(&e.2.bond),
-        constants: Constants::new(&e.2),
+        constants: Constants::new::<S>(&e.2),
     };
     table.entries.iter().map(class).collect()
 }

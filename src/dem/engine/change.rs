@@ -102,8 +102,10 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// All faults of the table.
     pub fn set_contacts(&mut self, table: &ContactTable) -> Result<(), Faults> {
-        super::validate::check_table(table, &self.meetings())?;
-        let before = std::mem::replace(&mut self.classes, classes(table));
+        super::validate::check_table::<S>(table, &self.meetings())?;
+        let mut after = classes::<S>(table);
+        after.extend(self.joints.classes());
+        let before = std::mem::replace(&mut self.classes, after);
         self.table = table.clone();
         // A class is a pair of groups, so a section keeps its contacts and takes the pair's place in the new table.
         let mut domains = std::mem::take(&mut self.domains);
@@ -156,7 +158,7 @@ impl<S: Space> Engine<S> {
     pub fn add_wall(&mut self, wall: &Wall<S>) -> Result<usize, Faults> {
         self.admit_new_wall(wall)?;
         self.walls.push(moving(wall));
-        if let Err(faults) = super::validate::check_table(&self.table, &self.meetings()) {
+        if let Err(faults) = super::validate::check_table::<S>(&self.table, &self.meetings()) {
             self.walls.pop();
             return Err(faults);
         }

@@ -149,14 +149,15 @@ impl<S: Space> Engine<S> {
         Ok(())
     }
 
-    /// Turns the breaks of the last march into cracks, in the order of (step, wall or not, class, ends).
+    /// Turns the breaks of the last march into cracks, in the order of (step, wall or not, class, ends, element).
     fn note_cracks(&mut self) {
         let mut breaks: Vec<(u64, Break)> = self.domains.iter_mut().flat_map(|d| d.breaks.drain(..)).collect();
-        breaks.sort_unstable_by_key(|(step, b)| (*step, b.at_wall, b.class, b.i, b.j));
+        breaks.sort_unstable_by_key(|(step, b)| (*step, b.at_wall, b.class, b.i, b.j, b.element));
         for (step, b) in breaks {
             let key = Key { i: b.i, at_wall: b.at_wall, j: b.j, image: 0 };
             let (i, j) = (b.i as usize, b.j as usize);
             let [first, second] = self.contact_radii(key);
+            let constants = &self.classes[b.class].constants;
             self.cracks.push(Crack {
                 step,
                 time: self.epoch.0 + (step - self.epoch.1) as f64 * self.dt,
@@ -165,7 +166,7 @@ impl<S: Space> Engine<S> {
                 other: if b.at_wall { Other::Wall(j) } else { Other::Particle(self.caller[j] as usize) },
                 position: Vector::<S>::build(|k| b.point[k]),
                 normal: Vector::<S>::build(|k| b.normal[k]),
-                size: 2.0 * self.classes[b.class].constants.multiplier * first.min(second),
+                size: 2.0 * constants.multiplier * first.min(second) * constants.layout.size,
                 gap: b.gap,
             });
         }

@@ -83,12 +83,13 @@ impl<S: Space> Engine<S> {
     fn add_stiffness(&self, section: &crate::contact::Section, c: usize, bodies: &mut [Diagonal]) {
         let key = section.key(c);
         let gap = self.gap(key);
-        let bonded = section.bonded::<S>(c);
-        if !bonded && gap >= section.value::<S>(c, REFERENCE) {
+        let kb = section.value::<S>(c, Rows::<S>::BOND);
+        // An interface that is open at its middle may still touch at its rim.
+        if !section.joined::<S>(c) && gap >= section.value::<S>(c, REFERENCE) {
             return;
         }
         let constants = &self.classes[section.rank.class].constants;
-        let (kn, kb) = (section.value::<S>(c, KN), section.value::<S>(c, Rows::<S>::BOND));
+        let kn = section.value::<S>(c, KN);
         let ks = kn * constants.shear_share + kb * constants.bond_share;
         let kn = kn + kb;
         let [first, second] = self.contact_radii(key);

@@ -3,7 +3,7 @@
 use super::Model;
 use crate::boundary::{Motion, MovingCell, Wall};
 use crate::error::{Fault, Faults};
-use crate::interaction::{Bond, BondStiffness, ContactTable, Interaction, Stiffness};
+use crate::interaction::{Bond, BondStiffness, ContactTable, Division, FlatJoint, Interaction, Shares, Stiffness};
 use crate::neighbour::pairs;
 use crate::particle::Group;
 use crate::space::{Space, Tuple, Vector, flat};
@@ -34,7 +34,7 @@ pub(super) fn check<S: Space>(model: &Model<S>) -> Result<(), Faults> {
     cell(model, &mut faults);
     let members = model.particles.iter().map(|p| p.group).zip(clump_of.iter().copied());
     let meetings = meetings(members, model.walls.iter().map(|w| w.group));
-    faults.extend(table_faults(&model.contacts, &meetings));
+    faults.extend(table_faults::<S>(&model.contacts, &meetings));
     if faults.is_empty() {
         overlaps(model, &clump_of, &mut faults);
         for (w, wall) in model.walls.iter().enumerate() {
@@ -46,8 +46,8 @@ pub(super) fn check<S: Space>(model: &Model<S>) -> Result<(), Faults> {
 }
 
 /// Checks a table against the pairs of groups that can meet.
-pub(super) fn check_table(table: &ContactTable, meetings: &[(Group, Group)]) -> Result<(), Faults> {
-    ok(table_faults(table, meetings))
+pub(super) fn check_table<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> Result<(), Faults> {
+    ok(table_faults::<S>(table, meetings))
 }
 
 /// Checks one wall.
@@ -247,7 +247,7 @@ fn settings<S: Space>(model: &Model<S>, faults: &mut Vec<Fault>) {
     }
 }
 
-fn table_faults(table: &ContactTable, meetings: &[(Group, Group)]) -> Vec<Fault> {
+fn table_faults<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (a, b, interaction) in &table.entries {
         let mut check = |quantity, value: f64, good: bool, wanted| {
@@ -255,14 +255,83 @@ fn table_faults(table: &ContactTable, meetings: &[(Group, Group)]) -> Vec<Fault>
                 faults.push(Fault::Interaction { a: *a, b: *b, quantity, value, wanted });
             }
         };
-        interaction_faults(interaction, &mut check);
+        interaction_faults(interaction, S::DIMENSION, &mut check);
     }
     let missing = meetings.iter().filter(|(a, b)| table.class(*a, *b).is_none());
     faults.extend(missing.map(|&(a, b)| Fault::NoInteraction { a, b }));
     faults
 }
 
-fn interaction_faults(interaction: &Interaction, check: &mut impl FnMut(&'static str, f64, bool, &'static str)) {
+/// Told of a quantity, its value, whether that is right, and what it must be.
+type Check<'a> = &'a mut dyn FnMut(&'static str, f64, bool, &'static str);
+
+fn cement_faults(stiffness: BondStiffness, check: Check<'_>) {
+    match stiffness {
+        BondStiffness::Modulus { modulus, ratio } => {
+            check("bond modulus", modulus, positive(modulus), POSITIVE);
+            check("bond kn/ks", ratio, positive(ratio), POSITIVE);
+        }
+        BondStiffness::PerArea { kn, ks } => {
+            check("bond kn", kn, positive(kn), POSITIVE);
+            check("bond ks", ks, ks >= 0.0 && ks.is_finite(), NOT_NEGATIVE);
+        }
+    }
+}
+
+fn angle(friction: f64, check: Check<'_>) {
+    check("friction angle", friction, (0.0..std::f64::consts::FRAC_PI_2).contains(&friction), "in [0, π/2)");
+}
+
+/// Elements and shares of flat joints.
+fn joint_faults(joint: &FlatJoint, dimension: usize, check: Check<'_>) {
+    let Division { rings, sectors } = joint.division;
+    let most = Division::MOST;
+    let least = if dimension == 2 { 1 } else { 3 };
+    check("rings", f64::from(rings), (1..=most).contains(&rings), "from 1 to 32");
+    check("sectors", f64::from(sectors), (least..=most).contains(&sectors), "from 1 (space: 3) to 32");
+    let count = joint.division.count();
+    check("elements", f64::from(count), count <= most, "at most 32");
+    let Shares { gapped, slit, gap } = joint.shares;
+    check("gapped share", gapped, (0.0..=1.0).contains(&gapped), "in [0, 1]");
+    check("slit share", slit, (0.0..=1.0).contains(&slit), "in [0, 1]");
+    check("gapped and slit share", gapped + slit, gapped + slit <= 1.0, "at most 1");
+    check("gap", gap, gap >= 0.0 && gap.is_finite(), NOT_NEGATIVE);
+}
+
+/// All faults of fractures and of the joints that they have.
+pub(super) fn check_joints<S: Space>(
+    fractures: &[super::Fracture<S>],
+    sets: &[crate::interaction::SmoothJoint],
+) -> Result<(), Faults> {
+    let mut faults = Vec::new();
+    let mut check = |quantity, value: f64, good: bool, wanted| {
+        if !good {
+            faults.push(Fault::Setting { quantity, value, wanted });
+        }
+    };
+    for fracture in fractures {
+        let (length, middle) = (fracture.normal.norm(), fracture.centre.norm());
+        check("centre of a fracture", middle, middle.is_finite(), FINITE);
+        check("normal of a fracture", length, positive(length), "a vector that is not zero");
+        check("radius of a fracture", fracture.radius, fracture.radius > 0.0, POSITIVE);
+        let set = fracture.set as f64;
+        check("joint of a fracture", set, fracture.set < sets.len(), "the number of one that there is");
+    }
+    for set in sets {
+        cement_faults(set.stiffness, &mut check);
+        check("radius multiplier", set.radius_multiplier, positive(set.radius_multiplier), POSITIVE);
+        check("friction", set.friction, set.friction >= 0.0 && set.friction.is_finite(), NOT_NEGATIVE);
+        angle(set.dilation, &mut check);
+        if let Some(bond) = set.bond {
+            check("tensile strength", bond.tensile_strength, bond.tensile_strength > 0.0, POSITIVE);
+            check("cohesion", bond.cohesion, bond.cohesion > 0.0, POSITIVE);
+            angle(bond.friction_angle, &mut check);
+        }
+    }
+    ok(faults)
+}
+
+fn interaction_faults(interaction: &Interaction, dimension: usize, check: Check<'_>) {
     let linear = &interaction.linear;
     match linear.stiffness {
         Stiffness::Modulus { modulus, ratio, .. } => {
@@ -284,20 +353,17 @@ fn interaction_faults(interaction: &Interaction, check: &mut impl FnMut(&'static
             ([("tensile strength", b.tensile_strength), ("shear strength", b.shear_strength)], b.scatter)
         }
         Bond::Parallel(b) => {
-            match b.stiffness {
-                BondStiffness::Modulus { modulus, ratio } => {
-                    check("bond modulus", modulus, positive(modulus), POSITIVE);
-                    check("bond kn/ks", ratio, positive(ratio), POSITIVE);
-                }
-                BondStiffness::PerArea { kn, ks } => {
-                    check("bond kn", kn, positive(kn), POSITIVE);
-                    check("bond ks", ks, ks >= 0.0 && ks.is_finite(), NOT_NEGATIVE);
-                }
-            }
+            cement_faults(b.stiffness, check);
             check("radius multiplier", b.radius_multiplier, positive(b.radius_multiplier), POSITIVE);
             check("moment factor", b.moment_factor, (0.0..=1.0).contains(&b.moment_factor), "in [0, 1]");
-            let right = std::f64::consts::FRAC_PI_2;
-            check("friction angle", b.friction_angle, (0.0..right).contains(&b.friction_angle), "in [0, π/2)");
+            angle(b.friction_angle, check);
+            ([("tensile strength", b.tensile_strength), ("cohesion", b.cohesion)], b.scatter)
+        }
+        Bond::Flat(b) => {
+            cement_faults(b.stiffness, check);
+            check("radius multiplier", b.radius_multiplier, positive(b.radius_multiplier), POSITIVE);
+            angle(b.friction_angle, check);
+            joint_faults(&b, dimension, check);
             ([("tensile strength", b.tensile_strength), ("cohesion", b.cohesion)], b.scatter)
         }
     };

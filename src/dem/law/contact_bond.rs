@@ -6,7 +6,8 @@
 
 use super::linear::{followed, slip_energy};
 use super::{
-    BROKEN, Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
+    BROKEN, Broken, Constants, DASHPOT, KN, Law, Layout, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear,
+    store_shear,
 };
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple};
@@ -15,7 +16,10 @@ use crate::space::{Load, Space, Touch, Tuple};
 pub(crate) struct ContactBondLaw;
 
 impl<S: Space> Law<S> for ContactBondLaw {
-    const ROWS: usize = Rows::<S>::BOND;
+    #[inline(always)]
+    fn rows(_layout: &Layout) -> usize {
+        Rows::<S>::BOND
+    }
 
     #[inline(always)]
     fn respond<L: Lane>(

@@ -7,7 +7,7 @@
 //! displacement of j's surface relative to i's, F_s acts on i.
 
 use super::{
-    Broken, Constants, DASHPOT, KN, Law, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
+    Broken, Constants, DASHPOT, KN, Law, Layout, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
 };
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple};
@@ -88,7 +88,10 @@ fn charge_slip<S: Space, L: Lane>(
 }
 
 impl<S: Space> Law<S> for LinearLaw {
-    const ROWS: usize = Rows::<S>::TENSION;
+    #[inline(always)]
+    fn rows(_layout: &Layout) -> usize {
+        Rows::<S>::TENSION
+    }
 
     #[inline(always)]
     fn respond<L: Lane>(

@@ -4,16 +4,23 @@
 //! Forces and moments of the memory act on i, tension positive.
 
 mod contact_bond;
+mod flat_joint;
 mod linear;
+mod memory;
 mod parallel_bond;
+mod smooth_joint;
 
 pub(crate) use contact_bond::ContactBondLaw;
+pub use flat_joint::Interface;
+pub(crate) use flat_joint::{FlatJointLaw, Layout, idle, join, rows as flat_joint_rows};
 pub(crate) use linear::LinearLaw;
+pub(crate) use memory::{Memory, bonded, fresh, unbond};
 pub(crate) use parallel_bond::ParallelBondLaw;
+pub(crate) use smooth_joint::{SmoothJointLaw, energy as joint_energy, lay, rows as smooth_joint_rows};
 
-use super::interaction::{Bond, Interaction, NormalForce, ShearBreak};
+use super::interaction::{Bond, Interaction, NormalForce, ShearBreak, SmoothJoint};
 use super::simd::{Lane, Row};
-use super::space::{D3, Load, Space, Touch, Tuple};
+use super::space::{Load, Space, Touch, Tuple};
 
 /// Row of k_n, N/m.
 pub(crate) const KN: usize = 0;
@@ -44,31 +51,6 @@ impl<S: Space> Rows<S> {
     pub(crate) const COUNT: usize = if S::DIMENSION == 2 { Self::BOND_TWIST } else { Self::BOND_TWIST + 1 };
 }
 
-/// Rows of one contact, the longest list of them; a law with fewer rows keeps the first ones.
-pub(crate) type Memory = [f64; LONGEST];
-
-/// Rows of the law and space that have most.
-const LONGEST: usize = Rows::<D3>::COUNT;
-
-/// Memory of a fresh, unbonded contact.
-pub(crate) fn fresh<S: Space>() -> Memory {
-    let mut memory = [0.0; LONGEST];
-    unbond::<S>(&mut memory);
-    memory
-}
-
-/// Takes the bond out of a contact's memory.
-pub(crate) fn unbond<S: Space>(memory: &mut Memory) {
-    memory[Rows::<S>::TENSION..].fill(0.0);
-    memory[Rows::<S>::TENSION] = f64::INFINITY;
-    memory[Rows::<S>::COHESION] = f64::INFINITY;
-}
-
-/// Whether a contact's memory holds a bond.
-pub(crate) fn bonded<S: Space>(memory: &Memory) -> bool {
-    memory[Rows::<S>::TENSION] < f64::INFINITY
-}
-
 /// Constants of a class, in the form in which the laws use them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Constants {
@@ -92,10 +74,14 @@ pub(crate) struct Constants {
     pub(crate) tensile_dashpot: bool,
     /// Whether a contact bond that breaks in shear drops its shear force.
     pub(crate) zero_shear: bool,
+    /// Elements of a flat joint.
+    pub(crate) layout: Layout,
+    /// tan ψ of a smooth joint.
+    pub(crate) dilation: f64,
 }
 
 impl Constants {
-    pub(crate) fn new(interaction: &Interaction) -> Self {
+    pub(crate) fn new<S: Space>(interaction: &Interaction) -> Self {
         let linear = &interaction.linear;
         let mut c = Self {
             shear_share: linear.stiffness.shear_share(),
@@ -108,18 +94,46 @@ impl Constants {
             dashpot: [linear.dashpot.normal, linear.dashpot.shear],
             tensile_dashpot: linear.dashpot.tensile,
             zero_shear: false,
+            layout: Layout::default(),
+            dilation: 0.0,
         };
         match interaction.bond {
             Bond::None => {}
             Bond::Contact(bond) => c.zero_shear = bond.shear_break == ShearBreak::Zero,
             Bond::Parallel(bond) => {
-                c.bond_share = bond.shear_share();
+                c.bond_share = bond.stiffness.shear_share();
                 c.multiplier = bond.radius_multiplier;
                 c.moment_factor = bond.moment_factor;
                 c.slope = math::elementary::tan(bond.friction_angle);
             }
+            Bond::Flat(joint) => {
+                c.bond_share = joint.stiffness.shear_share();
+                c.multiplier = joint.radius_multiplier;
+                c.slope = math::elementary::tan(joint.friction_angle);
+                c.layout = Layout::new::<S>(joint.division);
+            }
         }
         c
+    }
+}
+
+impl Constants {
+    /// Of a smooth joint.
+    pub(crate) fn joint(joint: &SmoothJoint) -> Self {
+        Self {
+            shear_share: 0.0,
+            friction: joint.friction,
+            bond_share: joint.stiffness.shear_share(),
+            multiplier: joint.radius_multiplier,
+            moment_factor: 0.0,
+            slope: joint.bond.map_or(0.0, |bond| math::elementary::tan(bond.friction_angle)),
+            incremental: false,
+            dashpot: [0.0; 2],
+            tensile_dashpot: false,
+            zero_shear: false,
+            layout: Layout::default(),
+            dilation: math::elementary::tan(joint.dilation),
+        }
     }
 }
 
@@ -128,6 +142,19 @@ impl Constants {
 pub(crate) struct Viscous<L> {
     pub(crate) normal: L,
     pub(crate) shear: L,
+}
+
+/// A piece of a bond that broke.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Piece {
+    /// Tension, else shear.
+    pub(crate) tensile: bool,
+    /// Its number; 0 for a bond that breaks as a whole.
+    pub(crate) element: u32,
+    /// From the contact point, over the radius of the smaller particle: along t₁ and t₂ = n × t₁.
+    pub(crate) arm: [f64; 2],
+    /// t₁ in space; the plane has its own tangent.
+    pub(crate) frame: [f64; 3],
 }
 
 /// Which contacts of a lane broke in this step.
@@ -169,7 +196,20 @@ impl Ledger<'_> {
 /// One law: how a contact answers a step, and what is left in its rows.
 pub(crate) trait Law<S: Space> {
     /// Rows of memory that it uses, from the first on.
-    const ROWS: usize;
+    fn rows(layout: &Layout) -> usize;
+
+    /// Normal stiffness for the dashpot, N/m.
+    #[inline(always)]
+    fn stiffness<L: Lane>(rows: &[Row], at: usize) -> L {
+        L::load(&rows[KN], at)
+    }
+
+    /// Calls `put` with every piece of contact `lane` that broke in this step, in a lane of which [`respond`](Self::respond)
+    /// said that something broke; `tensile` is what it said of this contact. A bond breaks in one piece.
+    fn pieces(_constants: &Constants, _rows: &mut [Row], _lane: usize, tensile: bool, mut put: impl FnMut(Piece)) {
+        put(Piece { tensile, ..Piece::default() });
+    }
+
     /// Load on i, and the breaks if there was any.
     fn respond<L: Lane>(
         constants: &Constants,

@@ -8,7 +8,7 @@
 //! (both sides multiplied by A). A broken bond vanishes at once; the linear contact stays.
 
 use super::linear::spring;
-use super::{BROKEN, Broken, Constants, Law, Ledger, Rows, Viscous, load_shear, store_shear};
+use super::{BROKEN, Broken, Constants, Law, Layout, Ledger, Rows, Viscous, load_shear, store_shear};
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple};
 
@@ -107,7 +107,10 @@ impl<S: Space, L: Lane> Cement<S, L> {
 }
 
 impl<S: Space> Law<S> for ParallelBondLaw {
-    const ROWS: usize = Rows::<S>::COUNT;
+    #[inline(always)]
+    fn rows(_layout: &Layout) -> usize {
+        Rows::<S>::COUNT
+    }
 
     #[inline(always)]
     fn respond<L: Lane>(
@@ -181,7 +184,7 @@ mod tests {
             scatter: Scatter::default(),
         };
         let law = Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) };
-        let (constants, mut stream) = (Constants::new(&law), Stream::new(3, "cement", 0));
+        let (constants, mut stream) = (Constants::new::<S>(&law), Stream::new(3, "cement", 0));
         let draw = |_: usize| {
             let mut number = || 1e3 * stream.normal();
             let (normal, twist) = (number(), if S::DIMENSION == 3 { number() } else { 0.0 });

@@ -10,7 +10,7 @@
 
 use crate::parameter::{Law, Parameter};
 use crate::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Distribution, Group, Interaction};
-use crate::{Linear, NormalForce, ParallelBond, Scatter, ShearBreak, Space, Stiffness};
+use crate::{Division, FlatJoint, Linear, NormalForce, ParallelBond, Scatter, Shares, ShearBreak, Space, Stiffness};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -26,6 +26,8 @@ pub enum BondKind {
     Parallel,
     /// Point bond.
     Contact,
+    /// Interface of finite size that breaks element by element.
+    FlatJoint,
     /// No bond: spring and friction only.
     None,
 }
@@ -36,6 +38,7 @@ impl BondKind {
         match self {
             Self::Parallel => &[Law::Spring, Law::Parallel],
             Self::Contact => &[Law::Spring, Law::Contact],
+            Self::FlatJoint => &[Law::Spring, Law::Flat],
             Self::None => &[Law::Spring],
         }
     }
@@ -106,6 +109,14 @@ pub enum MaterialFault {
         /// The other one.
         other: Parameter,
     },
+    /// Shares of more than everything.
+    #[error("`fj_gapped` and `fj_slit` of contact `{contact}` come to {found}; together they must be at most 1")]
+    Shares {
+        /// The contact's name.
+        contact: String,
+        /// Their sum.
+        found: f64,
+    },
     /// Outside its range.
     #[error("`{}` of contact `{contact}` is {found}; it must be {}", .parameter.key(), .parameter.declaration().range.words())]
     Outside {
@@ -126,6 +137,7 @@ impl MaterialFault {
             | Self::NoEffect { contact, parameter, .. }
             | Self::Beside { contact, parameter, .. }
             | Self::Outside { contact, parameter, .. } => (contact, *parameter),
+            Self::Shares { contact, .. } => (contact, Parameter::Slit),
         }
     }
 
@@ -147,6 +159,7 @@ impl MaterialFault {
                 format!("leave out `{}`, or choose a bond that has it", parameter.key())
             }
             Self::Beside { parameter, other, .. } => format!("leave out `{}` or `{}`", parameter.key(), other.key()),
+            Self::Shares { .. } => "what is neither gapped nor slit is bonded".to_owned(),
             Self::Outside { .. } => String::new(),
         }
     }
@@ -156,6 +169,7 @@ fn with_bond(bond: BondKind) -> &'static str {
     match bond {
         BondKind::Parallel => "a parallel bond",
         BondKind::Contact => "a contact bond",
+        BondKind::FlatJoint => "a flat joint",
         BondKind::None => "no bond",
     }
 }
@@ -187,6 +201,10 @@ impl Contact {
                 faults.push(MaterialFault::Outside { contact: contact(), parameter, found });
             }
         }
+        let unbonded = self.get(Parameter::Gapped) + self.get(Parameter::Slit);
+        if unbonded > 1.0 {
+            faults.push(MaterialFault::Shares { contact: contact(), found: unbonded });
+        }
         for (parameter, other) in self.beside() {
             faults.push(MaterialFault::Beside { contact: contact(), parameter, other });
         }
@@ -214,7 +232,12 @@ impl Contact {
     fn missing(&self) -> Vec<Parameter> {
         use Parameter::{BondKn, BondKs, BondModulus, BondRatio, Kn, Ks, Modulus, Ratio};
         let direct = self.has(Kn) || self.has(Ks);
+        // A flat joint has the modulus of the spring, whose stiffness depends on the radii.
+        let direct = direct && self.bond != BondKind::FlatJoint;
         let mut needed = if direct { vec![Kn, Ks] } else { vec![Modulus, Ratio] };
+        if self.has(Parameter::Gapped) {
+            needed.push(Parameter::InitialGap);
+        }
         needed.push(Parameter::Friction);
         if self.bond == BondKind::Parallel {
             let bond_direct = self.has(BondKn) || self.has(BondKs);
@@ -258,6 +281,24 @@ impl Contact {
         }
     }
 
+    fn joint(&self, [tensile_strength, cohesion]: [f64; 2], scatter: Scatter) -> FlatJoint {
+        let whole = |parameter| self.get(parameter) as u32;
+        FlatJoint {
+            radius_multiplier: self.get(Parameter::RadiusMultiplier),
+            division: Division { rings: whole(Parameter::Rings), sectors: whole(Parameter::Elements) },
+            stiffness: self.cement(),
+            tensile_strength,
+            cohesion,
+            friction_angle: self.get(Parameter::FrictionAngle),
+            shares: Shares {
+                gapped: self.get(Parameter::Gapped),
+                slit: self.get(Parameter::Slit),
+                gap: self.get(Parameter::InitialGap),
+            },
+            scatter,
+        }
+    }
+
     /// Law and values as the engine takes them.
     pub fn interaction(&self, convention: Convention) -> Interaction {
         let scatter = Scatter {
@@ -283,6 +324,7 @@ impl Contact {
                 moment_factor: self.get(Parameter::MomentFactor),
                 scatter,
             }),
+            BondKind::FlatJoint => Bond::Flat(self.joint([tensile_strength, shear], scatter)),
         };
         Interaction { linear: self.linear(convention, self.get(Parameter::Friction)), bond }
     }

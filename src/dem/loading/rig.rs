@@ -159,6 +159,7 @@ fn scales<S: Space>(engine: &Engine<S>, table: &ContactTable, density: f64) -> S
             Bond::None => 0.0,
             Bond::Contact(bond) => bond.tensile_strength,
             Bond::Parallel(bond) => bond.tensile_strength,
+            Bond::Flat(joint) => joint.tensile_strength,
         };
     }
     if count[0] > 0.0 {

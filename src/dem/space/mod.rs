@@ -206,6 +206,17 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn push_both<L: Lane>(loads: &mut [Quad], ends: [&[u32]; 2], touch: &Touch<Self, L>, load: &Load<Self, L>);
     /// Force on i as a vector.
     fn force<L: Lane>(touch: &Touch<Self, L>, load: &Load<Self, L>) -> Self::Vector<L>;
+    /// Components of a vector of the contact plane along the frame t₁, t₂ = n × t₁; the second is 0 in the plane, where t₁
+    /// is the tangent of the contact and `frame` is not used.
+    fn flat<L: Lane>(vector: Self::Shear<L>, frame: Self::Shear<L>, normal: Self::Vector<L>) -> [L; 2];
+    /// The vector of the contact plane with these components.
+    fn raised<L: Lane>(flat: [L; 2], frame: Self::Shear<L>, normal: Self::Vector<L>) -> Self::Shear<L>;
+    /// Slope of the face of j against that of i, along t₁ and t₂, that a relative bending rotation makes.
+    fn slope<L: Lane>(bend: Self::Shear<L>, frame: Self::Shear<L>, normal: Self::Vector<L>) -> [L; 2];
+    /// A vector of the contact plane in its own components.
+    fn across<L: Lane>(vector: Self::Vector<L>, normal: Self::Vector<L>) -> Self::Shear<L>;
+    /// Bending moment on i of normal forces (tension positive) with the first moments ∑ r f along t₁ and t₂.
+    fn bend<L: Lane>(moments: [L; 2], frame: Self::Shear<L>, normal: Self::Vector<L>) -> Self::Shear<L>;
     /// Moment of the bond on i as a spin-like quantity.
     fn bond_moment<L: Lane>(touch: &Touch<Self, L>, load: &Load<Self, L>) -> Self::Spin<L>;
     /// a × b as a moment.

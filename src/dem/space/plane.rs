@@ -104,6 +104,31 @@ impl Space for D2 {
     }
 
     #[inline(always)]
+    fn flat<L: Lane>(vector: [L; 1], _frame: [L; 1], _normal: [L; 2]) -> [L; 2] {
+        [vector[0], L::splat(0.0)]
+    }
+
+    #[inline(always)]
+    fn across<L: Lane>([x, y]: [L; 2], [nx, ny]: [L; 2]) -> [L; 1] {
+        [y * nx - x * ny]
+    }
+
+    #[inline(always)]
+    fn raised<L: Lane>(flat: [L; 2], _frame: [L; 1], _normal: [L; 2]) -> [L; 1] {
+        [flat[0]]
+    }
+
+    #[inline(always)]
+    fn slope<L: Lane>(bend: [L; 1], _frame: [L; 1], _normal: [L; 2]) -> [L; 2] {
+        [-bend[0], L::splat(0.0)]
+    }
+
+    #[inline(always)]
+    fn bend<L: Lane>(moments: [L; 2], _frame: [L; 1], _normal: [L; 2]) -> [L; 1] {
+        [-moments[0]]
+    }
+
+    #[inline(always)]
     fn bond_moment<L: Lane>(_touch: &Touch<Self, L>, load: &Load<Self, L>) -> [L; 1] {
         load.bend
     }

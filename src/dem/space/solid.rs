@@ -143,6 +143,32 @@ impl Space for D3 {
     }
 
     #[inline(always)]
+    fn flat<L: Lane>(vector: [L; 3], frame: [L; 3], normal: [L; 3]) -> [L; 2] {
+        [vector.dot(frame), vector.dot(cross(normal, frame))]
+    }
+
+    #[inline(always)]
+    fn across<L: Lane>(vector: [L; 3], _normal: [L; 3]) -> [L; 3] {
+        vector
+    }
+
+    #[inline(always)]
+    fn raised<L: Lane>(flat: [L; 2], frame: [L; 3], normal: [L; 3]) -> [L; 3] {
+        frame.times(flat[0]).plus(cross(normal, frame).times(flat[1]))
+    }
+
+    #[inline(always)]
+    fn slope<L: Lane>(bend: [L; 3], frame: [L; 3], normal: [L; 3]) -> [L; 2] {
+        let [first, second] = Self::flat(bend, frame, normal);
+        [-second, first]
+    }
+
+    #[inline(always)]
+    fn bend<L: Lane>(moments: [L; 2], frame: [L; 3], normal: [L; 3]) -> [L; 3] {
+        Self::raised([moments[1], -moments[0]], frame, normal)
+    }
+
+    #[inline(always)]
     fn bond_moment<L: Lane>(touch: &Touch<Self, L>, load: &Load<Self, L>) -> [L; 3] {
         touch.normal.times(load.twist).plus(load.bend)
     }

@@ -6,6 +6,7 @@ use super::params::{FactorParam, Params};
 use super::slope::Slope;
 use crate::artifact::Artifact;
 use crate::stage::figure::Names;
+use crate::stage::invalid::Invalid;
 use crate::stage::{Context, Scale, StageError};
 use crate::unit::Unit;
 use optim::misfit::{Denominator, Form};
@@ -58,6 +59,9 @@ pub struct Calibrate {
     pub tolerance: Option<f64>,
     /// What `flow run` makes of targets that are not met.
     pub unmet: Unmet,
+    /// What becomes of a run that is not valid: left out it is an evaluation that failed, and costs what one costs.
+    #[serde(skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
     /// How deviations are combined: as the method's preset was published, else their sum, when not given.
     pub misfit: Option<Form>,
     /// What deviations are relative to.
@@ -214,6 +218,7 @@ impl Calibrate {
             preference: self.preference.clone(),
             solutions: self.solutions.unwrap_or(SOLUTIONS),
             simulators: self.simulators().len(),
+            invalid: self.invalid,
             history: Vec::new(),
         })
     }

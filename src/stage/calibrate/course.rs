@@ -10,7 +10,7 @@
 
 use super::config::Calibrate;
 use super::params::{History, Params, Told};
-use super::read::{Part, evaluation};
+use super::read::{Judgement, Part, evaluation};
 use super::twin::{Twin, full_limits, full_method};
 use crate::artifact::Artifact;
 use crate::stage::{Input, Known, Outcome, Point, StageError, Task};
@@ -196,15 +196,19 @@ impl Trail {
                 }
             }
             let responses = match failure.is_empty() {
-                true => evaluation(&parts(&names, &runs), &from, &params.sets[set].targets)?,
+                true => evaluation(&parts(&names, &runs), &from, &params.sets[set].targets, params.invalid)?,
                 false => Err(failure),
             };
             let (responses, failure) = match responses {
                 Ok(values) => (Some(values), String::new()),
                 Err(why) => (None, why),
             };
+            let validity = match responses {
+                Some(_) => Judgement::of(&parts(&names, &runs))?.validity,
+                None => String::new(),
+            };
             answers.push(responses.clone());
-            told.push(Told { point, responses, failure });
+            told.push(Told { point, responses, failure, validity });
         }
         self.search.tell(&answers);
         self.told().extend(told);

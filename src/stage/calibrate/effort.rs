@@ -62,6 +62,7 @@ mod tests {
             best: 0.0,
             recommended: 0.0,
             failure: String::new(),
+            validity: String::new(),
         };
         let lines: Vec<Line> = runs.iter().enumerate().map(line).collect();
         let own = |worst: f64| {

@@ -2,8 +2,9 @@
 
 use super::params::{FactorParam, Params, TargetParam};
 use super::record::{named, numbered};
-use super::solve::Solved;
+use super::solve::{Line, Solved};
 use crate::artifact::Table;
+use crate::artifact::validity::Tally;
 use crate::stage::notes::{Notes, short};
 use optim::Interval;
 use optim::constraint::Factor;
@@ -194,9 +195,10 @@ pub(super) fn parameters(params: &Params, solved: &[Solved]) -> Table {
         .texts_column("known", "what the targets say of it", texts(|row| row.word.to_owned()))
 }
 
-/// What to look at before the numbers are used.
-pub(super) fn notes(params: &Params, solved: &[Solved]) -> Table {
+/// What to look at before the numbers are used; `learned` is what is said of the runs that the search learned from.
+pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> Table {
     let mut notes = Notes::default();
+    learned.iter().for_each(|said| notes.add("", format!("learned from: {said}")));
     let several = solved.len() > 1;
     let whose = |set: usize| if several { format!("set {}: ", set + 1) } else { String::new() };
     let rows = predicted(params, solved);
@@ -217,6 +219,10 @@ pub(super) fn notes(params: &Params, solved: &[Solved]) -> Table {
         if own.clone().any(|row| row.met == Met::No) && own.all(|row| row.reach() == "within reach") {
             notes.add("", format!("{}each target can be met by itself, all together were not", whose(set)));
         }
+        let of = |pick: fn(&Line) -> &str| Tally::of(s.history.len(), s.history.iter().map(pick));
+        let failed = of(|line| &line.failure).of_evaluations("gave no result");
+        let kept = of(|line| &line.validity).of_evaluations("rest on runs that are not valid and were kept");
+        failed.into_iter().chain(kept).for_each(|said| notes.add("", format!("{}{said}", whose(set))));
         if !s.unknown.is_empty() {
             notes.add("", format!("{}intervals are unknown: {}", whose(set), s.unknown));
         }

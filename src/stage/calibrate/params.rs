@@ -4,6 +4,7 @@ use super::config::Constraint;
 use super::read;
 use crate::artifact::Artifact;
 use crate::stage::StageError;
+use crate::stage::invalid::Invalid;
 use optim::constraint::{Domain, Factor, Linear, Scale};
 use optim::misfit::{Denominator, Form, Misfit, Target};
 use optim::search::{Knowledge, Limits, Method, Run};
@@ -78,9 +79,12 @@ pub(super) struct Told {
     /// The responses in the order of the targets; none when it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub responses: Option<Vec<f64>>,
-    /// Why it failed.
+    /// Why it failed; a run that is not valid and left out has failed.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub failure: String,
+    /// Why a run that was kept is not valid.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub validity: String,
 }
 
 impl Told {
@@ -126,6 +130,9 @@ pub(super) struct Params {
     pub solutions: usize,
     /// Simulations that make one evaluation.
     pub simulators: usize,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    pub invalid: Invalid,
     /// Evaluations of each set; empty on surfaces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub history: Vec<History>,
@@ -202,7 +209,7 @@ impl Params {
         let trend = surfaces.map(|artifact| read::surfaces(artifact, &self.factors, held, targets)).transpose()?;
         let mut runs = Vec::new();
         for artifact in earlier {
-            runs.extend(read::runs(artifact, &self.factors, targets)?);
+            runs.extend(read::runs(artifact, &self.factors, targets, self.invalid)?);
         }
         Ok(Knowledge { earlier: runs, trend })
     }

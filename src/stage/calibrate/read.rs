@@ -6,6 +6,7 @@ use crate::artifact::run::Run;
 use crate::artifact::{Artifact, Table};
 use crate::stage::StageError;
 use crate::stage::fitted::models;
+use crate::stage::invalid::{Invalid, refused};
 use crate::unit::Conversion;
 use optim::Interval;
 use optim::misfit::ordinates;
@@ -143,21 +144,60 @@ pub(super) struct Part<'a> {
     pub run: &'a Artifact,
 }
 
-/// The responses of one evaluation in the order of the targets, or why it has none. Each is taken from the simulator that
-/// `from` names, or from the first that gives it.
+/// What is said of the runs of one evaluation.
+#[derive(Default)]
+pub(in crate::stage) struct Judgement {
+    /// Why one of them gave no result; empty when all did.
+    pub failure: String,
+    /// Why one that gave a result is not valid; empty when all are.
+    pub validity: String,
+    /// Whether the simulators have checks at all.
+    pub checked: bool,
+}
+
+impl Judgement {
+    /// Looks at the runs of one evaluation.
+    ///
+    /// # Errors
+    /// One is no run.
+    pub(super) fn of(parts: &[Part<'_>]) -> Result<Self, StageError> {
+        let mut found = Self::default();
+        for part in parts {
+            let outcome = Run::outcome(part.run)?;
+            found.checked |= outcome.validity.is_some();
+            let whose = if parts.len() > 1 { format!("{}: ", part.stage) } else { String::new() };
+            if !outcome.failure.is_empty() {
+                return Ok(Self { failure: format!("{whose}{}", outcome.failure), validity: String::new(), ..found });
+            }
+            if let (Some(why), true) = (outcome.invalid(), found.validity.is_empty()) {
+                found.validity = format!("{whose}{why}");
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// The responses of one evaluation in the order of the targets, or why it has none: a run gave no result, or is not valid
+/// and left out. Each is taken from the simulator that `from` names, or from the first that gives it.
+///
+/// # Errors
+/// A run is not valid and refused, or a response is given by none, or in a unit of another dimension.
 pub(super) fn evaluation(
     parts: &[Part<'_>],
     from: &BTreeMap<String, String>,
     targets: &[TargetParam],
+    invalid: Invalid,
 ) -> Result<Result<Vec<f64>, String>, StageError> {
+    let Judgement { failure, validity, .. } = Judgement::of(parts)?;
+    match (failure.is_empty(), validity.is_empty(), invalid) {
+        (false, _, _) => return Ok(Err(failure)),
+        (true, false, Invalid::LeaveOut) => return Ok(Err(format!("{}{validity}", Run::NOT_VALID))),
+        (true, false, Invalid::Refuse) => return Err(refused(&format!("a run is not valid: {validity}"))),
+        (true, false, Invalid::Keep) | (true, true, _) => {}
+    }
     let mut found = Vec::new();
     for part in parts {
-        let (failure, responses) = Run::outcome(part.run)?;
-        if !failure.is_empty() {
-            let whose = if parts.len() > 1 { format!("{}: ", part.stage) } else { String::new() };
-            return Ok(Err(format!("{whose}{failure}")));
-        }
-        found.push((part, responses));
+        found.push((part, Run::outcome(part.run)?.responses));
     }
     let mut values = Vec::with_capacity(targets.len());
     for target in targets {
@@ -210,25 +250,34 @@ fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, St
     Ok(ordinates(&strains, &stresses, &[at]).map(|values| values[0]).map_err(|fault| fault.to_string()))
 }
 
-/// The runs of a table, in the order of factors and targets; what a run lacks is NaN.
+/// The runs of a table, in the order of factors and targets; what a run lacks is NaN. One that is not valid and left out
+/// has failed.
 pub(super) fn runs(
     artifact: &Artifact,
     factors: &[FactorParam],
     targets: &[TargetParam],
+    invalid: Invalid,
 ) -> Result<Vec<Trial>, StageError> {
     let table = Results::table(artifact)?;
+    let judged = invalid.judge(table)?;
     let points = factors.iter().map(|f| factor_values(table, f)).collect::<Result<Vec<_>, _>>()?;
     let responses = targets.iter().map(|t| response_values(table, t)).collect::<Result<Vec<_>, _>>()?;
     let failures = Results::failures(table);
     let failed = |row: usize| failures.get(row).is_some_and(|reason| !reason.is_empty());
     let row = |i: usize| {
         let values: Vec<f64> = responses.iter().map(|column| column[i]).collect();
-        let some = values.iter().any(|v| v.is_finite());
+        let left_out = judged.leaves_out(i);
+        let some = values.iter().any(|v| v.is_finite()) && !left_out;
         let point = points.iter().map(|column| column[i]).collect();
         // A run that lacks every response without having failed says nothing.
-        (some || failed(i)).then_some(Trial { point, responses: some.then_some(values) })
+        (some || failed(i) || left_out).then_some(Trial { point, responses: some.then_some(values) })
     };
     Ok((0..table.rows()).filter_map(row).collect())
+}
+
+/// How many of the runs that a search learns from are not valid, and what becomes of them.
+pub(super) fn not_valid(artifact: &Artifact, invalid: Invalid) -> Result<Option<String>, StageError> {
+    Ok(invalid.judge(Results::table(artifact)?)?.said())
 }
 
 fn factor_values(table: &Table, factor: &FactorParam) -> Result<Vec<f64>, StageError> {

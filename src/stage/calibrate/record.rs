@@ -5,12 +5,13 @@ use super::outlook::{self, Met};
 use super::params::{FactorParam, Params, TargetParam};
 use super::solve::{Line, Solved};
 use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use crate::stage::invalid::Invalid;
 use crate::stage::notes::short;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The tables of a calibration.
-pub(super) fn artifact(params: &Params, solved: &[Solved]) -> Artifact {
+/// The tables of a calibration; `learned` is what is said of the runs that it learned from.
+pub(super) fn artifact(params: &Params, solved: &[Solved], learned: &[String]) -> Artifact {
     let root = Group::new()
         .with("solution", Node::Table(solution(params, solved)))
         .with("parameters", Node::Table(outlook::parameters(params, solved)))
@@ -18,7 +19,7 @@ pub(super) fn artifact(params: &Params, solved: &[Solved]) -> Artifact {
         .with("history", Node::Table(history(params, solved)))
         .with("effort", Node::Table(effort(params, solved)))
         .with("solution_set", Node::Table(solution_set(params, solved)))
-        .with("notes", Node::Table(outlook::notes(params, solved)));
+        .with("notes", Node::Table(outlook::notes(params, solved, learned)));
     Artifact::of(ArtifactKind::SOLUTION, root)
 }
 
@@ -172,7 +173,7 @@ fn history(params: &Params, solved: &[Solved]) -> Table {
     if simulated {
         table = table.ints_column("row", "of the stage, which shows the simulation", shown(params, &all));
     }
-    columns(table, params, &rows)
+    let mut table = columns(table, params, &rows)
         .reals_column("misfit", "", "of this evaluation", all.iter().map(|(_, line)| line.misfit).collect())
         .reals_column("best", "", "best misfit so far", all.iter().map(|(_, line)| line.best).collect())
         .reals_column(
@@ -181,7 +182,12 @@ fn history(params: &Params, solved: &[Solved]) -> Table {
             "misfit expected at the point that was recommended then",
             all.iter().map(|(_, line)| line.recommended).collect(),
         )
-        .texts_column("failure", "empty when it went well", all.iter().map(|(_, line)| line.failure.clone()).collect())
+        .texts_column("failure", "empty when it went well", all.iter().map(|(_, line)| line.failure.clone()).collect());
+    if simulated && params.invalid == Invalid::Keep {
+        let why = all.iter().map(|(_, line)| line.validity.clone()).collect();
+        table = table.texts_column("validity", "checks that a run does not meet; empty when all are valid", why);
+    }
+    table
 }
 
 /// The row under which each evaluation's simulation stands among the stage's tasks, counted from 1. Sets that begin alike

@@ -14,6 +14,7 @@ use optim::surrogate::models::Models;
 use optim::{Interval, Problem, Recommendation, Stop, Trial};
 
 /// One line of the history.
+#[derive(Default)]
 pub(super) struct Line {
     pub evaluation: usize,
     /// Whether it was on the coarse twins.
@@ -26,6 +27,8 @@ pub(super) struct Line {
     /// Misfit of the recommended point once the batch of this evaluation was known; NaN before there is one.
     pub recommended: f64,
     pub failure: String,
+    /// Why a run that was kept is not valid.
+    pub validity: String,
 }
 
 /// What came of one target set.
@@ -80,7 +83,9 @@ pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
         let note = format!("set {} of {}", set + 1, params.sets.len());
         (job.say)(Progress { fraction: Some((set + 1) as f64 / params.sets.len() as f64), ..Progress::note(note) });
     }
-    Ok(record::artifact(&params, &solved))
+    let learned = earlier.iter().map(|runs| read::not_valid(runs, params.invalid));
+    let learned = learned.filter_map(Result::transpose).collect::<Result<Vec<String>, StageError>>()?;
+    Ok(record::artifact(&params, &solved, &learned))
 }
 
 /// Minimises on the fitted surfaces, then explores all their solutions.
@@ -110,8 +115,17 @@ fn on_surfaces(
             if misfit < best {
                 best = misfit;
                 let (point, responses) = (point.clone(), responses.clone());
-                let (evaluation, recommended, failure) = (count, best, String::new());
-                history.push(Line { evaluation, coarse: false, point, responses, misfit, best, recommended, failure });
+                let line = Line {
+                    evaluation: count,
+                    coarse: false,
+                    point,
+                    responses,
+                    misfit,
+                    best,
+                    recommended: best,
+                    ..Line::default()
+                };
+                history.push(line);
             }
         }
         search.tell(&answers);
@@ -305,9 +319,9 @@ fn history(problem: &Problem, runs: &[Told], recommended: &[Option<Recommendatio
         best = best.min(misfit);
         let missing = vec![f64::NAN; problem.misfit.targets().len()];
         let responses = run.responses.clone().unwrap_or(missing);
-        let (point, failure) = (run.point.clone(), run.failure.clone());
+        let (point, failure, validity) = (run.point.clone(), run.failure.clone(), run.validity.clone());
         let recommended = recommended[i].as_ref().map_or(f64::NAN, |own| own.misfit);
-        Line { evaluation: i + 1, coarse, point, responses, misfit, best, recommended, failure }
+        Line { evaluation: i + 1, coarse, point, responses, misfit, best, recommended, failure, validity }
     };
     runs.iter().enumerate().map(line).collect()
 }

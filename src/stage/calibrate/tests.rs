@@ -51,6 +51,11 @@ impl Laboratory {
         let (responses, failure) = match (self.model)(lab, &point, number) {
             Ok(responses) => (responses, String::new()),
             Err(failure) if failure == "crash" => return Outcome::Failed(failure),
+            Err(check) if check == "rotation" => {
+                let responses = Responses::of(&[("UCS", 1e6, "Pa"), ("E", 1e9, "Pa")]);
+                let run = Run { validity: Some(check), ..Run::plain("", responses) };
+                return Outcome::Done(self.put(run.to_artifact()));
+            }
             Err(failure) => (Vec::new(), failure),
         };
         Outcome::Done(self.put(Run::plain(&failure, Responses::of(&responses)).to_artifact()))
@@ -272,6 +277,42 @@ fn failed_simulations_are_recorded_and_when_all_fail_it_says_so() {
     let all = Laboratory::new(usize::MAX, |_, _, _| Err("no peak".to_owned()));
     let Step::Finish(task) = stage(COLD).next(&known(&context, &all)).unwrap() else { panic!("it can go on") };
     assert_eq!(finished(&all, &task).unwrap_err(), "all 24 simulations failed; the first: no peak");
+}
+
+/// A run that is not valid is an evaluation: it costs one, and is no value to fit.
+#[test]
+fn runs_that_are_not_valid_cost_an_evaluation_and_are_said() {
+    let turned: Model = |lab, point, number| match number % 6 {
+        2 => Err("rotation".to_owned()),
+        _ => scattering(lab, point, number),
+    };
+    let with = |invalid: &str| {
+        let (context, laboratory) = (context(), Laboratory::new(usize::MAX, turned));
+        let step = stage(&format!("{invalid}\n{COLD}")).next(&known(&context, &laboratory));
+        step.map(|step| match step {
+            Step::Finish(task) => finished(&laboratory, &task).unwrap(),
+            Step::Ask(..) => panic!("it can go on"),
+        })
+    };
+    let column =
+        |artifact: &Artifact, table: &str, name: &str| artifact.table(table).unwrap().texts(name).unwrap().to_vec();
+    let left = with("").unwrap();
+    let solution = left.table("solution").unwrap();
+    assert_eq!(solution.shown("failed").unwrap().0, [4.0, 4.0]);
+    assert_eq!(solution.shown("evaluations").unwrap().0, [24.0, 24.0]);
+    assert!((solution.shown("sigma_c").unwrap().0[0] / 19.0 - 1.0).abs() < 0.05);
+    let failures = column(&left, "history", "failure");
+    assert_eq!(failures.iter().filter(|why| *why == "not valid: rotation").count(), 8);
+    let notes = column(&left, "notes", "note");
+    let wanted = "set 1: 4 of 24 evaluations gave no result: not valid: rotation (4)";
+    assert!(notes.iter().any(|note| note == wanted), "{notes:?}");
+
+    let kept = with("invalid = 'keep'").unwrap();
+    assert_eq!(kept.table("solution").unwrap().shown("failed").unwrap().0, [0.0, 0.0]);
+    assert_eq!(column(&kept, "history", "validity").iter().filter(|why| *why == "rotation").count(), 8);
+    let notes = column(&kept, "notes", "note");
+    assert!(notes.iter().any(|note| note.starts_with("set 1: 4 of 24 evaluations rest on runs")), "{notes:?}");
+    assert_eq!(with("invalid = 'refuse'").err().unwrap().message, "a run is not valid: rotation");
 }
 
 #[test]

@@ -207,6 +207,7 @@ impl Kind for Command {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
+    const FAR: Option<&'static str> = Some("command");
 }
 
 impl Command {

@@ -2,6 +2,7 @@
 
 use super::plot::{Bars, Direction, Fit};
 use crate::artifact::{Accepts, ArtifactKind as Of};
+use crate::stage::invalid::Invalid;
 use crate::unit::Length;
 use figure::palette::Map;
 use figure::{DOUBLE, SINGLE};
@@ -64,6 +65,10 @@ pub struct Figure {
     pub overlay: Option<String>,
     /// Number of bins of a `histogram`; chosen from the scatter when not given.
     pub bins: Option<usize>,
+    /// What becomes of runs that are not valid: left out of what draws the runs of a table, drawn where the picture is of
+    /// one run, when nothing is said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub invalid: Option<Invalid>,
     /// `single` (90 mm), `double` (190 mm) or a length.
     #[serde(default)]
     pub width: Width,
@@ -205,6 +210,10 @@ pub enum Show {
     Box,
     /// A column over two others as a matrix of colours and numbers.
     HeatMap,
+    /// Stones with their clumps.
+    Stones,
+    /// Zingg's diagram of stones.
+    Zingg,
     /// The stages that lead to those named, and what flows between them.
     Dag,
 }
@@ -236,6 +245,7 @@ impl Show {
             Show::StressStrain => needs(&[Of::RUN], &[], [0, 0], [0, 0]),
             Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0]),
             Show::Specimen => needs(&[Of::SPECIMEN], &[], [0, 0], [0, 0]),
+            Show::Stones | Show::Zingg => needs(&[Of::SHAPES], &[], [0, 0], [0, 0]),
             Show::MainEffects | Show::Range => needs(&[Of::RANGE], &[Of::RANGE], [1, 1], [0, MANY]),
             Show::Points => needs(POINTS, &[], [0, 0], [0, 3]),
             Show::Agreement => needs(RESULTS, RESULTS, [0, MANY], [0, MANY]),

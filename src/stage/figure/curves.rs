@@ -3,6 +3,8 @@
 use super::super::rows::Rows;
 use super::super::{Input, Known, Source, StageError};
 use super::{Figure, Params};
+use crate::artifact::results::Results;
+use crate::artifact::validity::of_runs;
 use crate::artifact::{Artifact, ArtifactKind, Values};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -13,6 +15,8 @@ pub(super) struct Runs {
     pub inputs: Vec<(Cow<'static, str>, Source)>,
     /// Number and name of the group, input by input; empty without groups.
     pub groups: Vec<(usize, String)>,
+    /// What is said of runs that gave no result or are not valid.
+    pub notes: Vec<String>,
 }
 
 /// More curves than this are a blot.
@@ -27,7 +31,12 @@ pub(super) fn runs(figure: &Figure, known: &Known) -> Result<Runs, StageError> {
     for input in known.port("of") {
         let artifact = known.load(input)?;
         let stage = figure.names.get(input.stage).cloned().unwrap_or_else(|| input.stage.replace('_', " "));
-        if artifact.kind == ArtifactKind::RUN.name() {
+        if artifact.is(ArtifactKind::RUN) {
+            let (drawn, said) = figure.choice().of_run(&artifact, &stage)?;
+            found.notes.extend(said);
+            if !drawn {
+                continue;
+            }
             found.inputs.push(("of".into(), Source::Content(input.content)));
             if several {
                 found.groups.push((number(&mut keys, &stage), stage));
@@ -35,6 +44,10 @@ pub(super) fn runs(figure: &Figure, known: &Known) -> Result<Runs, StageError> {
             continue;
         }
         add_rows(figure, known, input, &artifact, (&stage, several), (&mut found, &mut keys))?;
+    }
+    if found.inputs.is_empty() {
+        let message = format!("no run is left to draw: {}", found.notes.join("; "));
+        return Err(StageError::new(message).hint("invalid = \"keep\" draws runs that are not valid"));
     }
     if found.inputs.len() > MOST {
         let message = format!("{} curves cannot be told apart in one figure", found.inputs.len());
@@ -60,15 +73,16 @@ fn add_rows(
     (found, keys): (&mut Runs, &mut Vec<String>),
 ) -> Result<(), StageError> {
     let rows = Rows::of(artifact, known.context)?;
-    let table = artifact.table("runs");
-    let failed = |row: usize| match table.and_then(|t| t.column("failure")).map(|c| &c.values) {
-        Some(Values::Texts(texts)) => texts.get(row).is_some_and(|text| !text.is_empty()),
-        Some(_) | None => false,
-    };
+    let table = Results::table(artifact)?;
+    let judged = figure.choice().judge(table)?;
+    let whose = if several { format!("{stage}: ") } else { String::new() };
+    found.notes.extend(of_runs(table, judged.verdict()).into_iter().map(|said| format!("{whose}{said}")));
+    let failures = Results::failures(table);
+    let failed = |row: usize| failures.get(row).is_some_and(|why| !why.is_empty()) || judged.leaves_out(row);
     let label = |row: usize| match &figure.by {
         None => Ok(stage.to_owned()),
         Some(by) => {
-            let column = table.and_then(|table| table.column(by));
+            let column = table.column(by);
             let column = column.ok_or_else(|| StageError::new(format!("the runs have no column `{by}`")))?;
             Ok::<String, StageError>(match &column.values {
                 Values::Texts(texts) => texts[row].clone(),

@@ -134,7 +134,7 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
             if !ours.has(&response.key) || !theirs.has(&response.key) {
                 continue;
             }
-            let (x, y, rows) = matched(ours, theirs, response, &params.factors)?;
+            let (x, y, rows) = matched(ours, theirs, response, params)?;
             if !x.is_empty() {
                 let name = params.series.get(i).cloned().unwrap_or_default();
                 clouds.push(Cloud { name, x, y, rows });
@@ -167,8 +167,9 @@ type Matched = (Vec<f64>, Vec<f64>, Vec<String>);
 
 /// Pairs of values (theirs, ours) of rows with equal factors, replicate by replicate, and the row number in theirs.
 /// Levels count as equal within a thousandth, because published ones are rounded.
-fn matched(ours: Rows<'_>, theirs: Rows<'_>, response: &Label, keys: &[Label]) -> Result<Matched, StageError> {
-    let shared = keys.iter().filter(|label| ours.has(&label.key) && theirs.has(&label.key));
+fn matched(ours: Rows<'_>, theirs: Rows<'_>, response: &Label, params: &Params) -> Result<Matched, StageError> {
+    let (judged, other) = (params.invalid.judge(ours.table)?, params.invalid.judge(theirs.table)?);
+    let shared = params.factors.iter().filter(|label| ours.has(&label.key) && theirs.has(&label.key));
     let factors: Vec<&Label> = shared.collect();
     if factors.is_empty() {
         return Err(StageError::new("the two tables share no factor by which rows could be matched"));
@@ -177,7 +178,8 @@ fn matched(ours: Rows<'_>, theirs: Rows<'_>, response: &Label, keys: &[Label]) -
     let (y, x) = (ours.reals(&response.key, &response.unit)?, theirs.reals(&response.key, &response.unit)?);
     let mut out: Matched = (Vec::new(), Vec::new(), Vec::new());
     for (i, j) in pair_rows(&read(ours)?, &read(theirs)?, 1e-3) {
-        if x[j].is_finite() && y[i].is_finite() {
+        let counts = !judged.leaves_out(i) && !other.leaves_out(j);
+        if counts && x[j].is_finite() && y[i].is_finite() {
             out.0.push(x[j]);
             out.1.push(y[i]);
             out.2.push((j + 1).to_string());

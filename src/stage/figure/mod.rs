@@ -7,7 +7,8 @@
 //! |---|---|---|
 //! | `stress-strain` | runs | `curve`, `cracks` |
 //! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces`, `snapshots` |
-//! | `specimen` | a specimen | its arrays |
+//! | `specimen` | a specimen | its arrays; one in space is shaded, and cut open where it holds clumps |
+//! | `stones`, `zingg` | shapes | their arrays; `shapes` |
 //! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
 //! | `points` | a design or results | `design` or `runs`: two or three factors |
 //! | `agreement` | results (`compare`: as many results) | `runs`; rows are matched by their factors |
@@ -34,8 +35,11 @@ mod plot;
 mod run;
 mod solution;
 mod source;
+mod space;
+mod validity;
 
 use super::beside::Beside;
+use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::presentation::Picture as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
@@ -105,6 +109,12 @@ struct Params {
     /// The stages of a graph.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     outline: Vec<Outline>,
+    /// What becomes of runs that are not valid.
+    #[serde(default, skip_serializing_if = "Invalid::is_default")]
+    invalid: Invalid,
+    /// What is said of the runs that curves are drawn of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
 }
 
 impl Stage for Figure {
@@ -147,6 +157,9 @@ impl Stage for Figure {
             found.push(Complaint::new("points", format!("{points} points is no size of text")).hint("4 to 30"));
         }
         found.extend(Plot::of(self).check(self.show, &|key| self.without_effect(key)));
+        if self.invalid == Some(Invalid::LeaveOut) && !self.show.draws_runs() {
+            found.push(self.without_effect("invalid"));
+        }
         if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
             found.push(self.without_effect("band"));
         }
@@ -167,6 +180,8 @@ impl Stage for Figure {
             plot,
             labels,
             groups: runs.groups,
+            notes: runs.notes,
+            invalid: if self.show == Show::Dag { Invalid::default() } else { self.choice() },
             show: self.show,
             width: self.width.millimetres(),
             points: self.points.unwrap_or(8.0),
@@ -306,8 +321,8 @@ impl Kind for Figure {
     /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
-    /// one another.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 10, run: draw }];
+    /// one another. 11: runs that are not valid are left out or marked, and it is said below the picture.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 11, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -315,10 +330,10 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
     let sources = source::Sources::new(job);
     let picture: Box<dyn Picture> = match params.show {
         Show::StressStrain => Box::new(run::stress_strain(&params, &sources)?),
-        Show::Cracks => Box::new(run::cracks(&sources)?),
+        Show::Cracks => run::cracks(&sources)?,
         Show::CrackRose => Box::new(run::rose(&sources)?),
         Show::ForceChains => Box::new(run::chains(&sources)?),
-        Show::Specimen => Box::new(run::specimen(&sources)?),
+        Show::Specimen => run::specimen(&sources)?,
         Show::MainEffects => Box::new(design::main_effects(&params, &sources)?),
         Show::Range => Box::new(design::range(&params, &sources)?),
         Show::Points => Box::new(design::points(&params, &sources)?),
@@ -338,18 +353,21 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Histogram => Box::new(own::histogram(&params, &sources)?),
         Show::Box => Box::new(own::boxes(&params, &sources)?),
         Show::HeatMap => Box::new(own::heat_map(&params, &sources)?),
+        Show::Stones => Box::new(space::stones(&sources)?),
+        Show::Zingg => Box::new(space::zingg(&sources)?),
         Show::Dag => Box::new(flow::dag(&params.outline)),
     };
     let style = Style { points: params.points, map: params.colors, ..Style::wide(params.width) };
-    picture_artifact(&*picture, &style)
+    picture_artifact(&*picture, &style, &validity::sentences(&params, &sources)?)
 }
 
 /// Resolution of the PNG in dots per inch.
 const DPI: f64 = 300.0;
 
 /// A picture as it is stored: the three files, the words for those who cannot see it, and its numbers.
-fn picture_artifact(picture: &dyn Picture, style: &Style) -> Result<Artifact, Failure> {
-    let scene = picture.scene(style);
+fn picture_artifact(picture: &dyn Picture, style: &Style, below: &[String]) -> Result<Artifact, Failure> {
+    let mut scene = picture.scene(style);
+    scene.footnotes(below, style);
     let png = figure::png::png(&scene, DPI).map_err(|e| StageError::new(e.to_string()))?;
     let stored = Stored {
         svg: figure::svg::svg(&scene),

@@ -1,5 +1,6 @@
 //! Plots of a user's own columns from any table of a result.
 
+use super::super::invalid::Invalid;
 use super::super::units::field_unit;
 use super::super::{Failure, Job, StageError, data};
 use super::plot::{Bars, Direction, Fit, Labels, Plot};
@@ -83,7 +84,8 @@ fn numbers(column: &Column) -> (Vec<f64>, Vec<String>) {
 }
 
 /// The rows of a table in which the given columns have the given values.
-fn chosen_rows(table: &Table, plot: &Plot) -> Result<Vec<usize>, StageError> {
+fn chosen_rows(table: &Table, plot: &Plot, invalid: Invalid) -> Result<Vec<usize>, StageError> {
+    let judged = invalid.judge(table)?;
     let mut rows: Vec<usize> = (0..table.rows()).collect();
     for (name, wanted) in &plot.only {
         let column = table.column(name).ok_or_else(|| StageError::new(format!("the table has no column `{name}`")))?;
@@ -96,6 +98,10 @@ fn chosen_rows(table: &Table, plot: &Plot) -> Result<Vec<usize>, StageError> {
     }
     if rows.is_empty() {
         return Err(StageError::new("no row has the values that `where` asks for"));
+    }
+    rows.retain(|&row| !judged.leaves_out(row));
+    if let (true, Some(said)) = (rows.is_empty(), judged.said()) {
+        return Err(StageError::new(format!("no run is left to draw: {said}")).hint("invalid = \"keep\" draws them"));
     }
     Ok(rows)
 }
@@ -119,7 +125,7 @@ impl<'a> Drawn<'a> {
             StageError::new(format!("the artifact `{}` holds no table `{name}`", artifact.kind))
                 .hint(format!("it holds {}", there.join(", ")))
         })?;
-        Ok(Self { plot, labels: &params.labels, table, rows: chosen_rows(table, plot)? })
+        Ok(Self { plot, labels: &params.labels, table, rows: chosen_rows(table, plot, params.invalid)? })
     }
 
     fn label(&self, key: &str) -> Result<&'a Label, StageError> {

@@ -1,11 +1,12 @@
 //! Figures of a specimen and of one run on it: curves, cracks, forces, particles.
 
 use super::super::StageError;
-use super::Params;
 use super::source::Sources;
+use super::{Params, space};
 use crate::artifact::run::{CrackMode, Cracks as StoredCracks, Curve as Stored, Run};
 use crate::artifact::specimen::Specimen as StoredSpecimen;
 use crate::unit::Conversion;
+use figure::Figure as Picture;
 use figure::chains::{Chains, Link};
 use figure::cracks::{Crack, Cracks, Moment};
 use figure::curve::{Curve, StressStrain};
@@ -14,7 +15,7 @@ use figure::specimen::{Outline, Specimen};
 use math::elementary::atan2;
 
 /// Metres to millimetres.
-const MM: f64 = 1e3;
+pub(super) const MM: f64 = 1e3;
 
 pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<StressStrain, StageError> {
     let mut curves = Vec::new();
@@ -53,7 +54,7 @@ fn response(run: &Run, name: &str, unit: &str) -> Option<f64> {
 }
 
 /// The modes that occur, in the order in which they are drawn, and the index of each crack's mode among them.
-fn modes(cracks: &StoredCracks) -> (Vec<CrackMode>, Vec<usize>) {
+pub(super) fn modes(cracks: &StoredCracks) -> (Vec<CrackMode>, Vec<usize>) {
     let found: Vec<CrackMode> = CrackMode::ALL.into_iter().filter(|mode| cracks.mode.contains(mode)).collect();
     let index = cracks.mode.iter().map(|own| found.iter().position(|mode| mode == own).unwrap_or(0)).collect();
     (found, index)
@@ -88,19 +89,14 @@ fn outlines(specimen: &StoredSpecimen) -> Vec<Vec<[f64; 2]>> {
     corners.chunk_by(|a, b| a.0 == b.0).map(polygon).collect()
 }
 
-pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
+pub(super) fn specimen(sources: &Sources) -> Result<Box<dyn Picture>, StageError> {
     let stored = StoredSpecimen::from_artifact(sources.first()?.0)?;
-    if stored.centres.ncols() != 2 {
-        return Err(
-            StageError::new("a specimen is drawn in the plane, and this one is in space").hint("export it as VTU")
-        );
+    if stored.centres.ncols() == 3 {
+        return Ok(Box::new(space::solid(&stored)));
     }
-    // The groups that occur, in the order of their numbers.
-    let used: Vec<i64> = (0..stored.groups.len() as i64).filter(|number| stored.group_of.contains(number)).collect();
-    let group = stored.group_of.iter().map(|own| used.iter().position(|number| number == own).unwrap_or(0)).collect();
-    let groups = used.iter().map(|&number| stored.groups[number as usize].clone()).collect();
+    let (group, groups) = groups(&stored);
     let (low, high) = domain(&stored);
-    Ok(Specimen {
+    Ok(Box::new(Specimen {
         outline: outline(&stored),
         low,
         high,
@@ -109,7 +105,14 @@ pub(super) fn specimen(sources: &Sources) -> Result<Specimen, StageError> {
         group,
         groups,
         outlines: outlines(&stored),
-    })
+    }))
+}
+
+/// The group of each ball among those that occur, and their names, in the order of their numbers.
+pub(super) fn groups(stored: &StoredSpecimen) -> (Vec<usize>, Vec<String>) {
+    let used: Vec<i64> = (0..stored.groups.len() as i64).filter(|number| stored.group_of.contains(number)).collect();
+    let group = stored.group_of.iter().map(|own| used.iter().position(|number| number == own).unwrap_or(0)).collect();
+    (group, used.iter().map(|&number| stored.groups[number as usize].clone()).collect())
 }
 
 /// What cracks and forces are drawn in.
@@ -157,9 +160,12 @@ fn crack_list(run: &Run) -> Result<CrackList, StageError> {
     Ok((names, (0..length.len()).map(|i| (cracks.axial_strain[i], crack(i))).collect()))
 }
 
-/// Half, four fifths and all of the peak stress, and the end of the test.
-pub(super) fn cracks(sources: &Sources) -> Result<Cracks, StageError> {
+/// In the plane at half, four fifths and all of the peak stress and at the end of the test; in space at its end.
+pub(super) fn cracks(sources: &Sources) -> Result<Box<dyn Picture>, StageError> {
     let run = Run::from_artifact(sources.first()?.0)?;
+    if run.cracks.as_ref().is_some_and(|cracks| cracks.position.ncols() == 3 && !cracks.mode.is_empty()) {
+        return Ok(Box::new(space::cracks(&run, sources)?));
+    }
     let (names, list) = crack_list(&run)?;
     let Stored { axial_strain: axial, stress, .. } = curve_of(&run)?;
     let pairs = stress.iter().copied().enumerate().filter(|(_, s)| s.is_finite());
@@ -180,7 +186,7 @@ pub(super) fn cracks(sources: &Sources) -> Result<Cracks, StageError> {
     let points: Vec<[f64; 2]> = list.iter().map(|(_, c)| c.at).collect();
     let Ground { outline, low, high, polygons } = ground(sources, &points)?;
     let moments = moments.into_iter().map(|(title, strain)| Moment { title, cracks: until(strain) }).collect();
-    Ok(Cracks { outline, low, high, modes: names, moments, outlines: polygons })
+    Ok(Box::new(Cracks { outline, low, high, modes: names, moments, outlines: polygons }))
 }
 
 pub(super) fn rose(sources: &Sources) -> Result<Rose, StageError> {

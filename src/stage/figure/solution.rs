@@ -79,15 +79,20 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
 
 /// Values of the runs, and the target of each set and response.
 pub(super) fn verification(params: &Params, sources: &Sources) -> Result<Verification, StageError> {
-    let Stored { summary, runs } = Stored::from_artifact(sources.first()?.0)?;
+    let Stored { summary, runs, not_valid } = Stored::from_artifact(sources.first()?.0)?;
     let of_run = VerifiedRuns::from_table(&runs)?.set;
     let sets = distinct(&summary.set);
     let mut checks = Vec::new();
     let both = |label: &&Label| runs.column(&label.key).is_some() && summary.response.contains(&label.key);
     for response in params.responses.iter().filter(both) {
         let values = runs.numbers(&response.key, &response.unit)?;
+        let counts = |row: &usize| {
+            let left_out = not_valid.as_ref().is_some_and(|list| list.leaves_out(&response.key, *row));
+            values[*row].is_finite() && !left_out
+        };
         let of = |set: &i64| -> Vec<f64> {
-            pick(&values, &rows_of(&of_run, *set)).into_iter().filter(|value| value.is_finite()).collect()
+            let rows: Vec<usize> = rows_of(&of_run, *set).into_iter().filter(counts).collect();
+            pick(&values, &rows)
         };
         let mut targets = Vec::with_capacity(sets.len());
         for set in &sets {

@@ -1,4 +1,5 @@
 use super::*;
+
 use crate::artifact::calibration::{
     Alternatives, Evaluations, Prediction, Solution, Solved, Summary, Verification, VerifiedRuns,
 };
@@ -14,6 +15,8 @@ use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use ndarray::{Array2, Array3};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+
+mod space;
 
 fn words<const N: usize>(values: [&str; N]) -> Vec<String> {
     values.map(String::from).to_vec()
@@ -40,7 +43,7 @@ fn range_analysis() -> Artifact {
     };
     let level = Numbered(vec![vec![10.0, 0.5, 1.0], vec![20.0, 1.0, 2.0], vec![f64::NAN, 1.5, 3.0]]);
     let levels = LevelValues { factor, unit: words(["GPa", "", ""]), level: Levels::Numbers(level) };
-    Range { range, levels, notes: Remarks::default() }.to_artifact()
+    Range { range, levels, notes: Remarks::default(), not_valid: None }.to_artifact()
 }
 
 fn results(shift: f64) -> Artifact {
@@ -133,6 +136,7 @@ fn surfaces() -> Artifact {
         high: vec![22.0, 1.6],
     };
     let surfaces = Surfaces {
+        not_valid: None,
         coefficients,
         coded: Coefficients::default(),
         fit: Fits::default(),
@@ -192,7 +196,7 @@ fn screening() -> Artifact {
         critical: vec![f64::NAN],
     };
     let (fit, notes) = (Fits::default(), Remarks::default());
-    Screening { effects, limits, fit, notes, residuals: residuals() }.to_artifact()
+    Screening { effects, limits, fit, notes, residuals: residuals(), not_valid: None }.to_artifact()
 }
 
 fn anova() -> Artifact {
@@ -209,7 +213,8 @@ fn anova() -> Artifact {
         omega2: vec![f64::NAN; 4],
         ..Variances::default()
     };
-    Anova { anova, fit: Fits::default(), notes: Remarks::default(), residuals: residuals() }.to_artifact()
+    Anova { anova, fit: Fits::default(), notes: Remarks::default(), residuals: residuals(), not_valid: None }
+        .to_artifact()
 }
 
 fn solution() -> Artifact {
@@ -259,7 +264,7 @@ fn verification() -> Artifact {
         target_inside: words(["unknown", "unknown"]),
         n: vec![2, 1],
     };
-    Verification { summary, runs: runs.to_table().with_after("specimen", ucs) }.to_artifact()
+    Verification { summary, runs: runs.to_table().with_after("specimen", ucs), not_valid: None }.to_artifact()
 }
 
 fn context() -> Context {

@@ -10,6 +10,7 @@ use super::super::notes::Notes;
 use super::super::{Failure, Job, StageError};
 use super::origin::Beside;
 use crate::artifact::groups::{GroupFits, GroupResiduals, Groups};
+use crate::artifact::validity::NotValid;
 use crate::artifact::{Artifact, Column, Table, Values};
 use math::distribution::t_for_coverage;
 use serde::{Deserialize, Serialize};
@@ -55,9 +56,10 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     let by = params.by.iter().map(|name| by_column(table, name)).collect::<Result<Vec<By>, StageError>>()?;
     let columns: Vec<&[f64]> = by.iter().map(|b| b.values.as_slice()).collect();
     let all = groups(&columns);
-    let mut found = Vec::new();
+    let (mut found, mut not_valid) = (Vec::new(), NotValid::default());
     for fitting in &params.fittings {
         let sample = fitting.columns.sample(table)?;
+        not_valid.append(fitting.columns.not_valid(table)?);
         for group in &all {
             let fit = one(&sample.with_rows(&group.rows), fitting, &params);
             found.push(Found { response: &fitting.response, group: group.clone(), fit });
@@ -66,7 +68,8 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     let stored = Groups {
         groups: group_table(&found, &by, &params),
         residuals: residual_table(&found, &by),
-        notes: notes(&found, &by).table(),
+        notes: notes(&found, &by, &not_valid).table(),
+        not_valid: not_valid.some(),
     };
     Ok(stored.to_artifact())
 }
@@ -187,8 +190,8 @@ fn residual_table(found: &[Found], by: &[By]) -> Table {
     with_key(residuals.to_table(), by, &all, |(f, _)| &f.group)
 }
 
-fn notes(found: &[Found], by: &[By]) -> Notes {
-    let mut notes = Notes::default();
+fn notes<'a>(found: &[Found], by: &[By], not_valid: &'a NotValid) -> Notes<'a> {
+    let mut notes = Notes::of(not_valid);
     let failed: Vec<&Found> = found.iter().filter(|f| f.fit.is_err()).collect();
     for found in &failed {
         let why = found.fit.as_ref().err().cloned().unwrap_or_default();
@@ -198,7 +201,10 @@ fn notes(found: &[Found], by: &[By]) -> Notes {
         let missing = found.fit.as_ref().map_or(0, |(fit, _)| fit.fit.missing);
         if missing > 0 {
             let group = key_texts(by, &found.group).join(", ");
-            notes.add(found.response, format!("{group}: {missing} of {} runs have no value", found.group.rows.len()));
+            notes.add(
+                found.response,
+                format!("{group}: {missing} of {} runs have no value or are left out", found.group.rows.len()),
+            );
         }
     }
     notes

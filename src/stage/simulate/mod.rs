@@ -135,6 +135,7 @@ impl Kind for Simulate {
     /// 2: the same numbers in another layout: states and their centres stand beside the curve, positions and normals are
     /// `position_x`, `normal_x`, ….
     const WORKS: &'static [Work] = &[Work { name: "simulate", version: 3, run: simulate }, GATHER];
+    const FAR: Option<&'static str> = Some("simulate");
 }
 
 /// Looks at the run between two reports of progress.

@@ -44,7 +44,7 @@ fn responses<S: Space>(record: &TestRecord<S>, kind: TestKind) -> Vec<(&'static 
 /// Warnings on the rate of loading, and why the run is not valid.
 fn warnings<S: Space>(record: &TestRecord<S>) -> Vec<String> {
     let rate = record.judgement.warnings().into_iter().map(|warning| warning.to_string());
-    rate.chain(record.invalid().map(|check| format!("not valid: {check}"))).collect()
+    rate.chain(record.invalid().map(|check| format!("{}{check}", Run::NOT_VALID))).collect()
 }
 
 /// One value of every item.

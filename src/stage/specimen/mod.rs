@@ -78,6 +78,7 @@ impl Kind for Specimen {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SPECIMEN];
     const CLASS: Class = Class::Simulation;
     const WORKS: &'static [Work] = &[Work { name: "specimen", version: 2, run: make }];
+    const FAR: Option<&'static str> = Some("specimen");
 }
 
 fn make(job: &Job) -> Result<Artifact, Failure> {

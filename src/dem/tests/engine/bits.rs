@@ -73,6 +73,20 @@ fn a_test_to_failure_in_space_has_the_same_bits_everywhere() {
     same_everywhere(&block::<D3>(7, 10, 2.0), 900);
 }
 
+/// The model with flat joints in place of the parallel bonds.
+fn with_joints<S: Space>(mut model: Model<S>) -> Model<S> {
+    for other in [GRAIN, STONE] {
+        model.contacts.set(GRAIN, other, Interaction { bond: jointed(), ..bonded() });
+    }
+    model
+}
+
+#[test]
+fn flat_joints_have_the_same_bits_everywhere() {
+    same_everywhere(&with_joints(block::<D2>(20, 28, 2.0)), 2200);
+    same_everywhere(&with_joints(block::<D3>(7, 10, 2.0)), 900);
+}
+
 #[test]
 fn a_servo_wall_has_the_same_bits_everywhere() {
     let mut model = block::<D2>(20, 20, 1.0);

@@ -59,6 +59,16 @@ pub(crate) fn bonded() -> Interaction {
     Interaction { linear: Linear::modulus(20e9, 2.5, 0.5), bond: Bond::Parallel(bond) }
 }
 
+/// The same with flat joints of four elements, a fifth of them slit and a fifth gapped.
+pub(crate) fn jointed() -> Bond {
+    Bond::Flat(FlatJoint {
+        friction_angle: 0.3,
+        shares: Shares { gapped: 0.2, slit: 0.2, gap: 2e-7 },
+        scatter: Scatter::both(0.2),
+        ..FlatJoint::new(20e9, 2.5, 20e6, 30e6)
+    })
+}
+
 /// A table of mortar, stone (rigid clumps) and smooth platens.
 pub(crate) fn table() -> ContactTable {
     let smooth = Interaction::unbonded(Linear::modulus(20e9, 2.5, 0.0));

@@ -32,6 +32,8 @@ fn cases() -> Vec<Case> {
         row("3D: test to failure, parallel bond", crushed(block::<D3>(7, 10, 2.0), bonded().bond, 900)),
         row("2D: test to failure, contact bond", crushed(block::<D2>(20, 28, 2.0), point, 2200)),
         row("3D: test to failure, contact bond", crushed(block::<D3>(7, 10, 2.0), point, 900)),
+        row("2D: test to failure, flat joint", crushed(block::<D2>(20, 28, 2.0), jointed(), 2200)),
+        row("3D: test to failure, flat joint", crushed(block::<D3>(7, 10, 2.0), jointed(), 900)),
         row("2D: disc that falls, slips and bounces", bouncing()),
     ]
 }

@@ -25,6 +25,8 @@ fn families() -> Vec<Family> {
         crate::stiffness::family(),
         crate::incremental::family(),
         crate::bond::family(),
+        crate::flat_joint::family(),
+        crate::smooth_joint::family(),
         crate::strength::family(),
         crate::beam::family(),
         crate::lattice::family(),

@@ -16,7 +16,7 @@ const MASS: f64 = 1e24;
 
 pub(crate) fn family() -> Family {
     static CASES: LazyLock<Vec<Case>> = LazyLock::new(cases);
-    let about = "Two bonded balls of radius 0.5 m, k̄_n 1e9 and k̄_s 5e8 Pa/m, loaded by a displacement and a rotation, then turned once about their middle in 20,000 steps: size after over size before.";
+    let about = "Two balls of radius 0.5 m, bonded in parallel or by a flat joint, k̄_n 1e9 and k̄_s 5e8 Pa/m, loaded by a displacement and a rotation, then turned once about their middle in 20,000 steps: size after over size before.";
     Family { title: "A rigidly turned pair", about, cases: &CASES }
 }
 
@@ -27,15 +27,22 @@ fn a_rigid_turn_keeps_forces_and_moments() {
 
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    turned::<D2>(&mut cases, "about z", [0.0, 0.0, 1.0]);
-    turned::<D3>(&mut cases, "about z", [0.0, 0.0, 1.0]);
-    turned::<D3>(&mut cases, "about its own axis", [1.0, 0.0, 0.0]);
-    turned::<D3>(&mut cases, "about an oblique axis", [0.48, 0.6, 0.64]);
+    for (law, bond) in [("", cement()), ("flat joint, ", joint())] {
+        turned::<D2>(&mut cases, bond, &format!("{law}about z"), [0.0, 0.0, 1.0]);
+        turned::<D3>(&mut cases, bond, &format!("{law}about z"), [0.0, 0.0, 1.0]);
+        turned::<D3>(&mut cases, bond, &format!("{law}about its own axis"), [1.0, 0.0, 0.0]);
+        turned::<D3>(&mut cases, bond, &format!("{law}about an oblique axis"), [0.48, 0.6, 0.64]);
+    }
     cases
 }
 
-fn pair<S: Space>() -> Engine<S> {
-    let bond = ParallelBond {
+fn joint() -> Bond {
+    let stiffness = BondStiffness::PerArea { kn: 1e9, ks: 5e8 };
+    Bond::Flat(FlatJoint { stiffness, ..FlatJoint::new(1.0, 1.0, f64::INFINITY, f64::INFINITY) })
+}
+
+fn cement() -> Bond {
+    Bond::Parallel(ParallelBond {
         radius_multiplier: 1.0,
         stiffness: BondStiffness::PerArea { kn: 1e9, ks: 5e8 },
         tensile_strength: f64::INFINITY,
@@ -43,13 +50,16 @@ fn pair<S: Space>() -> Engine<S> {
         friction_angle: 0.0,
         moment_factor: 1.0,
         scatter: Scatter::default(),
-    };
+    })
+}
+
+fn pair<S: Space>(bond: Bond) -> Engine<S> {
     let ball = |x: f64| {
         let mut ball = Particle::<S>::ball(along::<S>(0, x), 0.5, 1.0, GRAIN);
         (ball.mass, ball.inertia) = (MASS, MASS);
         ball
     };
-    let law = Interaction { linear: Linear::direct(1e-9, 1e-9, 0.0), bond: Bond::Parallel(bond) };
+    let law = Interaction { linear: Linear::direct(1e-9, 1e-9, 0.0), bond };
     let settings = Settings { damping: 0.0, fixed_step: Some(STEP), ..Settings::default() };
     let contacts = ContactTable::new().with(GRAIN, GRAIN, law);
     let particles = vec![ball(-0.5), ball(0.5)];
@@ -69,8 +79,8 @@ fn sizes<S: Space>(engine: &Engine<S>) -> [f64; 4] {
     [normal.abs(), shear, bend, contact.twist.abs()]
 }
 
-fn turned<S: Space>(cases: &mut Vec<Case>, name: &str, axis: [f64; 3]) {
-    let mut engine = pair::<S>();
+fn turned<S: Space>(cases: &mut Vec<Case>, bond: Bond, name: &str, axis: [f64; 3]) {
+    let mut engine = pair::<S>(bond);
     // One step of loading moves the second ball away, aside and around.
     let vector = |x: [f64; 3]| Vector::<S>::build(|k| x[k]);
     let aside = if S::DIMENSION == 2 { 0.0 } else { 5e-5 };

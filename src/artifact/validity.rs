@@ -1,0 +1,302 @@
+//! Runs that gave no result, that are not valid, or that are to be read with caution: how many of how many, and why.
+//!
+//! The sentences are made here for everything that says them: the end of `flow run`, `flow show`, notes of the statistics,
+//! printed tables, figures and the report.
+
+use super::results::Results;
+use super::run::Run;
+use super::{Artifact, ArtifactKind, Field, Node, Table};
+
+crate::words! {
+    /// What a stage did with a run that is not valid.
+    pub enum Treated {
+        /// It was left out of the analysis.
+        LeftOut = "left out",
+        /// It was used like the others.
+        Kept = "kept",
+    }
+}
+
+crate::table! {
+    /// runs that are not valid, and what became of them
+    pub struct NotValid {
+        /// the response whose value it gave
+        pub response: Vec<String>, "";
+        /// row of the table of runs, from 1
+        pub row: Vec<i64>, "";
+        /// runs in that table
+        pub runs: Vec<i64>, "";
+        /// the checks that the run does not meet
+        pub reason: Vec<String>, "";
+        /// left out, or kept
+        pub treated: Vec<Treated>, "";
+    }
+}
+
+/// What is said of some runs of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// They gave no result.
+    NoResult,
+    /// They are not valid, whatever becomes of them.
+    NotValid,
+    /// They are not valid, and a stage treated them so.
+    Treated(Treated),
+    /// They are valid, and a check says that they should be looked at.
+    Caution,
+}
+
+impl Verdict {
+    fn words(self, one: bool) -> String {
+        let (is, was) = if one { ("is", "was") } else { ("are", "were") };
+        match self {
+            Self::NoResult => "gave no result".to_owned(),
+            Self::NotValid => format!("{is} not valid"),
+            Self::Treated(treated) => format!("{is} not valid and {was} {}", treated.word()),
+            Self::Caution => format!("{is} to be read with caution"),
+        }
+    }
+}
+
+/// How many runs of how many, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tally<'a> {
+    all: usize,
+    reasons: Vec<(&'a str, usize)>,
+}
+
+impl<'a> Tally<'a> {
+    /// Counts the reasons of `all` runs; an empty one is none. They stand in the order in which they are first met.
+    pub fn of(all: usize, found: impl IntoIterator<Item = &'a str>) -> Self {
+        let mut reasons: Vec<(&str, usize)> = Vec::new();
+        for why in found.into_iter().filter(|why| !why.is_empty()) {
+            match reasons.iter_mut().find(|(known, _)| *known == why) {
+                Some((_, count)) => *count += 1,
+                None => reasons.push((why, 1)),
+            }
+        }
+        Self { all, reasons }
+    }
+
+    /// Number of runs with a reason.
+    pub fn count(&self) -> usize {
+        self.reasons.iter().map(|(_, count)| count).sum()
+    }
+
+    /// `3 of 40 evaluations gave no result: not valid: rotation (3)`; nothing where none has a reason.
+    pub fn of_evaluations(&self, what: &str) -> Option<String> {
+        (self.count() > 0).then(|| format!("{} of {} evaluations {what}: {}", self.count(), self.all, self.why()))
+    }
+
+    fn why(&self) -> String {
+        self.reasons.iter().map(|(why, count)| format!("{why} ({count})")).collect::<Vec<_>>().join("; ")
+    }
+
+    /// `3 of 24 runs gave no result: no peak (2); escape (1)`; nothing where no run has a reason.
+    pub fn sentence(&self, verdict: Verdict) -> Option<String> {
+        let (count, all) = (self.count(), self.all);
+        let words = verdict.words(count == 1);
+        match (count, all) {
+            (0, _) => None,
+            (1, 1) => Some(format!("the only run {words}: {}", self.reasons[0].0)),
+            _ => Some(format!("{count} of {all} runs {words}: {}", self.why())),
+        }
+    }
+}
+
+impl NotValid {
+    /// Adds another list below this one.
+    pub fn append(&mut self, other: Self) {
+        self.response.extend(other.response);
+        self.row.extend(other.row);
+        self.runs.extend(other.runs);
+        self.reason.extend(other.reason);
+        self.treated.extend(other.treated);
+    }
+
+    /// Number of runs of a response that were left out.
+    pub fn left_out(&self, response: &str) -> usize {
+        let pairs = self.response.iter().zip(&self.treated);
+        pairs.filter(|(own, treated)| *own == response && **treated == Treated::LeftOut).count()
+    }
+
+    /// Whether the value that the run at this row, from 0, gave of a response was left out.
+    pub fn leaves_out(&self, response: &str, row: usize) -> bool {
+        let all = self.response.iter().zip(&self.row).zip(&self.treated);
+        all.into_iter()
+            .any(|((own, at), treated)| own == response && *at == row as i64 + 1 && *treated == Treated::LeftOut)
+    }
+
+    /// Itself, unless no run is not valid.
+    pub fn some(self) -> Option<Self> {
+        (!self.row.is_empty()).then_some(self)
+    }
+
+    /// One sentence per response, in the order of the list.
+    pub fn sentences(&self) -> Vec<(&str, String)> {
+        let mut found: Vec<(&str, String)> = Vec::new();
+        for (i, response) in self.response.iter().enumerate() {
+            if found.iter().any(|(known, _)| known == response) {
+                continue;
+            }
+            let own = (i..self.response.len()).filter(|&j| self.response[j] == *response);
+            let tally = Tally::of(self.runs[i] as usize, own.map(|j| self.reason[j].as_str()));
+            found.extend(tally.sentence(Verdict::Treated(self.treated[i])).map(|said| (response.as_str(), said)));
+        }
+        found
+    }
+
+    /// The sentences, those that are equal said once with all their responses in front.
+    pub fn said(&self) -> Vec<String> {
+        let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
+        for (response, said) in self.sentences() {
+            match groups.iter_mut().find(|(_, known)| *known == said) {
+                Some((responses, _)) => responses.push(response),
+                None => groups.push((vec![response], said)),
+            }
+        }
+        groups.into_iter().map(|(responses, said)| format!("{}: {said}", responses.join(", "))).collect()
+    }
+}
+
+/// What must be said of the runs that an artifact holds or was made from, wherever its numbers are read.
+pub fn said(artifact: &Artifact) -> Vec<String> {
+    let mut found = faults(artifact);
+    if artifact.is(ArtifactKind::RUN) && found.is_empty() {
+        let outcome = Run::outcome(artifact).ok().filter(|outcome| !outcome.cautions.is_empty());
+        found.extend(outcome.map(|outcome| format!("the run is to be read with caution: {}", outcome.cautions)));
+    } else if artifact.is(ArtifactKind::RESULTS) {
+        found.extend(Results::table(artifact).ok().and_then(cautions));
+    }
+    found
+}
+
+/// The part of it that nobody may miss who sees a number or a picture: runs without a result and runs that are not valid.
+pub fn faults(artifact: &Artifact) -> Vec<String> {
+    if artifact.is(ArtifactKind::RUN) {
+        return of_run(artifact).into_iter().collect();
+    }
+    let runs = [ArtifactKind::RESULTS, ArtifactKind::VERIFICATION].iter().any(|kind| artifact.is(*kind));
+    let runs = if runs { Results::table(artifact).ok() } else { None };
+    if artifact.is(ArtifactKind::RESULTS) {
+        return runs.map(|runs| of_runs(runs, Verdict::NotValid)).unwrap_or_default();
+    }
+    // A list of another version says nothing here; whoever shows the tables tells.
+    let list = <Option<NotValid> as Field>::take(&artifact.root, NOT_VALID, "").ok().flatten();
+    let failed = runs.and_then(|runs| failures(runs).sentence(Verdict::NoResult));
+    failed.into_iter().chain(list.iter().flat_map(NotValid::said)).collect()
+}
+
+/// Name of the list of runs that are not valid in artifacts that were made from runs.
+const NOT_VALID: &str = "not_valid";
+
+/// The runs of a table without a result, and those that are not valid, of which `verdict` is said.
+pub fn of_runs(runs: &Table, verdict: Verdict) -> Vec<String> {
+    let invalid = Results::invalid(runs);
+    let invalid = Tally::of(runs.rows(), invalid.iter().map(|(_, why)| *why)).sentence(verdict);
+    failures(runs).sentence(Verdict::NoResult).into_iter().chain(invalid).collect()
+}
+
+/// The valid runs of a table that should be looked at.
+fn cautions(runs: &Table) -> Option<String> {
+    let (invalid, failures) = (Results::invalid(runs), Results::failures(runs));
+    let worked = |row: usize| failures.get(row).is_none_or(String::is_empty);
+    let valid = |row: usize| worked(row) && invalid.iter().all(|(bad, _)| *bad != row);
+    let all = Results::cautions(runs).iter().enumerate().filter(|(row, _)| valid(*row));
+    Tally::of(runs.rows(), all.map(|(_, why)| why.as_str())).sentence(Verdict::Caution)
+}
+
+fn failures(runs: &Table) -> Tally<'_> {
+    Tally::of(runs.rows(), Results::failures(runs).iter().map(String::as_str))
+}
+
+/// What must be said of a single run.
+fn of_run(artifact: &Artifact) -> Option<String> {
+    let text = |name: &str| match artifact.root.get(name) {
+        Some(Node::Text(text)) if !text.is_empty() => Some(text.as_str()),
+        Some(_) | None => None,
+    };
+    let failure = text("failure").map(|why| format!("the run gave no result: {why}"));
+    failure.or_else(|| text("validity").map(|why| format!("the run is not valid: {why}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artifact::results::Verdicts;
+    use crate::artifact::run::Responses;
+
+    fn words(words: &[&str]) -> Vec<String> {
+        words.iter().map(|&word| word.to_owned()).collect()
+    }
+
+    #[test]
+    fn a_sentence_counts_by_reason_and_speaks_of_one_run_as_of_one() {
+        let say = |all, found: &[&str], verdict| Tally::of(all, found.iter().copied()).sentence(verdict);
+        let (left, kept) = (Verdict::Treated(Treated::LeftOut), Verdict::Treated(Treated::Kept));
+        assert_eq!(say(24, &["", ""], left), None);
+        assert_eq!(
+            say(24, &["rotation", "", "at grip", "rotation"], left).unwrap(),
+            "3 of 24 runs are not valid and were left out: rotation (2); at grip (1)"
+        );
+        assert_eq!(say(24, &["rotation"], kept).unwrap(), "1 of 24 runs is not valid and was kept: rotation (1)");
+        assert_eq!(say(1, &["no peak"], Verdict::NoResult).unwrap(), "the only run gave no result: no peak");
+        assert_eq!(say(1, &["slow"], Verdict::Caution).unwrap(), "the only run is to be read with caution: slow");
+    }
+
+    #[test]
+    fn a_run_that_failed_is_not_counted_again_as_one_that_is_not_valid() {
+        let verdicts = Verdicts {
+            failures: words(&["", "no peak", "", ""]),
+            checked: Some((words(&["rotation", "no peak", "", ""]), words(&["few", "", "few", ""]))),
+        };
+        let runs = Table::default().reals_column("UCS", "MPa", "", vec![1.0, f64::NAN, 2.0, 3.0]);
+        let artifact = Results::of(runs, verdicts).to_artifact();
+        assert_eq!(
+            said(&artifact),
+            [
+                "1 of 4 runs gave no result: no peak (1)",
+                "1 of 4 runs is not valid: rotation (1)",
+                "1 of 4 runs is to be read with caution: few (1)"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_single_run_says_what_many_say() {
+        let run = |failure: &str, validity: &str| {
+            let validity = Some(validity.to_owned());
+            said(&Run { validity, ..Run::plain(failure, Responses::default()) }.to_artifact())
+        };
+        assert_eq!(run("no peak", "no peak: 1"), ["the run gave no result: no peak"]);
+        assert_eq!(run("", "rotation: 1 is above 0"), ["the run is not valid: rotation: 1 is above 0"]);
+        assert!(run("", "").is_empty());
+    }
+
+    #[test]
+    fn a_list_says_equal_sentences_once() {
+        let list = NotValid {
+            response: words(&["E", "UCS", "UCS"]),
+            row: vec![2, 2, 3],
+            runs: vec![4; 3],
+            reason: words(&["a", "a", "b"]),
+            treated: vec![Treated::LeftOut; 3],
+        };
+        assert_eq!(
+            list.said(),
+            [
+                "E: 1 of 4 runs is not valid and was left out: a (1)",
+                "UCS: 2 of 4 runs are not valid and were left out: a (1); b (1)"
+            ]
+        );
+        assert_eq!([list.left_out("E"), list.left_out("UCS"), list.left_out("nu")], [1, 2, 0]);
+        let both = NotValid {
+            response: words(&["E", "UCS"]),
+            row: vec![2, 2],
+            runs: vec![4; 2],
+            reason: words(&["a", "a"]),
+            treated: vec![Treated::Kept; 2],
+        };
+        assert_eq!(both.said(), ["E, UCS: 1 of 4 runs is not valid and was kept: a (1)"]);
+    }
+}

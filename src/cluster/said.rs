@@ -1,0 +1,139 @@
+//! What a worker writes into its report, one line of JSON each.
+
+use serde::{Deserialize, Serialize};
+
+/// One line of a report. Tasks are numbered through all lists of a queue, from 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "said", rename_all = "kebab-case")]
+pub enum Said {
+    /// The worker is there.
+    Started {
+        /// Which submission of the queue it belongs to.
+        round: usize,
+        /// Which worker of that submission it is.
+        index: usize,
+        /// Its machine.
+        machine: String,
+        /// Digest of its program.
+        program: String,
+    },
+    /// It has begun a task.
+    Begun {
+        /// The task.
+        task: usize,
+    },
+    /// A task says where it stands.
+    Stands {
+        /// The task.
+        task: usize,
+        /// Part done, 0 to 1.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        fraction: Option<f64>,
+        /// A few words.
+        note: String,
+        /// Whether the words are a warning.
+        #[serde(default)]
+        warning: bool,
+    },
+    /// The result of a task is stored.
+    Done {
+        /// The task.
+        task: usize,
+        /// How long it took, seconds.
+        seconds: f64,
+    },
+    /// A task failed.
+    Failed {
+        /// The task.
+        task: usize,
+        /// Why, in words.
+        why: String,
+    },
+    /// A task was ended before its end. It can be begun again.
+    Stopped {
+        /// The task.
+        task: usize,
+        /// Why.
+        cause: Cause,
+    },
+    /// A process outside of the queue computes the task.
+    Elsewhere {
+        /// The task.
+        task: usize,
+    },
+    /// An input of a task could not be read.
+    Lost {
+        /// The task.
+        task: usize,
+        /// Content of the input.
+        input: String,
+        /// Why.
+        why: String,
+    },
+    /// The worker has ended by itself.
+    Ended {
+        /// What was wrong with its machine or the store; nothing when all was well.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        fault: Option<String>,
+    },
+}
+
+/// Why a worker ended a task before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// The worker's time was over.
+    Time,
+    /// The worker's time was over, and the task had nearly all of it: another worker would not finish it either.
+    WholeTime,
+    /// The scheduler told the worker to end.
+    Signal,
+    /// The store could not be written.
+    Store,
+}
+
+impl Said {
+    /// The line of a report.
+    pub fn to_text(&self) -> String {
+        serde_json::to_string(self).unwrap_or_else(|error| panic!("BUG: a report that is no JSON: {error}"))
+    }
+
+    /// The task that it speaks of.
+    pub fn task(&self) -> Option<usize> {
+        match self {
+            Self::Begun { task }
+            | Self::Stands { task, .. }
+            | Self::Done { task, .. }
+            | Self::Failed { task, .. }
+            | Self::Stopped { task, .. }
+            | Self::Elsewhere { task }
+            | Self::Lost { task, .. } => Some(*task),
+            Self::Started { .. } | Self::Ended { .. } => None,
+        }
+    }
+
+    /// What a line says; a line that cannot be read says nothing.
+    pub fn read(line: &str) -> Option<Self> {
+        serde_json::from_str(line).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reports_read_as_they_were_written_and_nonsense_says_nothing() {
+        for said in [
+            Said::Started { round: 1, index: 2, machine: "n1".to_owned(), program: "ab".to_owned() },
+            Said::Stands { task: 3, fraction: Some(0.5), note: "ε \"1\"\n".to_owned(), warning: false },
+            Said::Stopped { task: 3, cause: Cause::WholeTime },
+            Said::Ended { fault: None },
+        ] {
+            assert!(!said.to_text().contains('\n'));
+            assert_eq!(Said::read(&said.to_text()), Some(said));
+        }
+        assert_eq!(Said::read("{\"said\":\"begun\"}"), None);
+        assert_eq!(Said::read("\0\0\0"), None);
+    }
+}

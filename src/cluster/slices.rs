@@ -1,0 +1,92 @@
+//! Which task of the lists a worker begins next: its own slice in order, then the last of whichever slice has most left.
+//!
+//! The slice of worker `index` of `of` is the `index`-th part of every list, so that workers seldom meet: one that takes from
+//! another's slice does so from the end that its owner comes to last.
+
+use std::collections::VecDeque;
+
+/// The tasks that a worker believes to be open, by the slices they belong to.
+pub struct Slices {
+    slices: Vec<VecDeque<usize>>,
+    own: usize,
+}
+
+impl Slices {
+    /// No tasks yet, for worker `index` of `of`; both count from 0 and 1.
+    pub fn new(index: usize, of: usize) -> Self {
+        let of = of.max(1);
+        Self { slices: vec![VecDeque::new(); of], own: index % of }
+    }
+
+    /// Adds the tasks of one list.
+    pub fn add(&mut self, tasks: std::ops::Range<usize>) {
+        let (count, of) = (tasks.len(), self.slices.len());
+        for (place, task) in tasks.enumerate() {
+            // With fewer tasks than workers each of the first workers has one.
+            let slice = if count < of { place } else { place * of / count };
+            self.slices[slice].push_back(task);
+        }
+    }
+
+    /// The task to begin next; it is not offered again.
+    pub fn take(&mut self) -> Option<usize> {
+        if let Some(task) = self.slices[self.own].pop_front() {
+            return Some(task);
+        }
+        let (fullest, _) = self.slices.iter().enumerate().max_by_key(|(_, slice)| slice.len())?;
+        self.slices[fullest].pop_back()
+    }
+
+    /// Puts a task back that is not begun after all.
+    pub fn put_back(&mut self, task: usize) {
+        self.slices[self.own].push_front(task);
+    }
+
+    /// Forgets the tasks that others have begun.
+    pub fn forget(&mut self, begun: &std::collections::HashSet<usize>) {
+        self.slices.iter_mut().for_each(|slice| slice.retain(|task| !begun.contains(task)));
+    }
+
+    /// Tasks that are left outside of the own slice.
+    pub fn has_own(&self) -> bool {
+        !self.slices[self.own].is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(mut slices: Slices) -> Vec<usize> {
+        std::iter::from_fn(|| slices.take()).collect()
+    }
+
+    #[test]
+    fn a_worker_begins_with_its_own_slice_and_then_helps_from_the_end() {
+        let with = |index, of, tasks: std::ops::Range<usize>| {
+            let mut slices = Slices::new(index, of);
+            slices.add(tasks);
+            all(slices)
+        };
+        assert_eq!(with(0, 3, 0..6), [0, 1, 5, 3, 4, 2]);
+        assert_eq!(with(1, 3, 0..6), [2, 3, 5, 1, 4, 0]);
+        assert_eq!(with(2, 4, 10..12), [11, 10], "a worker without a slice helps");
+        assert_eq!(with(7, 4, 0..4)[0], 3, "a later round begins where the first did");
+    }
+
+    #[test]
+    fn every_task_is_offered_to_every_worker_once() {
+        for of in 1..9 {
+            for index in 0..of {
+                let mut slices = Slices::new(index, of);
+                slices.add(0..17);
+                slices.add(17..20);
+                slices.forget(&[3, 18].into());
+                let mut tasks = all(slices);
+                tasks.sort_unstable();
+                let wanted: Vec<usize> = (0..20).filter(|task| ![3, 18].contains(task)).collect();
+                assert_eq!(tasks, wanted);
+            }
+        }
+    }
+}

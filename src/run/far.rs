@@ -1,0 +1,393 @@
+//! Tasks that workers on other machines compute, as the run loop sees them: by key, whichever queue they are in.
+
+use crate::artifact::{ContentHash, Key};
+use crate::cluster::scheduler::{self, Alive};
+use crate::cluster::site::Needs;
+use crate::cluster::{Cause, Line, News, Post, Said, Scheduler, Site};
+use crate::stage::Progress;
+use crate::store::{Store, StoreError};
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+/// What is heard of the workers.
+pub(super) enum Heard {
+    /// A worker has begun a task.
+    Begun(Key),
+    /// A task says where it stands.
+    Stands(Key, Progress),
+    /// A task is finished; how long it took, seconds.
+    Done(Key, f64),
+    /// A task failed.
+    Failed(Key, String),
+    /// A process outside of the queues computes a task, or it is to be decided about again.
+    Open(Key),
+    /// An input of a task cannot be read.
+    Lost(ContentHash, String),
+    /// Words for the person watching.
+    Word(String),
+}
+
+/// Where a task stands that was handed over.
+struct Place {
+    post: usize,
+    task: usize,
+    /// How often a worker ended that had begun it: gone without a word, or told to end.
+    gone: usize,
+    told_to_end: usize,
+    /// The result is reported and has not been seen yet, since then.
+    done: Option<(f64, Instant)>,
+}
+
+/// How the workers are left when the run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Leave {
+    /// Nothing more is wanted of them.
+    Cancel,
+    /// They go on.
+    Working,
+}
+
+/// The cluster.
+pub(super) struct Far<'a> {
+    store: &'a Store,
+    site: &'a Site,
+    scheduler: Arc<dyn Scheduler>,
+    program: PathBuf,
+    session: String,
+    posts: Vec<Post>,
+    places: HashMap<Key, Place>,
+    /// Tasks to be listed.
+    fresh: Vec<(Needs, Key, Line, usize, usize)>,
+    asked: Option<Receiver<Vec<(usize, Result<Alive, String>)>>>,
+    asked_at: Instant,
+    waiting: Option<String>,
+    quiet: Duration,
+    draining: bool,
+}
+
+/// The scheduler is asked which jobs are there at most as often.
+const ASK_EACH: Duration = Duration::from_secs(60);
+/// A reported result is waited for so long where files are seen late.
+const LATE: Duration = Duration::from_secs(30);
+/// Shortest and longest pause between two looks at the reports.
+const PAUSE: (Duration, Duration) = (Duration::from_millis(20), Duration::from_millis(500));
+/// So often a task may be ended by the scheduler before its end.
+const MOST_TOLD: usize = 5;
+
+impl<'a> Far<'a> {
+    /// Nothing handed over yet, but for what an earlier submitter has left: words on that, or why it cannot be known.
+    pub(super) fn new(store: &'a Store, site: &'a Site) -> (Self, Vec<String>, Result<(), String>) {
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+        let mut far = Self {
+            store,
+            site,
+            scheduler: scheduler::of(site).into(),
+            program: std::env::current_exe().unwrap_or_else(|_| "flow".into()),
+            session: format!("{}-{:x}", now.as_secs(), std::process::id()),
+            posts: Vec::new(),
+            places: HashMap::new(),
+            fresh: Vec::new(),
+            asked: None,
+            asked_at: Instant::now(),
+            waiting: None,
+            quiet: PAUSE.0,
+            draining: false,
+        };
+        let mut words = Vec::new();
+        let adopted = far.adopt(&mut words);
+        (far, words, adopted)
+    }
+
+    fn adopt(&mut self, words: &mut Vec<String>) -> Result<(), String> {
+        for name in self.store.queues().map_err(|error| error.to_string())? {
+            let adopted = Post::adopt(self.store, &name, self.site, &*self.scheduler);
+            let adopted = adopted.map_err(|why| format!("jobs of an earlier run may be there, and {why}"))?;
+            if let Some(post) = adopted {
+                words.push(format!(
+                    "takes over {} workers of an earlier run (job {})",
+                    post.active(),
+                    post.jobs().join(", ")
+                ));
+                for (task, entry) in post.entries.iter().enumerate() {
+                    let place = Place { post: self.posts.len(), task, gone: 0, told_to_end: 0, done: None };
+                    self.places.insert(entry.key, place);
+                }
+                self.posts.push(post);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether tasks of this stage go to the workers; `far` says whether their work does as a rule.
+    pub(super) fn takes(&self, stage: &str, far: bool) -> bool {
+        self.site.sends(stage, far)
+    }
+
+    /// Whether a task was handed over already.
+    pub(super) fn has(&self, key: &Key) -> bool {
+        self.places.contains_key(key)
+    }
+
+    /// Whether nothing is expected of the workers.
+    pub(super) fn is_idle(&self) -> bool {
+        match self.draining {
+            true => !self.posts.iter().any(Post::is_busy),
+            false => self.places.is_empty() && self.fresh.is_empty(),
+        }
+    }
+
+    /// Hands a task over; it is listed with the others at the next [`Far::send`].
+    pub(super) fn put(&mut self, stage: &str, key: Key, line: Line) {
+        self.fresh.push((self.site.needs(stage), key, line, 0, 0));
+    }
+
+    /// Begins nothing more; what workers have begun they finish.
+    pub(super) fn drain(&mut self) {
+        if !std::mem::replace(&mut self.draining, true) {
+            self.posts.iter().for_each(|post| drop(post.queue.close()));
+        }
+    }
+
+    /// Lists what was handed over and asks for the workers that are missing; answers with words.
+    ///
+    /// # Errors
+    /// The store cannot be written, or no worker can be had.
+    pub(super) fn send(&mut self) -> Result<Vec<String>, String> {
+        let words = |error: StoreError| error.to_string();
+        if self.draining {
+            return Ok(Vec::new());
+        }
+        while let Some((needs, ..)) = self.fresh.first() {
+            let needs = needs.clone();
+            let (same, others) = std::mem::take(&mut self.fresh).into_iter().partition(|(other, ..)| *other == needs);
+            self.fresh = others;
+            let known = self.posts.iter().position(|post| post.needs == needs);
+            let number = match known {
+                Some(number) => number,
+                None => {
+                    let name = format!("{}-{}", self.session, self.posts.len() + 1);
+                    self.posts.push(Post::open(self.store, &name, needs).map_err(words)?);
+                    self.posts.len() - 1
+                }
+            };
+            let post = &mut self.posts[number];
+            let mut lines = Vec::with_capacity(same.len());
+            for (_, key, line, gone, told_to_end) in same {
+                let task = post.entries.len() + lines.len();
+                self.places.insert(key, Place { post: number, task, gone, told_to_end, done: None });
+                lines.push(line);
+            }
+            post.list(lines).map_err(words)?;
+        }
+        let mut said = Vec::new();
+        let store = std::path::absolute(self.store.root()).unwrap_or_else(|_| self.store.root().to_owned());
+        for post in &mut self.posts {
+            said.extend(post.staff(self.site, &store, &self.program, &*self.scheduler)?);
+        }
+        Ok(said)
+    }
+
+    /// How long to wait before the next look.
+    pub(super) fn pause(&self) -> Duration {
+        self.quiet
+    }
+
+    /// What was heard since the last look.
+    ///
+    /// # Errors
+    /// The store cannot be read.
+    pub(super) fn hear(&mut self) -> Result<Vec<Heard>, StoreError> {
+        let mut heard = Vec::new();
+        for number in 0..self.posts.len() {
+            let (news, words) = self.posts[number].read()?;
+            heard.extend(words.into_iter().map(Heard::Word));
+            self.sort(number, news, &mut heard);
+        }
+        self.ask(&mut heard);
+        self.settle_late(&mut heard);
+        self.quiet = if heard.is_empty() { (self.quiet * 2).min(PAUSE.1) } else { PAUSE.0 };
+        Ok(heard)
+    }
+
+    fn sort(&mut self, number: usize, news: Vec<(usize, News)>, heard: &mut Vec<Heard>) {
+        for (task, news) in news {
+            let key = self.posts[number].entries[task].key;
+            // A task that was listed again stands in another place by now.
+            let Some(place) = self.places.get_mut(&key).filter(|place| (place.post, place.task) == (number, task))
+            else {
+                continue;
+            };
+            match news {
+                News::Said(Said::Begun { .. }) => heard.push(Heard::Begun(key)),
+                News::Said(Said::Stands { fraction, note, warning, .. }) => {
+                    heard.push(Heard::Stands(key, Progress { fraction, note, warning }));
+                }
+                News::Said(Said::Done { seconds, .. }) => {
+                    place.done = Some((seconds, Instant::now()));
+                    heard.push(Heard::Done(key, seconds));
+                }
+                News::Said(Said::Failed { why, .. }) => heard.push(Heard::Failed(key, why)),
+                News::Said(Said::Stopped { cause, .. }) => self.stopped(number, task, key, cause, heard),
+                News::Said(Said::Elsewhere { .. }) => heard.push(Heard::Open(key)),
+                News::Said(Said::Lost { input, why, .. }) => match ContentHash::from_hex(&input) {
+                    Some(input) => {
+                        heard.push(Heard::Open(key));
+                        heard.push(Heard::Lost(input, why));
+                    }
+                    None => heard.push(Heard::Failed(key, why)),
+                },
+                News::Gone { machine, words } => self.lost(number, task, key, (&machine, &words), heard),
+                News::Said(Said::Started { .. } | Said::Ended { .. }) => {}
+            }
+        }
+    }
+
+    /// A worker ended a task before its end.
+    fn stopped(&mut self, number: usize, task: usize, key: Key, cause: Cause, heard: &mut Vec<Heard>) {
+        let Some(place) = self.places.get_mut(&key) else { return };
+        let post = &mut self.posts[number];
+        match cause {
+            Cause::Time | Cause::Store => {
+                let entry = (post.needs.clone(), key, post.entries[task].line.clone(), place.gone, place.told_to_end);
+                post.over(task);
+                self.fresh.push(entry);
+            }
+            Cause::WholeTime => {
+                let time = post.needs.time.map_or(0.0, |time| time.get());
+                heard.push(Heard::Failed(
+                    key,
+                    format!(
+                        "it was not finished in the whole time of a worker, {time} s (give the workers more `time` in \
+                         the site file)"
+                    ),
+                ));
+            }
+            Cause::Signal if place.told_to_end + 1 < MOST_TOLD => {
+                place.told_to_end += 1;
+                let needs = if post.needs.alone { post.needs.clone() } else { post.needs.again() };
+                let entry = (needs, key, post.entries[task].line.clone(), place.gone, place.told_to_end);
+                post.over(task);
+                self.fresh.push(entry);
+            }
+            Cause::Signal => heard.push(Heard::Failed(
+                key,
+                format!("the scheduler ended its worker {MOST_TOLD} times{}", memory(&post.needs)),
+            )),
+        }
+    }
+
+    /// The worker that had begun a task is gone: it is tried once more, alone.
+    fn lost(&mut self, number: usize, task: usize, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) {
+        let Some(place) = self.places.get_mut(&key) else { return };
+        let post = &mut self.posts[number];
+        place.gone += 1;
+        if place.gone > 1 {
+            let (machine, words) = at;
+            heard.push(Heard::Failed(
+                key,
+                format!(
+                    "its worker on {machine} ended without a word, the second time alone{}: {words}",
+                    memory(&post.needs)
+                ),
+            ));
+            return;
+        }
+        let entry = (post.needs.again(), key, post.entries[task].line.clone(), place.gone, place.told_to_end);
+        post.over(task);
+        self.fresh.push(entry);
+    }
+
+    /// Asks the scheduler which jobs are there, at most once a minute, and takes its answer when it comes.
+    fn ask(&mut self, heard: &mut Vec<Heard>) {
+        if let Some(inbox) = &self.asked {
+            match inbox.try_recv() {
+                Ok(answers) => {
+                    self.asked = None;
+                    for (number, alive) in answers {
+                        let Ok(alive) = alive else { continue };
+                        let (news, words) = self.posts[number].apply(&alive);
+                        heard.extend(words.into_iter().map(Heard::Word));
+                        self.sort(number, news, heard);
+                        let waiting =
+                            alive.waiting.map(|(count, why)| format!("{count} workers wait for a place ({why})"));
+                        if waiting.is_some() && waiting != self.waiting {
+                            heard.extend(waiting.clone().map(Heard::Word));
+                            self.waiting = waiting;
+                        }
+                    }
+                }
+                Err(TryRecvError::Disconnected) => self.asked = None,
+                Err(TryRecvError::Empty) => {}
+            }
+            return;
+        }
+        // One question for one queue at a time, so that there is one a minute whatever the number of queues.
+        let wanted: Vec<usize> = (0..self.posts.len()).filter(|&number| self.posts[number].active() > 0).collect();
+        if wanted.is_empty() || self.asked_at.elapsed() < ASK_EACH {
+            return;
+        }
+        let turn = self.asked_at.elapsed().as_nanos() as usize % wanted.len();
+        let number = wanted[turn];
+        self.asked_at = Instant::now();
+        let (answers, inbox) = channel();
+        let (scheduler, post) = (Arc::clone(&self.scheduler), &self.posts[number]);
+        let (queue, jobs) = (post.queue.name().to_owned(), post.jobs());
+        std::thread::spawn(move || {
+            // Nobody waits for it when the run has ended.
+            let _ = answers.send(vec![(number, scheduler.alive(&queue, &jobs))]);
+        });
+        self.asked = Some(inbox);
+    }
+
+    /// Results that were reported and are not seen yet are asked for again, and computed again after a while.
+    fn settle_late(&mut self, heard: &mut Vec<Heard>) {
+        for (key, place) in &self.places {
+            match place.done {
+                Some((_, since)) if since.elapsed() > LATE => heard.push(Heard::Open(*key)),
+                Some((seconds, since)) if since.elapsed() > PAUSE.1 => heard.push(Heard::Done(*key, seconds)),
+                _ => {}
+            }
+        }
+    }
+
+    /// A task is over, or is decided about anew.
+    pub(super) fn forget(&mut self, key: &Key) {
+        if let Some(place) = self.places.remove(key) {
+            self.posts[place.post].over(place.task);
+        }
+    }
+
+    /// Ends with the workers; words on how they are left.
+    pub(super) fn end(&mut self, leave: Leave) -> Vec<String> {
+        if leave == Leave::Working {
+            let workers: usize = self.posts.iter().map(Post::active).sum();
+            return match workers {
+                0 => Vec::new(),
+                _ => vec![format!("{workers} workers go on without this process; the same command takes them over")],
+            };
+        }
+        let mut words = Vec::new();
+        for post in &self.posts {
+            let _ = post.queue.close();
+            if post.active() > 0
+                && let Err(why) = self.scheduler.cancel(post.queue.name(), &post.jobs())
+            {
+                words.push(format!(
+                    "job {} could not be cancelled ({why}); its workers end by themselves",
+                    post.jobs().join(", ")
+                ));
+            }
+        }
+        words
+    }
+}
+
+fn memory(needs: &Needs) -> String {
+    match needs.memory {
+        Some(memory) => format!(" with {memory} (most likely it needs more: `memory` in the site file)"),
+        None => " (most likely it needs more memory: `memory` in the site file)".to_owned(),
+    }
+}

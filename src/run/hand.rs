@@ -1,0 +1,169 @@
+//! What the run loop hands over to workers on other machines, and what it makes of what it hears of them.
+
+use super::board::NodeId;
+use super::far::{Far, Heard, Leave};
+use super::{Answer, Cluster, Event, Loop, Past, Watch, task};
+use crate::artifact::{ContentHash, Key};
+use crate::cluster::Line;
+use crate::stage::{Failure, StageError, is_far};
+use crate::store::{Claim, Store, StoreError};
+use std::sync::atomic::Ordering;
+
+/// The cluster of a run, with what an earlier submitter has left there, or why nothing can be begun.
+pub(super) fn cluster<'a>(
+    store: &'a Store,
+    cluster: Option<&'a Cluster>,
+    watch: &dyn Watch,
+) -> (Option<Far<'a>>, Option<String>) {
+    let Some(cluster) = cluster else { return (None, None) };
+    let (far, words, adopted) = Far::new(store, &cluster.site);
+    words.iter().for_each(|text| watch.event(Event::Word { text }));
+    (Some(far), adopted.err())
+}
+
+impl Loop<'_, '_> {
+    /// Hands what takes long over to the workers on other machines.
+    pub(super) fn hand_over(&mut self) {
+        let Some(far) = &mut self.far else { return };
+        let goes = |node: &NodeId| {
+            let stage = &self.workflow.stages[self.board.stage(*node)].name;
+            far.takes(stage, is_far(self.board.task(*node).work))
+        };
+        let nodes: Vec<NodeId> = self.ready.iter().copied().filter(goes).collect();
+        for node in nodes {
+            self.ready.remove(&node);
+            let Some(key) = self.board.key_of(node) else {
+                panic!("BUG: a task was ready before its inputs were known")
+            };
+            self.far_nodes.insert(key, node);
+            if self.far.as_ref().is_some_and(|far| far.has(&key)) {
+                continue;
+            }
+            if let Err(lost) = self.hand(node, key)
+                && let Err(error) = self.recompute(*lost)
+            {
+                self.take(Answer { node, result: Err(error.into()) });
+            }
+        }
+        match self.far.as_mut().map(Far::send) {
+            None => {}
+            Some(Ok(words)) => words.iter().for_each(|text| self.watch.event(Event::Word { text })),
+            Some(Err(why)) => {
+                self.refused.get_or_insert(why);
+            }
+        }
+    }
+
+    fn hand(&mut self, node: NodeId, key: Key) -> Result<(), Box<task::Lost>> {
+        let stage = &self.workflow.stages[self.board.stage(node)].name;
+        let contents = self.board.inputs(node).unwrap_or_default();
+        let locate = |content: &ContentHash| {
+            self.store.locate(content).map_err(|error| Box::new(task::Lost { content: *content, error }))
+        };
+        let inputs = contents.iter().map(locate).collect::<Result<Vec<_>, _>>()?;
+        let seconds = *self.most_seconds.entry(stage.clone()).or_insert_with(|| {
+            let past = Past::of(self.workflow, self.store).ok()?;
+            past.most_seconds(stage)
+        });
+        let line = Line::new(self.board.task(node), &key, stage, &inputs, seconds);
+        if let Some(far) = &mut self.far {
+            far.put(stage, key, line);
+        }
+        Ok(())
+    }
+
+    /// Whether nothing is expected of the workers on other machines, or no longer.
+    pub(super) fn far_rests(&mut self) -> bool {
+        let at_once = self.stop.load(Ordering::Relaxed) || self.fatal.is_some() || self.refused.is_some();
+        let ends = self.ends();
+        let Some(far) = &mut self.far else { return true };
+        if ends && !at_once {
+            // A task failed: what is begun is finished, as here.
+            far.drain();
+        }
+        at_once || far.is_idle()
+    }
+
+    /// Takes in what the workers on other machines report.
+    pub(super) fn listen(&mut self) {
+        let Some(far) = &mut self.far else { return };
+        let heard = match far.hear() {
+            Ok(heard) => heard,
+            Err(error) => {
+                self.fatal.get_or_insert(error);
+                return;
+            }
+        };
+        if heard.iter().any(|heard| matches!(heard, Heard::Done(..) | Heard::Open(_)))
+            && let Err(error) = self.store.refresh()
+        {
+            self.fatal.get_or_insert(error);
+            return;
+        }
+        heard.into_iter().for_each(|heard| self.hears(heard));
+    }
+
+    fn hears(&mut self, heard: Heard) {
+        let place = |node: NodeId, run: &Self| (run.board.stage(node), run.board.row(node));
+        match heard {
+            Heard::Word(text) => self.watch.event(Event::Word { text: &text }),
+            Heard::Begun(key) | Heard::Stands(key, _) if !self.far_nodes.contains_key(&key) => {}
+            Heard::Begun(key) => {
+                let (stage, row) = place(self.far_nodes[&key], self);
+                self.watch.event(Event::Started { stage: &self.workflow.stages[stage].name, row });
+            }
+            Heard::Stands(key, progress) => {
+                let (stage, row) = place(self.far_nodes[&key], self);
+                let stage = &self.workflow.stages[stage].name;
+                self.watch.event(Event::Said { stage, row, progress: &progress });
+            }
+            Heard::Done(key, seconds) => match self.store.find(&key) {
+                Ok(Some(record)) => {
+                    let finished = task::Finished { content: record.content, shared: false, seconds, brief: None };
+                    self.is_over(&key, Ok(task::Outcome::Finished(finished)));
+                }
+                // It is not seen yet.
+                Ok(None) => {}
+                Err(error) => {
+                    self.fatal.get_or_insert(error);
+                }
+            },
+            Heard::Failed(key, why) => self.is_over(&key, Err(StageError::new(why).into())),
+            Heard::Open(key) => {
+                let node = self.far_nodes.remove(&key);
+                self.far.iter_mut().for_each(|far| far.forget(&key));
+                match (node, self.store.claim(&key)) {
+                    (None, _) => {}
+                    (Some(node), Ok(Claim::Theirs(waiting))) => self.elsewhere.put(node, waiting),
+                    (Some(node), Ok(Claim::Mine(_) | Claim::Done(_))) => self.settle(node),
+                    (_, Err(error)) => {
+                        self.fatal.get_or_insert(error);
+                    }
+                }
+            }
+            Heard::Lost(content, why) => {
+                let error = StoreError::Missing { content };
+                if self.recompute(task::Lost { content, error }).is_err() {
+                    self.refused.get_or_insert(why);
+                }
+            }
+        }
+    }
+
+    /// A task that was handed over has ended.
+    fn is_over(&mut self, key: &Key, result: Result<task::Outcome, Failure>) {
+        self.far.iter_mut().for_each(|far| far.forget(key));
+        if let Some(node) = self.far_nodes.remove(key) {
+            self.take(Answer { node, result });
+        }
+    }
+
+    /// Ends with the workers on other machines.
+    pub(super) fn leave(&mut self) {
+        let working = self.stop.load(Ordering::Relaxed)
+            && self.settings.cluster.as_ref().is_some_and(|cluster| cluster.leave.load(Ordering::Relaxed));
+        let Some(far) = &mut self.far else { return };
+        let words = far.end(if working { Leave::Working } else { Leave::Cancel });
+        words.iter().for_each(|text| self.watch.event(Event::Word { text }));
+    }
+}

@@ -1,0 +1,58 @@
+//! What a figure does with runs that are not valid, and what it says of them below the picture.
+
+use super::super::StageError;
+use super::super::invalid::{Invalid, sentence};
+use super::source::Sources;
+use super::{Figure, Params, Show};
+use crate::artifact::results::Results;
+use crate::artifact::validity::{Verdict, faults, of_runs};
+use crate::artifact::{Artifact, ArtifactKind};
+
+impl Show {
+    /// Whether it draws the single runs of a table, so that some can be left out.
+    pub(super) fn draws_runs(self) -> bool {
+        matches!(self, Self::Xy | Self::Curves | Self::Histogram | Self::Box | Self::HeatMap | Self::Agreement)
+    }
+}
+
+impl Figure {
+    /// The choice: of what draws the runs of a table that of statistics, of a picture of one run to draw it.
+    pub(super) fn choice(&self) -> Invalid {
+        self.invalid.unwrap_or(if self.show.draws_runs() { Invalid::LeaveOut } else { Invalid::Keep })
+    }
+}
+
+/// The sentences below the picture.
+///
+/// # Errors
+/// A run is not valid and refused.
+pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String>, StageError> {
+    let mut found = params.notes.clone();
+    // Of curves the choice was made when the runs were chosen.
+    let all = sources.of.iter().chain(&sources.compare).filter(|_| params.show != Show::Curves);
+    for (index, source) in all.enumerate() {
+        let whose = params.series.get(index).map_or_else(String::new, |name| format!("{name}: "));
+        let said = of_source(params, source.0)?;
+        found.extend(said.into_iter().map(|said| format!("{whose}{said}")));
+    }
+    let mut sentences: Vec<String> = Vec::new();
+    for said in found.into_iter().map(|said| sentence(&said)) {
+        if !sentences.contains(&said) {
+            sentences.push(said);
+        }
+    }
+    Ok(sentences)
+}
+
+fn of_source(params: &Params, artifact: &Artifact) -> Result<Vec<String>, StageError> {
+    if artifact.is(ArtifactKind::RESULTS) {
+        let runs = Results::table(artifact)?;
+        let judged = params.invalid.judge(runs)?;
+        let verdict = if params.show.draws_runs() { judged.verdict() } else { Verdict::NotValid };
+        return Ok(of_runs(runs, verdict));
+    }
+    if artifact.is(ArtifactKind::RUN) && params.invalid == Invalid::Refuse {
+        params.invalid.of_run(artifact, "the run")?;
+    }
+    Ok(faults(artifact))
+}

@@ -1,0 +1,155 @@
+//! What a stage does with runs that are not valid: the one setting of every kind that takes runs, and the one place that
+//! applies it.
+//!
+//! A run is not valid when a decisive check of its own is not met: a Brazilian disc that turned, a confining stress that
+//! was not held. Its numbers are there, but the test did not measure what it is called after. Statistics, fits and
+//! calibrations leave such runs out and say how many of how many and why; printed tables keep them and mark them.
+
+use super::StageError;
+use crate::artifact::results::Results;
+use crate::artifact::run::{Outcome, Run};
+use crate::artifact::validity::{NotValid, Tally, Treated, Verdict};
+use crate::artifact::{Artifact, Table};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What becomes of runs that are not valid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Invalid {
+    /// They are left out, and it is said how many of how many and why.
+    #[default]
+    LeaveOut,
+    /// They are used like the others, and it is said how many they are.
+    Keep,
+    /// The stage fails.
+    Refuse,
+}
+
+/// The runs of a table after the choice was made.
+pub(super) struct Judged<'a> {
+    all: usize,
+    treated: Treated,
+    /// Rows from 0, in ascending order, and why each is not valid.
+    invalid: Vec<(usize, &'a str)>,
+}
+
+impl Invalid {
+    /// Whether it is the choice of statistics when nothing is said.
+    pub(super) fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Applies the choice to a table of runs.
+    ///
+    /// # Errors
+    /// The choice is to refuse, and a run is not valid.
+    pub(super) fn judge(self, runs: &Table) -> Result<Judged<'_>, StageError> {
+        let (all, invalid) = (runs.rows(), Results::invalid(runs));
+        let treated = match self {
+            Self::LeaveOut => Treated::LeftOut,
+            Self::Keep => Treated::Kept,
+            Self::Refuse => {
+                return match Tally::of(all, invalid.iter().map(|(_, why)| *why)).sentence(Verdict::NotValid) {
+                    Some(said) => Err(refused(&said)),
+                    None => Ok(Judged { all, treated: Treated::LeftOut, invalid }),
+                };
+            }
+        };
+        Ok(Judged { all, treated, invalid })
+    }
+
+    /// Whether a single run is drawn, and what is said of it.
+    ///
+    /// # Errors
+    /// It is not valid and refused.
+    pub(super) fn of_run(self, run: &Artifact, name: &str) -> Result<(bool, Option<String>), StageError> {
+        let outcome = Run::outcome(run)?;
+        let Some(why) = outcome.invalid() else {
+            let Outcome { failure, .. } = outcome;
+            return Ok((true, (!failure.is_empty()).then(|| format!("{name} gave no result: {failure}"))));
+        };
+        match self {
+            Self::LeaveOut => Ok((false, Some(format!("{name} is not valid and was left out: {why}")))),
+            Self::Keep => Ok((true, Some(format!("{name} is not valid and was kept: {why}")))),
+            Self::Refuse => Err(refused(&format!("{name} is not valid: {why}"))),
+        }
+    }
+}
+
+/// The words with a capital in front and a full stop behind.
+pub(super) fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default();
+    format!("{first}{}.", letters.as_str())
+}
+
+/// The error about runs that are refused.
+pub(super) fn refused(said: &str) -> StageError {
+    StageError::new(said)
+        .hint("mend the test, or say `invalid = \"leave-out\"` or `invalid = \"keep\"` in the stage that refuses them")
+}
+
+impl Judged<'_> {
+    /// Whether the run at this row, from 0, is left out.
+    pub(super) fn leaves_out(&self, row: usize) -> bool {
+        self.treated == Treated::LeftOut && self.invalid.binary_search_by_key(&row, |(own, _)| *own).is_ok()
+    }
+
+    /// What is said of the runs that are not valid.
+    pub(super) fn verdict(&self) -> Verdict {
+        Verdict::Treated(self.treated)
+    }
+
+    /// How many of how many are not valid, why, and what became of them; nothing when all are valid.
+    pub(super) fn said(&self) -> Option<String> {
+        Tally::of(self.all, self.invalid.iter().map(|(_, why)| *why)).sentence(self.verdict())
+    }
+
+    /// The list of the runs that are not valid and gave a value of the response.
+    pub(super) fn listed(&self, response: &str, values: &[f64]) -> NotValid {
+        let mut list = NotValid::default();
+        for (row, why) in self.invalid.iter().filter(|(row, _)| values.get(*row).is_some_and(|v| !v.is_nan())) {
+            list.response.push(response.to_owned());
+            list.row.push(*row as i64 + 1);
+            list.runs.push(self.all as i64);
+            list.reason.push((*why).to_owned());
+            list.treated.push(self.treated);
+        }
+        list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runs() -> Table {
+        let texts = |texts: [&str; 4]| texts.map(String::from).to_vec();
+        Table::default()
+            .reals_column("UCS", "MPa", "", vec![1.0, 2.0, f64::NAN, 4.0])
+            .texts_column("failure", "", texts(["", "", "no peak", ""]))
+            .texts_column("validity", "", texts(["", "rotation", "no peak", "at grip"]))
+    }
+
+    #[test]
+    fn the_choice_is_applied_to_runs_that_gave_a_result() {
+        let table = runs();
+        let left = Invalid::LeaveOut.judge(&table).unwrap();
+        assert_eq!([0, 1, 2, 3].map(|row| left.leaves_out(row)), [false, true, false, true]);
+        assert_eq!(left.said().unwrap(), "2 of 4 runs are not valid and were left out: rotation (1); at grip (1)");
+        let kept = Invalid::Keep.judge(&table).unwrap();
+        assert!((0..4).all(|row| !kept.leaves_out(row)));
+        assert_eq!(kept.said().unwrap(), "2 of 4 runs are not valid and were kept: rotation (1); at grip (1)");
+        let refused = Invalid::Refuse.judge(&table).err().unwrap();
+        assert_eq!(refused.message, "2 of 4 runs are not valid: rotation (1); at grip (1)");
+        assert!(Invalid::Refuse.judge(&Table::default()).unwrap().said().is_none());
+    }
+
+    #[test]
+    fn a_run_without_the_response_is_not_listed_among_those_that_are_left_out_for_it() {
+        let table = runs();
+        let list = Invalid::LeaveOut.judge(&table).unwrap().listed("UCS", &[1.0, f64::NAN, f64::NAN, 4.0]);
+        assert_eq!((list.left_out("UCS"), list.row, list.runs), (1, vec![4], vec![4]));
+    }
+}
