@@ -17,11 +17,13 @@
 //! responses are microparameters, or a calibration, of whose solution `set` picks the target set.
 
 mod config;
+mod fissures;
 mod loading;
 mod record;
 mod speed;
 
 pub use config::{BondConfig, PackingChoice, Simulate};
+pub use fissures::{FissureConfig, JointConfig, NetworkConfig};
 pub use speed::PlatenSpeed;
 
 use super::rows::{self, GATHER};
