@@ -15,6 +15,7 @@ mod nodes;
 mod readme;
 mod report;
 mod reruns;
+mod scales;
 mod share;
 mod space;
 mod stop;
