@@ -117,7 +117,7 @@ pub(super) fn in_space(plane: &[[f64; 2]]) -> Vec<[f64; 3]> {
 }
 
 fn array(text: &mut String, kind: &str, name: &str, parts: usize, values: impl IntoIterator<Item = impl Display>) {
-    // One component is VTK's default; told, some readers make a matrix of one column of it.
+    // One component is VTK's default; when it is stated, some readers make a matrix of one column of it.
     let parts_told = if parts > 1 { format!(" NumberOfComponents=\"{parts}\"") } else { String::new() };
     push(text, format_args!("<DataArray type=\"{kind}\" Name=\"{name}\"{parts_told} format=\"ascii\">\n"));
     for (i, value) in values.into_iter().enumerate() {
