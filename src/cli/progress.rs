@@ -133,8 +133,8 @@ impl<'a> Progress<'a> {
         let name = &report.name;
         for (kind, rows) in live.iter().flat_map(|live| &live.warned).filter(|(_, rows)| rows.len() > 1) {
             let more = rows.len() - 1;
-            let rows = if more == 1 { "row is" } else { "rows are" };
-            self.say(&format!("warning: {name}: {more} more {rows} warned of alike: {kind}"));
+            let rows = if more == 1 { "row" } else { "rows" };
+            self.say(&format!("warning: {name}: {more} more {rows} with this warning: {kind}"));
         }
         match &report.status {
             StageStatus::Failed(why) => match live.map_or(0, |live| live.failed) {

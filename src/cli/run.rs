@@ -181,7 +181,7 @@ pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
                 err!("stopping: finished tasks are stored; press Ctrl-C again to stop at once");
                 std::thread::spawn(move || {
                     std::thread::sleep(patience);
-                    err!("interrupted: a second run goes on; what ran did not end by itself and begins anew then");
+                    err!("interrupted; run again to continue: the tasks that ran were ended and will start again");
                     at_once();
                 });
             }
@@ -227,7 +227,7 @@ fn summary(report: &Report, seconds: f64, number: Option<u64>) -> String {
         }
     }
     if report.interrupted {
-        parts.push("interrupted: a second run goes on".to_owned());
+        parts.push("interrupted; run again to continue".to_owned());
     }
     let recorded = number.map_or_else(String::new, |number| format!("; run #{number}"));
     let tasks = if count.total == 1 { "task" } else { "tasks" };
