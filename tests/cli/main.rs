@@ -10,6 +10,7 @@ mod columns;
 mod command;
 mod export;
 mod faults;
+mod guide;
 mod kill;
 mod nodes;
 mod readme;

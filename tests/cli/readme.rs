@@ -8,8 +8,8 @@ use std::process::Command;
 
 const README: &str = include_str!("../../README.md");
 
-/// The words of a command line: quotes hold words together, a `#` between blanks begins a remark.
-fn words(line: &str) -> Vec<String> {
+/// The words of a command line: quotes hold words together, a `#` between blanks begins a comment.
+pub(crate) fn words(line: &str) -> Vec<String> {
     let line = line.split(" # ").next().unwrap_or(line);
     let mut words = vec![String::new()];
     let mut quote = None;
@@ -68,7 +68,7 @@ fn with_microparameters() -> String {
 
 #[test]
 fn the_microparameters_are_those_that_the_laws_declare() {
-    assert!(with_microparameters() == README, "write the table anew, see the remark above it");
+    assert!(with_microparameters() == README, "write the table anew, see the comment above it");
 }
 
 #[test]
@@ -163,8 +163,21 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
 }
 
 /// Pages for people who look at the repository, by their path in it.
-const PAGES: [&str; 6] = [
+const PAGES: [&str; 19] = [
     "README.md",
+    "CHANGELOG.md",
+    "workflows/cluster/README.md",
+    "workflows/guide/README.md",
+    "workflows/guide/SUMMARY.md",
+    "workflows/guide/first-ten-minutes.md",
+    "workflows/guide/your-rock.md",
+    "workflows/guide/your-data.md",
+    "workflows/guide/designs.md",
+    "workflows/guide/calibration.md",
+    "workflows/guide/machines.md",
+    "workflows/guide/engines.md",
+    "workflows/guide/store.md",
+    "workflows/guide/messages.md",
     "workflows/c30/README.md",
     "store/README.md",
     "src/dem/tests/engine/VALIDATION.md",
