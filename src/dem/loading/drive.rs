@@ -163,7 +163,7 @@ pub fn drive<S: Space>(
     let (ladder, slice) = (Ladder::default(), slice(engine));
     let governor = Governor::new(engine, schedule);
     let mut drive = Drive { rule, schedule, run, governor, ladder, largest: 0.0, fell: None, slice, last_step };
-    engine.keep_books();
+    engine.track_energy();
     while drive.sample(engine, bench, watch) {}
     drive.finish(engine)
 }
