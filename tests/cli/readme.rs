@@ -11,17 +11,19 @@ const README: &str = include_str!("../../README.md");
 /// The words of a command line: quotes hold words together, a `#` between blanks begins a comment.
 pub(crate) fn words(line: &str) -> Vec<String> {
     let line = line.split(" # ").next().unwrap_or(line);
-    let mut words = vec![String::new()];
-    let mut quote = None;
+    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
     for c in line.trim().chars() {
         match (c, quote) {
-            ('\'' | '"', None) => quote = Some(c),
+            ('\'' | '"', None) => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
             (c, Some(q)) if c == q => quote = None,
-            (' ', None) => words.push(String::new()),
-            (c, _) => words.last_mut().unwrap().push(c),
+            (' ', None) => words.extend(word.take()),
+            (c, _) => word.get_or_insert_default().push(c),
         }
     }
-    words.retain(|word| !word.is_empty());
+    words.extend(word);
     words
 }
 
