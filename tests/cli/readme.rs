@@ -163,8 +163,9 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
 }
 
 /// Pages for people who look at the repository, by their path in it.
-const PAGES: [&str; 6] = [
+const PAGES: [&str; 7] = [
     "README.md",
+    "workflows/brazilian/README.md",
     "workflows/c30/README.md",
     "store/README.md",
     "src/dem/tests/engine/VALIDATION.md",
