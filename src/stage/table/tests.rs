@@ -214,7 +214,7 @@ fn a_column_is_spread_over_two_others() {
     let made = spread("estimate").unwrap();
     assert_eq!(text(&made, "csv"), "R_min [mm],ratio 2 [MPa],ratio 10 [MPa]\n0.1,,3\n0.4,0.75,\n");
     let markdown = text(&made, "markdown");
-    assert!(markdown.starts_with(r"| R_min (mm) | $\rho = 2$ (MPa) | $\rho = 10$ (MPa) |"), "{markdown}");
+    assert!(markdown.starts_with(r"| R\_min / mm | $\rho = 2$ / MPa | $\rho = 10$ / MPa |"), "{markdown}");
     let Err(Failure::Failed(error)) = spread("term") else { panic!("words in cells") };
     assert_eq!(error.message, "`pivot` names `term`, which holds words");
 }
