@@ -1,6 +1,7 @@
 //! Tasks that workers on other machines compute, as the run loop sees them: by key, whichever queue they are in.
 
 use crate::artifact::{ContentHash, Key};
+use crate::cluster::post::Reports;
 use crate::cluster::scheduler::{self, Alive};
 use crate::cluster::site::Needs;
 use crate::cluster::{Cause, Line, News, Post, Said, Scheduler, Site};
@@ -61,7 +62,7 @@ pub(super) struct Far<'a> {
     places: HashMap<Key, Place>,
     /// Tasks to be listed.
     fresh: Vec<(Needs, Key, Line, usize, usize)>,
-    asked: Option<Receiver<Vec<(usize, Result<Alive, String>)>>>,
+    asked: Option<Receiver<(usize, Result<Alive, String>)>>,
     asked_at: Instant,
     waiting: Option<String>,
     quiet: Duration,
@@ -202,7 +203,7 @@ impl<'a> Far<'a> {
     pub(super) fn hear(&mut self) -> Result<Vec<Heard>, StoreError> {
         let mut heard = Vec::new();
         for number in 0..self.posts.len() {
-            let (news, words) = self.posts[number].read()?;
+            let Reports { news, words } = self.posts[number].read()?;
             heard.extend(words.into_iter().map(Heard::Word));
             self.sort(number, news, &mut heard);
         }
@@ -304,19 +305,11 @@ impl<'a> Far<'a> {
     fn ask(&mut self, heard: &mut Vec<Heard>) {
         if let Some(inbox) = &self.asked {
             match inbox.try_recv() {
-                Ok(answers) => {
+                Ok((number, alive)) => {
                     self.asked = None;
-                    for (number, alive) in answers {
-                        let Ok(alive) = alive else { continue };
-                        let (news, words) = self.posts[number].apply(&alive);
-                        heard.extend(words.into_iter().map(Heard::Word));
-                        self.sort(number, news, heard);
-                        let waiting =
-                            alive.waiting.map(|(count, why)| format!("{count} workers wait for a place ({why})"));
-                        if waiting.is_some() && waiting != self.waiting {
-                            heard.extend(waiting.clone().map(Heard::Word));
-                            self.waiting = waiting;
-                        }
+                    // No answer says nothing about the jobs.
+                    if let Ok(alive) = alive {
+                        self.compare(number, alive, heard);
                     }
                 }
                 Err(TryRecvError::Disconnected) => self.asked = None,
@@ -337,9 +330,21 @@ impl<'a> Far<'a> {
         let (queue, jobs) = (post.queue.name().to_owned(), post.jobs());
         std::thread::spawn(move || {
             // Nobody waits for it when the run has ended.
-            let _ = answers.send(vec![(number, scheduler.alive(&queue, &jobs))]);
+            let _ = answers.send((number, scheduler.alive(&queue, &jobs)));
         });
         self.asked = Some(inbox);
+    }
+
+    /// Takes in which jobs of a queue are there.
+    fn compare(&mut self, number: usize, alive: Alive, heard: &mut Vec<Heard>) {
+        let Reports { news, words } = self.posts[number].apply(&alive);
+        heard.extend(words.into_iter().map(Heard::Word));
+        self.sort(number, news, heard);
+        let waiting = alive.waiting.map(|(count, why)| format!("{count} workers wait for a place ({why})"));
+        if waiting.is_some() && waiting != self.waiting {
+            heard.extend(waiting.clone().map(Heard::Word));
+            self.waiting = waiting;
+        }
     }
 
     /// Results that were reported and are not seen yet are asked for again, and computed again after a while.

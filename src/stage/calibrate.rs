@@ -34,6 +34,7 @@ mod curve;
 mod effort;
 mod faults;
 mod goal;
+mod instrument;
 mod outlook;
 mod params;
 mod read;
@@ -49,6 +50,7 @@ mod words;
 pub use config::{Calibrate, Constraint, MethodName, Unmet};
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
+pub use instrument::{Instrument, Parameter, Surface, instrument};
 pub(super) use read::Judgement;
 pub use slope::Slope;
 pub use words::parameters_in_words;
@@ -101,7 +103,9 @@ impl Stage for Calibrate {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { material: self.material.clone(), simulator: self.simulators().into_iter().next(), ..Sketch::default() }
+        let responses = self.targets.iter().flat_map(BTreeMap::keys).cloned().collect();
+        let simulator = self.simulators().into_iter().next();
+        Sketch { material: self.material.clone(), responses: Some(responses), simulator, ..Sketch::default() }
     }
 
     fn gives(&self) -> ArtifactKind {

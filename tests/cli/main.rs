@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibrate;
+mod calibrator;
 mod cases;
 mod cluster;
 mod columns;
@@ -14,6 +15,8 @@ mod nodes;
 mod readme;
 mod report;
 mod reruns;
+mod scales;
+mod share;
 mod space;
 mod stop;
 mod trust;

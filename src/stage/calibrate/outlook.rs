@@ -142,8 +142,8 @@ pub(super) fn prediction(params: &Params, solved: &[Solved]) -> Table {
 }
 
 /// Part of its range over which a determined parameter lies at most, and a free one at least.
-const DETERMINED: f64 = 0.25;
-const FREE: f64 = 0.9;
+pub(super) const DETERMINED: f64 = 0.25;
+pub(super) const FREE: f64 = 0.9;
 
 /// What the targets say of one parameter.
 struct Determined<'a> {

@@ -65,6 +65,7 @@ fn run() -> Artifact {
         volumetric_strain: axial_strain.iter().zip(&lateral_strain).map(|(a, l)| a - l).collect(),
         cracks: vec![0; 40],
         axial_strain,
+        speed: None,
         lateral_strain,
     };
     let cracks = Cracks {
@@ -129,6 +130,7 @@ fn surfaces() -> Artifact {
         ..Coefficients::default()
     };
     let domain = Domains {
+        scale: None,
         response: words(["UCS", "UCS"]),
         factor: words(["Ec", "mu"]),
         unit: words(["GPa", ""]),
