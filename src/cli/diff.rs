@@ -95,7 +95,7 @@ impl Diff {
                 StageStatus::Done(content) => Some(content),
                 StageStatus::Open | StageStatus::Failed(_) | StageStatus::Skipped(_) => None,
             };
-            let settings = flat(node.kind, &recorded(&node.stage.settings()));
+            let settings = flat(node.kind, &node.stage.settings());
             sides.insert(node.name.clone(), Side { settings, object });
         }
         Ok(sides)
@@ -131,11 +131,6 @@ impl Diff {
         };
         Ok(campaign.stages.into_iter().map(side).collect())
     }
-}
-
-/// Settings as a record gives them back: text and back can move a number by its last bit, and that is no difference.
-fn recorded(settings: &Value) -> Value {
-    serde_json::from_str(&settings.to_string()).unwrap_or_else(|e| panic!("BUG: settings that are no JSON: {e}"))
 }
 
 /// Settings by path.

@@ -102,7 +102,7 @@ const ALONE: &str = "-alone";
 const LISTED_AFTER: Duration = Duration::from_secs(10);
 /// Pause after a refusal, while some workers are there.
 const REFUSED: Duration = Duration::from_secs(60);
-/// So many submissions in a row may end without a task done.
+/// Largest number of submissions in a row that may end without a finished task.
 const MOST_IDLE: usize = 3;
 
 impl Post {

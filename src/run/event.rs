@@ -1,9 +1,9 @@
-//! What the person watching a campaign is told.
+//! Events of a run, for the person who watches it.
 
 use super::{StageReport, TaskCount};
 use crate::stage::Progress;
 
-/// What the person watching is told.
+/// An event of a run.
 pub enum Event<'a> {
     /// A task of a stage was started.
     Started {

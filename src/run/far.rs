@@ -231,7 +231,7 @@ impl<'a> Far<'a> {
                     heard.push(Heard::Done(key, seconds));
                 }
                 News::Said(Said::Failed { why, .. }) => heard.push(Heard::Failed(key, why)),
-                News::Said(Said::Stopped { cause, .. }) => self.stopped(number, task, key, cause, heard),
+                News::Said(Said::Stopped { cause, .. }) => self.stopped(key, cause, heard),
                 News::Said(Said::Elsewhere { .. }) => heard.push(Heard::Open(key)),
                 News::Said(Said::Lost { input, why, .. }) => match ContentHash::from_hex(&input) {
                     Some(input) => {
@@ -240,22 +240,18 @@ impl<'a> Far<'a> {
                     }
                     None => heard.push(Heard::Failed(key, why)),
                 },
-                News::Gone { machine, words } => self.lost(number, task, key, (&machine, &words), heard),
+                News::Gone { machine, words } => self.lost(key, (&machine, &words), heard),
                 News::Said(Said::Started { .. } | Said::Ended { .. }) => {}
             }
         }
     }
 
     /// A worker ended a task before its end.
-    fn stopped(&mut self, number: usize, task: usize, key: Key, cause: Cause, heard: &mut Vec<Heard>) {
+    fn stopped(&mut self, key: Key, cause: Cause, heard: &mut Vec<Heard>) {
         let Some(place) = self.places.get_mut(&key) else { return };
-        let post = &mut self.posts[number];
+        let post = &self.posts[place.post];
         match cause {
-            Cause::Time | Cause::Store => {
-                let entry = (post.needs.clone(), key, post.entries[task].line.clone(), place.gone, place.told_to_end);
-                post.over(task);
-                self.fresh.push(entry);
-            }
+            Cause::Time | Cause::Store => self.list_again(key, Needs::clone),
             Cause::WholeTime => {
                 let time = post.needs.time.map_or(0.0, |time| time.get());
                 heard.push(Heard::Failed(
@@ -268,10 +264,7 @@ impl<'a> Far<'a> {
             }
             Cause::Signal if place.told_to_end + 1 < MOST_TOLD => {
                 place.told_to_end += 1;
-                let needs = if post.needs.alone { post.needs.clone() } else { post.needs.again() };
-                let entry = (needs, key, post.entries[task].line.clone(), place.gone, place.told_to_end);
-                post.over(task);
-                self.fresh.push(entry);
+                self.list_again(key, |needs| if needs.alone { needs.clone() } else { needs.again() });
             }
             Cause::Signal => heard.push(Heard::Failed(
                 key,
@@ -281,9 +274,9 @@ impl<'a> Far<'a> {
     }
 
     /// The worker that had begun a task is gone: it is tried once more, alone.
-    fn lost(&mut self, number: usize, task: usize, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) {
+    fn lost(&mut self, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) {
         let Some(place) = self.places.get_mut(&key) else { return };
-        let post = &mut self.posts[number];
+        let post = &self.posts[place.post];
         place.gone += 1;
         if place.gone > 1 {
             let (machine, words) = at;
@@ -296,9 +289,16 @@ impl<'a> Far<'a> {
             ));
             return;
         }
-        let entry = (post.needs.again(), key, post.entries[task].line.clone(), place.gone, place.told_to_end);
-        post.over(task);
-        self.fresh.push(entry);
+        self.list_again(key, Needs::again);
+    }
+
+    /// Takes a task out of its queue, to be listed for workers with what `needs` makes of those that it had.
+    fn list_again(&mut self, key: Key, needs: impl Fn(&Needs) -> Needs) {
+        let Some(place) = self.places.get(&key) else { return };
+        let post = &mut self.posts[place.post];
+        let line = post.entries[place.task].line.clone();
+        self.fresh.push((needs(&post.needs), key, line, place.gone, place.told_to_end));
+        post.over(place.task);
     }
 
     /// Asks the scheduler which jobs are there, at most once a minute, and takes its answer when it comes.

@@ -150,6 +150,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             elsewhere: Elsewhere::default(),
             far,
             far_nodes: HashMap::new(),
+            past: cluster.and_then(|_| Past::of(workflow, store).ok()),
             most_seconds: HashMap::new(),
             refused,
             streamed: Streamed::default(),
@@ -217,6 +218,8 @@ struct Loop<'pool, 'env> {
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
     far_nodes: HashMap<Key, NodeId>,
+    /// Earlier runs, where tasks go to workers: a worker is told how long a task may take.
+    past: Option<Past<'env>>,
     /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.
     most_seconds: HashMap<String, Option<f64>>,
     /// Why the cluster cannot go on: nothing more is started.

@@ -1,7 +1,7 @@
 //! A material of the workflow as the calibrator writes it out.
 
 use crate::stage::Context;
-use dem::loading::material::BondKind;
+use crate::stage::material::BondKind;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

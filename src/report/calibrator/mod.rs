@@ -30,7 +30,7 @@ pub(super) const SCRIPT: &str = concat!(
     include_str!("form.js"),
 );
 
-/// What the page is told: the calibration, and where its parameters belong in the workflow.
+/// Input of the page: the calibration, and where its parameters belong in the workflow.
 #[derive(Serialize)]
 struct Told<'a> {
     #[serde(flatten)]

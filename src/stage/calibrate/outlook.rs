@@ -195,7 +195,7 @@ pub(super) fn parameters(params: &Params, solved: &[Solved]) -> Table {
         .texts_column("known", "what the targets say of it", texts(|row| row.word.to_owned()))
 }
 
-/// What to look at before the numbers are used; `learned` is what is said of the runs that the search learned from.
+/// What to look at before the numbers are used; `learned` are the sentences on the runs that the search learned from.
 pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> Table {
     let mut notes = Notes::default();
     learned.iter().for_each(|said| notes.add("", format!("learned from: {said}")));
