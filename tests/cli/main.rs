@@ -8,6 +8,7 @@ mod cases;
 mod cluster;
 mod columns;
 mod command;
+mod engines;
 mod export;
 mod faults;
 mod kill;
