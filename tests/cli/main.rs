@@ -16,6 +16,7 @@ mod nodes;
 mod readme;
 mod report;
 mod reruns;
+mod resume;
 mod scales;
 mod share;
 mod space;
