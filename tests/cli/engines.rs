@@ -46,6 +46,14 @@ fn of(row: &[(String, f64)], name: &str) -> f64 {
     row.iter().find(|(own, _)| own == name).unwrap_or_else(|| panic!("no column {name}")).1
 }
 
+#[test]
+fn every_example_is_a_workflow_without_a_fault() {
+    for name in ["yade", "lammps", "pfc"] {
+        let checked = example(name).flow(&["check", "rock.toml"]);
+        assert!(checked.status.success() && told(&checked).contains("no fault"), "{name}: {}", told(&checked));
+    }
+}
+
 /// Runs a stage of the example with the stand-in under the names of PFC's console programs.
 fn pfc(space: &Space, stages: &[&str], more: &[&str]) -> Output {
     let bin = space.path("bin");
