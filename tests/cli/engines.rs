@@ -121,37 +121,37 @@ fn a_command_file_with_a_slip_is_refused_by_the_stand_in() {
     }
 }
 
+/// The table of an example's runs, as text and as numbers, after a run with some settings.
+fn ran(space: &Space, stage: &str, set: &[&str]) -> (String, Vec<Vec<f64>>) {
+    let output = space.flow(&[&["run", "rock.toml", stage][..], set].concat());
+    assert!(output.status.success(), "{}", told(&output));
+    let table = space.stdout(&[&["show", "rock.toml", stage, "--csv", "--table", "runs"][..], set].concat());
+    let numbers = |line: &str| line.split(',').filter_map(|cell| cell.parse().ok()).collect();
+    let rows = table.lines().skip(1).map(numbers).collect();
+    (table, rows)
+}
+
+/// Columns: σ_c, E, UCS; E_c is 20 GPa. The modulus is the packing's and does not know the strength, which rises with σ_c.
 #[test]
 fn yade_compresses_a_specimen_of_flow() {
     if !is_there("yade") {
         return;
     }
-    let space = example("yade");
     let set = ["--set", "stage.points.factors=[\"sigma_c\"]", "--set", "factor.sigma_c.range=[10, 40]"];
-    let ran = space.flow(&[&["run", "rock.toml", "yade"][..], &set].concat());
-    assert!(ran.status.success(), "{}", told(&ran));
-    let table = space.stdout(&[&["show", "rock.toml", "yade", "--csv", "--table", "runs"][..], &set].concat());
-    let rows: Vec<Vec<f64>> =
-        table.lines().skip(1).map(|line| line.split(',').filter_map(|cell| cell.parse().ok()).collect()).collect();
-    // Columns: sigma_c, E, UCS; E_c is 20 GPa. The modulus is the packing's and does not know the strength, which rises with σ_c.
+    let (table, rows) = ran(&example("yade"), "yade", &set);
     let (weak, strong) = (&rows[0], &rows[1]);
     assert!((strong[1] / weak[1] - 1.0).abs() < 0.1 && (4.0..16.0).contains(&weak[1]), "{table}");
     assert!((2.5..6.0).contains(&(strong[2] / weak[2])) && (8.0..40.0).contains(&weak[2]), "{table}");
 }
 
+/// Columns: E_c, E, UCS. Stiffnesses are proportional to E_c, and so is the modulus of the packing.
 #[test]
 fn lammps_compresses_a_specimen_of_flow() {
     if !is_there("lmp") {
         return;
     }
-    let space = example("lammps");
     let set = ["--set", "stage.points.factors=[\"Ec\"]", "--set", "factor.Ec.range=[20, 40]"];
-    let ran = space.flow(&[&["run", "rock.toml", "lammps"][..], &set].concat());
-    assert!(ran.status.success(), "{}", told(&ran));
-    let table = space.stdout(&[&["show", "rock.toml", "lammps", "--csv", "--table", "runs"][..], &set].concat());
-    let rows: Vec<Vec<f64>> =
-        table.lines().skip(1).map(|line| line.split(',').filter_map(|cell| cell.parse().ok()).collect()).collect();
-    // Columns: Ec, E, UCS. Stiffnesses are proportional to E_c, and so is the modulus of the packing.
+    let (table, rows) = ran(&example("lammps"), "lammps", &set);
     assert!((1.9..2.1).contains(&(rows[1][1] / rows[0][1])) && (0.3..1.2).contains(&(rows[0][1] / 20.0)), "{table}");
     assert!(rows.iter().all(|row| row[2] > 20.0), "{table}");
 }
