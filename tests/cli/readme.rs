@@ -165,9 +165,11 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
 }
 
 /// Pages for people who look at the repository, by their path in it.
-const PAGES: [&str; 19] = [
+const PAGES: [&str; 22] = [
     "README.md",
     "CHANGELOG.md",
+    "workflows/annealing/README.md",
+    "workflows/brazilian/README.md",
     "workflows/cluster/README.md",
     "workflows/guide/README.md",
     "workflows/guide/SUMMARY.md",
@@ -181,6 +183,7 @@ const PAGES: [&str; 19] = [
     "workflows/guide/store.md",
     "workflows/guide/messages.md",
     "workflows/c30/README.md",
+    "workflows/engines/README.md",
     "store/README.md",
     "src/dem/tests/engine/VALIDATION.md",
     "tests/bench/README.md",
