@@ -73,8 +73,8 @@ impl Export {
         let mut written = 0;
         for one in &chosen {
             let artifact = store.get(&one.object.content).map_err(|e| system(&e))?;
-            let csv = self.to == Form::Csv;
-            let artifact = if csv { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
+            let read = matches!(self.to, Form::Files | Form::Csv);
+            let artifact = if read { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
             let files = self.files(&store, one, &artifact).map_err(|why| {
                 err!("error: {}: {why}", one.name);
                 Exit::BadInput

@@ -21,4 +21,5 @@ mod space;
 mod stop;
 mod trust;
 mod validity;
+mod verdicts;
 mod vocabulary;

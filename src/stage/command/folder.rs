@@ -159,7 +159,7 @@ fn readable(bytes: &[u8]) -> String {
 }
 
 /// A line of a message: no control characters, which would steer the terminal, and no more than fits a message.
-fn shown(line: &str) -> String {
+pub(super) fn shown(line: &str) -> String {
     const LONGEST: usize = 400;
     let line = line.rsplit('\r').find(|part| !part.trim().is_empty()).unwrap_or("");
     let plain: String = line.chars().filter(|c| !c.is_control() || *c == '\t').collect();

@@ -11,6 +11,7 @@
 //!
 //! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
 //! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
+//! `validity` and `cautions` say where the program tells that a run is not valid, or to be read with caution.
 //! Programs speak in any encoding: bytes of a text file that are not UTF-8 are read as `\\xE9`.
 //! Running out of time or being stopped is never recorded, because it says nothing about the model.
 
@@ -27,7 +28,7 @@ use super::{
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit;
-use read::Read;
+use read::{Read, ReadText};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -63,6 +64,13 @@ pub struct Command {
     pub on_failure: OnFailure,
     /// How each response is read, by its name.
     pub read: BTreeMap<String, Read>,
+    /// Where the program says why a run is not valid: it is then treated as a test of `simulate` that does not meet its
+    /// checks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validity: Option<ReadText>,
+    /// Where the program says why a run is to be read with caution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cautions: Option<ReadText>,
 }
 
 /// What becomes of a run that failed.
@@ -85,6 +93,10 @@ struct Params {
     #[serde(default, skip_serializing_if = "stops")]
     on_failure: OnFailure,
     read: BTreeMap<String, Read>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    validity: Option<ReadText>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cautions: Option<ReadText>,
     /// Parameters and factors by the name that templates use.
     values: BTreeMap<String, f64>,
     replicate: u64,
@@ -153,6 +165,8 @@ impl Stage for Command {
             found.push(Complaint::new("read", "no response is read").hint("add [stage.NAME.read.RESPONSE]"));
         }
         found.extend(self.read.iter().flat_map(|(name, read)| read.check(name, context)));
+        let verdicts = [("validity", &self.validity), ("cautions", &self.cautions)];
+        found.extend(verdicts.into_iter().flat_map(|(key, read)| read.iter().flat_map(move |read| read.check(key))));
         found
     }
 
@@ -188,6 +202,8 @@ impl Stage for Command {
             environment: self.environment.clone(),
             on_failure: self.on_failure,
             read: self.read.clone(),
+            validity: self.validity.clone(),
+            cautions: self.cautions.clone(),
             values,
             replicate: number,
         };
@@ -268,15 +284,23 @@ fn execute(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let folder = folder::Folder::fill(job, &params)?;
     let outcome = match folder.run(job, &params)? {
-        Ok(()) => params.read.iter().map(|(name, read)| Ok((name, read.value(&folder)?, read.unit()))).collect(),
+        Ok(()) => given(&folder, &params),
         Err(reason) => Err(reason),
     };
-    let responses: Vec<(&String, f64, &str)> = match (outcome, params.on_failure) {
-        (Ok(responses), _) => responses,
-        (Err(reason), OnFailure::Record) => return Ok(Run::plain(&reason, Responses::default()).to_artifact()),
-        (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
-    };
-    let responses: Vec<(&str, f64, &str)> =
-        responses.iter().map(|(name, v, unit)| (name.as_str(), *v, *unit)).collect();
-    Ok(Run::plain("", Responses::of(&responses)).to_artifact())
+    match (outcome, params.on_failure) {
+        (Ok(run), _) => Ok(run.to_artifact()),
+        (Err(reason), OnFailure::Record) => Ok(Run::plain(&reason, Responses::default()).to_artifact()),
+        (Err(reason), OnFailure::Stop) => Err(StageError::new(reason).hint(folder.last_words()).into()),
+    }
+}
+
+/// What the program gave and what it says of it.
+fn given(folder: &folder::Folder, params: &Params) -> Result<Run, String> {
+    let read = params.read.iter().map(|(name, read)| Ok((name.as_str(), read.value(folder)?, read.unit())));
+    let responses: Vec<(&str, f64, &str)> = read.collect::<Result<_, String>>()?;
+    let said = |read: &Option<ReadText>| read.as_ref().map(|read| read.reason(folder)).transpose();
+    let (validity, cautions) = (said(&params.validity)?, said(&params.cautions)?);
+    // A program that says anything of its runs says of all whether they are valid.
+    let validity = validity.or_else(|| cautions.is_some().then(String::new));
+    Ok(Run { validity, cautions, ..Run::plain("", Responses::of(&responses)) })
 }
