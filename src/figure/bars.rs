@@ -1,6 +1,6 @@
 //! Ranked horizontal bars: the ranges of a range analysis, or the standardized effects of a screening (Pareto).
 
-use super::axis::{Axis, fixed};
+use super::axis::{Axis, fixed, significant};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::palette::{self, INK, Marker, PAPER, SOFT};
@@ -153,7 +153,9 @@ impl RankedBars {
             scene.shape(marker(Marker::Diamond, at, 1.7), PAPER, Stroke::new(INK, 0.25));
             text_from = text_from.max(at[0] + 0.9);
         }
-        let line = Line::new(&fixed(bar.value, decimals), 0.9 * style.size());
+        let usual = bar.value == 0.0 || (1e-3..1e6).contains(&bar.value);
+        let value = if usual { fixed(bar.value, decimals) } else { significant(bar.value, 3) };
+        let line = Line::new(&value, 0.9 * style.size());
         let y = panel.place_y(row);
         scene.fill(Path::rect(Rect::new(text_from + 0.7, y - 1.3, line.width + 0.6, 2.6)), PAPER);
         scene.text_centred(line, [text_from + 1.0, y], Anchor::Start, SOFT);

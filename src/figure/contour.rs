@@ -4,7 +4,7 @@ use super::axis::{Axis, Scale, extent, significant};
 use super::column::Column;
 use super::isoline::Field;
 use super::palette::{INK, Map, Marker, PAPER, SOFT};
-use super::panel::{Margins, Panel, marker, within};
+use super::panel::{Margins, Panel, RIM, marker, on_page, within};
 use super::scene::{Anchor, Color, Path, Point, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style};
@@ -150,9 +150,9 @@ impl Bands {
             scene.text_centred(line, [bar.right + 1.5, y], Anchor::Start, INK);
         }
         scene.stroke(ticks, Stroke::new(SOFT, 0.2));
-        let at = [bar.right + 1.6 + widest + 1.2 + 0.8 * size, bar.centre()[1]];
-        let title = within(&self.axis.title(), size, bar.height() + 4.0 * size);
-        scene.text(title, at, Anchor::Middle, 90.0, INK);
+        let title = within(&self.axis.title(), size, (bar.height() + 4.0 * size).min(scene.height - RIM));
+        let y = on_page(bar.centre()[1], title.width, scene.height);
+        scene.text(title, [bar.right + 1.6 + widest + 1.2 + 0.8 * size, y], Anchor::Middle, 90.0, INK);
     }
 }
 

@@ -206,7 +206,7 @@ fn alone(table: &str, rows: [usize; 2], paired: usize) -> Vec<String> {
     let said = |(rows, whose): (usize, String)| {
         let alone = rows - paired;
         let have = if alone == 1 { "has" } else { "have" };
-        (alone > 0).then(|| format!("{alone} of {rows} rows of {whose} {have} no partner and are not compared"))
+        (alone > 0).then(|| format!("{alone} of {rows} rows of {whose} {have} no partner in the other table"))
     };
     let both = rows.into_iter().zip([format!("`{table}`"), format!("the reference of `{table}`")]);
     both.filter_map(said).collect()

@@ -1,5 +1,6 @@
 //! What can be wrong with a table or a model, each fault with the factor, the row and the remedy.
 
+use math::text::typed;
 use std::fmt;
 use thiserror::Error;
 
@@ -230,12 +231,6 @@ impl fmt::Display for Faults {
         }
         Ok(())
     }
-}
-
-/// A number as it is typed: all its digits, with a power of ten where it would be long.
-pub(crate) fn typed(value: f64) -> String {
-    let usual = value == 0.0 || (1e-5..1e16).contains(&value.abs()) || !value.is_finite();
-    if usual { value.to_string() } else { format!("{value:e}") }
 }
 
 /// 1, 2.5, 4; the first of many.

@@ -1,7 +1,8 @@
 //! The table that is analysed: factors, responses, weights, and which rows are missing.
 
-use super::error::{Fault, Faults, typed};
+use super::error::{Fault, Faults};
 use math::elementary::{exp, ln};
+use math::text::typed;
 use serde::{Deserialize, Serialize};
 
 /// How a model takes the values of a factor.

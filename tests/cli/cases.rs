@@ -252,7 +252,7 @@ fn a_single_run_without_a_result_says_so_everywhere() {
     assert!(rows.iter().any(|row| row[..3] == ["UCS", "", "MPa"] && row[3].contains(failure)), "{rows:?}");
     space.stdout(&["export", "w.toml", "none", "--quiet"]);
     let csv = std::fs::read_to_string(space.path("export/none.responses.csv")).expect("the responses");
-    assert!(csv.contains("UCS,,MPa,no peak") && !csv.contains("UCS,0"), "{csv}");
+    assert!(csv.contains("UCS,,MPa,\"no peak") && !csv.contains("UCS,0"), "{csv}");
     space.stdout(&["report", "w.toml", "-o", "page.html"]);
     let page = std::fs::read_to_string(space.path("page.html")).expect("the page");
     assert!(page.contains(failure), "the report lacks the failure");

@@ -4,9 +4,9 @@
 use crate::space::{Space, told};
 use serde_json::Value;
 
-/// y = 2 x; at x = 3 the disc turns, and at x = 5 the program asks for caution. Replicates of x = 4 turn at number 3.
+/// y = 2 x; at x = 3 the disc turns, and at x = 5 the program asks for caution. Of four replicates about x = 4.2 one turns.
 const ENGINE: &str = r#"awk 'BEGIN { x = {{x}}; r = {{replicate}};
-if (x == 3 || (x >= 4 && x < 4.5 && r == 3)) v = "\"rotation of the disc\""; else v = "null";
+if (x == 3 || (x > 4 && x < 4.5 && r % 4 == 3)) v = "\"rotation of the disc\""; else v = "null";
 if (x == 5) c = "\"coarse\""; else c = "\"\"";
 y = (x == 3) ? 100 : 2 * x;
 printf "{\"y\": %.17g, \"checks\": %s, \"look\": [%s]}\n", y, v, c > "out.json" }'
@@ -164,8 +164,11 @@ fn a_verdict_that_cannot_be_read_is_no_valid_run() {
     assert!(number.contains("neither a text, nor a list of texts, nor null"), "{number}");
     let checked = space.flow(&["check", "w.toml", "--set", "stage.runs.validity={ file = \"../x\" }"]);
     assert_eq!(checked.status.code(), Some(2));
-    let said = told(&checked);
-    assert!(said.contains("`../x` must be a plain name") && said.contains("0 ways to read `validity`"), "{said}");
+    assert!(told(&checked).contains("`../x` must be a plain name"), "{}", told(&checked));
+    space.write("w.toml", &WORKFLOW.replace("file = \"out.json\", pointer = \"/checks\"", "file = \"out.json\""));
+    let checked = told(&space.flow(&["check", "w.toml"]));
+    assert!(checked.contains("0 ways to read `validity`, not one"), "{checked}");
+    space.write("w.toml", WORKFLOW);
     // No match of a pattern is no reason.
     let log = "stage.runs.validity={ file = \"stdout\", pattern = 'NOT VALID: (.+)' }";
     assert!(space.flow(&["run", "w.toml", "runs", "--set", log]).status.success());

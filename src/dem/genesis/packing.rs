@@ -29,7 +29,7 @@ use super::relax::Until;
 use super::sizes::{GivesWay, Sizes};
 use crate::Watch;
 use crate::space::{D2, Space, Tuple, Vector};
-use crate::words::Quantity;
+use crate::words::{Number, Quantity};
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -116,9 +116,9 @@ pub enum PackingError {
     },
     /// Too many balls.
     #[error(
-        "packing: a mean radius of {} gives {count:.2e} balls in the specimen, which would take about {gigabytes:.0} GB \
-         of memory and {hours:.1} h to pack; at most {MOST_BALLS:e} are packed, enlarge the radius",
-        Quantity(*.mean_radius, "m")
+        "packing: a mean radius of {} gives {count:.2e} balls in the specimen, which would take about {} GB of memory and \
+         {} h to pack; at most {MOST_BALLS:e} are packed, enlarge the radius",
+        Quantity(*.mean_radius, "m"), Number(*.gigabytes), Number(*.hours)
     )]
     Many {
         /// Mean radius asked for (m).

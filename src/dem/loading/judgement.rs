@@ -10,7 +10,6 @@ use super::rig::Scales;
 use super::settings::Schedule;
 use super::validity::{Check, Reason};
 use crate::measure::unbalanced_ratio;
-use crate::words::Number;
 use crate::{Engine, Space};
 use serde::{Deserialize, Serialize};
 
@@ -48,8 +47,7 @@ pub struct Judgement {
 pub enum LoadingWarning {
     /// Too much strain in a step.
     #[error(
-        "strain per step is {found:.1e}, above 3e-8: the strength depends on the rate; lower the speed to {} m/s",
-        Number(*.remedy)
+        "strain per step is {found:.1e}, above 3e-8: the strength depends on the rate; lower the speed to {remedy:.3} m/s"
     )]
     StrainPerStep {
         /// Strain in one step.
@@ -59,8 +57,7 @@ pub enum LoadingWarning {
     },
     /// Platens too fast.
     #[error(
-        "platen speed over wave speed is {found:.1e}, above 1e-5: the strength depends on the rate; lower the speed to {} m/s",
-        Number(*.remedy)
+        "platen speed over wave speed is {found:.1e}, above 1e-5: the strength depends on the rate; lower the speed to {remedy:.3} m/s"
     )]
     Speed {
         /// Speed over wave speed.

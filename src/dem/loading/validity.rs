@@ -3,7 +3,6 @@
 //! A run whose checks are not all met is not valid. It keeps its numbers; who fits or averages them is told why they should
 //! not count.
 
-use crate::words::{Number, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// What can be wrong with a run that ended.
@@ -141,26 +140,28 @@ impl Check {
 
 impl std::fmt::Display for Check {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let reason = self.reason;
+        let (reason, unit) = (self.reason, self.reason.unit());
+        let space = if unit.is_empty() { "" } else { " " };
         let side = match (self.met, self.value > self.bound) {
             (true, _) => "within",
             (false, true) => "above",
             (false, false) => "below",
         };
-        let [value, bound] = [self.value, self.bound].map(|number| match reason.unit() {
-            "" => Number(number).to_string(),
-            "Pa" => Quantity(number, "Pa").to_string(),
-            unit => format!("{} {unit}", Number(number)),
-        });
+        let [value, bound] = [self.value, self.bound].map(short);
         let name = reason.name();
         // What ended a test has no bound that it should have met.
         if !self.bound.is_finite() || (!self.met && self.value == self.bound) {
-            write!(f, "{name}: {value}")?;
+            write!(f, "{name}: {value}{space}{unit}")?;
         } else {
-            write!(f, "{name}: {value} is {side} {bound}")?;
+            write!(f, "{name}: {value}{space}{unit} is {side} {bound}{space}{unit}")?;
         }
         if self.met { Ok(()) } else { write!(f, " ({}); {}", reason.about(), reason.remedy()) }
     }
+}
+
+/// Three digits, with a power of ten where it is needed.
+fn short(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e4).contains(&x.abs()) { format!("{}", (x * 1e3).round() / 1e3) } else { format!("{x:.2e}") }
 }
 
 #[cfg(test)]
@@ -172,7 +173,7 @@ mod tests {
         let turned = Check::at_most(Reason::Rotation, 0.031, 0.0175);
         assert_eq!(
             turned.to_string(),
-            "rotation: 0.031 rad is above 0.0175 rad (least-squares rotation of all balls up to the peak); \
+            "rotation: 0.031 rad is above 0.018 rad (least-squares rotation of all balls up to the peak); \
              use a smaller ratio of radii, smaller particles, or curved jaws"
         );
         assert_eq!(

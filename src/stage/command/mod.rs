@@ -143,6 +143,10 @@ impl Stage for Command {
         for name in self.environment.keys().filter(|name| name.is_empty() || name.contains(['=', '\0'])) {
             found.push(Complaint::new("environment", format!("`{name}` cannot be the name of a variable")));
         }
+        if self.environment.contains_key(leftover::VARIABLE) {
+            let message = format!("`{}` is set by flow: it names the folder of the run", leftover::VARIABLE);
+            found.push(Complaint::new("environment", message).hint("leave it out"));
+        }
         let values = self.values(context);
         if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument, &values)) {
             let message = format!("`{{{{{name}}}}}` is filled in templates, not in `run`");
@@ -150,17 +154,7 @@ impl Stage for Command {
             found.push(Complaint::new("run", message).hint(hint));
         }
         found.extend(rows::check_material(self.material.as_ref(), context));
-        for name in self.files.keys().filter(|name| self.templates.contains_key(*name)) {
-            found.push(Complaint::new("templates", format!("`{name}` stands in `files` and in `templates`")));
-        }
-        for name in self.files.keys().chain(self.templates.keys()).filter(|name| OUTPUT.contains(&name.as_str())) {
-            let message = format!("`{name}` is where the run's own output goes");
-            found.push(Complaint::new("", message).hint("give the file another name"));
-        }
-        for name in self.files.keys().chain(self.templates.keys()).filter(|name| !folder::is_plain(name)) {
-            let message = format!("`{name}` must be a plain name inside the run's folder");
-            found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`"));
-        }
+        found.extend(self.check_names());
         if self.read.is_empty() {
             found.push(Complaint::new("read", "no response is read").hint("add [stage.NAME.read.RESPONSE]"));
         }
@@ -228,6 +222,30 @@ impl Kind for Command {
 }
 
 impl Command {
+    /// Faults of the names of files in the folder of a run.
+    fn check_names(&self) -> Vec<Complaint> {
+        let mut found = Vec::new();
+        let names = || self.files.keys().chain(self.templates.keys());
+        for name in self.files.keys().filter(|name| self.templates.contains_key(*name)) {
+            found.push(Complaint::new("templates", format!("`{name}` stands in `files` and in `templates`")));
+        }
+        for name in names().filter(|name| OUTPUT.contains(&name.split('/').next().unwrap_or(name))) {
+            let message = format!("`{name}` is where the run's own output goes");
+            found.push(Complaint::new("", message).hint("give the file another name"));
+        }
+        for name in names().filter(|name| !folder::is_plain(name)) {
+            let message = format!("`{}` must be a plain name inside the run's folder", name.escape_debug());
+            found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`, and take a short name"));
+        }
+        for name in names() {
+            if let Some(below) = names().find(|other| Path::new(other).parent().is_some_and(|p| p.starts_with(name))) {
+                let message = format!("`{name}` is a file, and the folder in which `{below}` lies");
+                found.push(Complaint::new("", message).hint("give one of them another name"));
+            }
+        }
+        found
+    }
+
     /// Every name that a template may use.
     fn values(&self, context: &Context) -> Vec<String> {
         let material = self.material.iter().filter_map(|name| context.materials.get(name));

@@ -108,9 +108,19 @@ impl Read {
             from_text(&text, self.pattern.as_deref().unwrap_or_default())
         };
         let number = number.map_err(|why| format!("`{}`: {why}", self.file))?;
-        let value: f64 = number.trim().parse().map_err(|_| format!("`{}`: `{number}` is not a number", self.file))?;
+        let value = number_of(number.trim()).ok_or_else(|| format!("`{}`: `{number}` is not a number", self.file))?;
         if value.is_finite() { Ok(value) } else { Err(format!("`{}`: `{number}` is not a finite number", self.file)) }
     }
+}
+
+/// A number as programs print it: Fortran writes powers of ten with a `D`.
+fn number_of(text: &str) -> Option<f64> {
+    let fortran = || {
+        let (digits, power) = text.split_once(['d', 'D'])?;
+        let numeric = |text: &str| text.bytes().all(|b| b.is_ascii_digit() || b"+-.".contains(&b));
+        if numeric(digits) && numeric(power) { format!("{digits}e{power}").parse().ok() } else { None }
+    };
+    text.parse().ok().or_else(fortran)
 }
 
 impl ReadText {
@@ -198,6 +208,15 @@ mod tests {
         assert_eq!(from_json(r#"{"r": [1, {"UCS": 3e7}]}"#, "/r/1/UCS"), Ok("30000000.0".to_owned()));
         assert_eq!(from_text("UCS = 1\nUCS = 2\n", r"UCS = (\S+)"), Ok("2".to_owned()));
         assert_eq!(from_text("35.5\n", "(.*)"), Ok("35.5".to_owned()));
+    }
+
+    #[test]
+    fn powers_of_fortran_are_numbers() {
+        for (text, value) in
+            [("1.5D+03", Some(1500.0)), ("-2d-1", Some(-0.2)), ("1d", None), ("d5", None), ("*****", None)]
+        {
+            assert_eq!(number_of(text), value, "{text}");
+        }
     }
 
     #[test]

@@ -45,7 +45,12 @@ impl Shown {
             own => own.to_owned(),
         };
         let to = Conversion::between(&column.unit, &unit);
-        let to = to.map_err(|e| StageError::new(format!("column `{}`: {e}", column.name)))?;
+        let words = |unit: &str| if unit.is_empty() { "no unit".to_owned() } else { format!("`{unit}`") };
+        let to = to.map_err(|e| {
+            let (name, own, wanted) = (&column.name, words(&column.unit), words(&unit));
+            StageError::new(format!("column `{name}` is in {own} and is drawn in {wanted}: {e}"))
+                .hint("give the column's unit in its head, as in `Ec [GPa]`")
+        })?;
         let values = to.of_all(values);
         Ok(Self { quantity: Quantity { unit, ..label.quantity() }, values, names })
     }

@@ -4,7 +4,7 @@ use crate::samples::{self, columns};
 use figure::{DOUBLE, Figure, Quantity, SINGLE, Style};
 
 /// A name as a file may hold it.
-const LONG: &str = "a_factor_with_a_rather_long_name_of_the_group_between_aggregate_and_mortar";
+const LONG: &str = "a_factor_with_a_rather_long_name";
 
 /// What becomes of an ordinary number: shifted far from zero, negative and large, small, near the ends of the range.
 const MAPS: [(&str, fn(f64) -> f64); 7] = [
