@@ -48,7 +48,11 @@ impl Figure for RankedBars {
         let values = values.chain(self.references.iter().map(|r| r.1));
         let mut x = Axis::from_zero(self.quantity.title(), values, 5);
         // Room for the numbers behind the bars.
-        x = Axis::between(x.label, x.scale, 0.0, x.high * (1.0 + 9.0 / style.width), 5);
+        let largest = order.first().map_or(1.0, |&i| self.bars[i].value);
+        let decimals = (2.0 - log10(largest.max(1e-300)).floor()).clamp(0.0, 9.0) as usize;
+        let number = |bar: &Bar| Line::new(&number(bar.value, decimals), 0.9 * size).width;
+        let room = self.bars.iter().map(number).fold(0.0, f64::max) + 2.5;
+        x = Axis::between(x.label, x.scale, 0.0, x.high * (1.0 + (1.5 * room).max(9.0) / style.width), 5);
         let mut y = Axis::categories("", &names);
         (y.low, y.high) = (y.high, y.low);
         let height = pitch * names.len() as f64 + legend_height + 12.5;
@@ -66,8 +70,6 @@ impl Figure for RankedBars {
             let x = panel.place_x(*at);
             scene.stroke(Path::polyline(&[[x, panel.area.top], [x, panel.area.bottom]]), reference_style(k));
         }
-        let largest = order.first().map_or(1.0, |&i| self.bars[i].value);
-        let decimals = (2.0 - log10(largest.max(1e-300)).floor()).clamp(0.0, 9.0) as usize;
         for (row, &i) in order.iter().enumerate() {
             self.draw_value(&mut scene, &panel, row as f64, &self.bars[i], decimals, style);
         }
@@ -153,13 +155,17 @@ impl RankedBars {
             scene.shape(marker(Marker::Diamond, at, 1.7), PAPER, Stroke::new(INK, 0.25));
             text_from = text_from.max(at[0] + 0.9);
         }
-        let usual = bar.value == 0.0 || (1e-3..1e6).contains(&bar.value);
-        let value = if usual { fixed(bar.value, decimals) } else { significant(bar.value, 3) };
-        let line = Line::new(&value, 0.9 * style.size());
+        let line = Line::new(&number(bar.value, decimals), 0.9 * style.size());
         let y = panel.place_y(row);
         scene.fill(Path::rect(Rect::new(text_from + 0.7, y - 1.3, line.width + 0.6, 2.6)), PAPER);
         scene.text_centred(line, [text_from + 1.0, y], Anchor::Start, SOFT);
     }
+}
+
+/// The number behind a bar, with a power of ten where it would be long.
+fn number(value: f64, decimals: usize) -> String {
+    let usual = value == 0.0 || (1e-3..1e6).contains(&value);
+    if usual { fixed(value, decimals) } else { significant(value, 3) }
 }
 
 fn reference_style(k: usize) -> Stroke {

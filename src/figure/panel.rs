@@ -216,8 +216,8 @@ impl Panel {
 
 /// The middle of a text of a given length, moved as little as it must be to lie on a page of a given extent.
 pub(super) fn on_page(middle: f64, length: f64, extent: f64) -> f64 {
-    let half = length / 2.0;
-    if length < extent { middle.clamp(half, extent - half) } else { extent / 2.0 }
+    let half = (length + RIM / 2.0) / 2.0;
+    if 2.0 * half < extent { middle.clamp(half, extent - half) } else { extent / 2.0 }
 }
 
 fn labelled(axis: &Axis) -> impl Iterator<Item = &Tick> {

@@ -269,7 +269,7 @@ fn magnitude(column: &str, values: &[f64], about_mean: bool) -> Option<Fault> {
     } else {
         return None;
     };
-    Some(Fault::Magnitude { column: column.to_owned(), size: typed(size) })
+    Some(Fault::Magnitude { column: column.to_owned(), size: format!("{size:.0e}") })
 }
 
 /// A factor's value that is not finite or not one of its declared levels.

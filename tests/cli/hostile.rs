@@ -166,7 +166,11 @@ fn a_limit_on_the_size_of_files_is_an_error_that_is_told() {
     run.args(["-c", script, env!("CARGO_BIN_EXE_flow")]).current_dir(space.path(""));
     let output = run.stdout(Stdio::piped()).stderr(Stdio::piped()).output().expect("flow");
     assert_eq!(output.status.signal(), None, "{}", told(&output));
-    assert!(!output.status.success() && told(&output).contains("File too large"), "{}", told(&output));
+    assert!(
+        !output.status.success() && told(&output).contains("larger than the limit on the size of files"),
+        "{}",
+        told(&output)
+    );
     space.run(&[]);
 }
 

@@ -129,7 +129,7 @@ replicates = 4
 #[test]
 fn a_verification_leaves_out_counts_and_names_runs_that_are_not_valid() {
     let space = space(CALIBRATION);
-    let output = space.flow(&["run", "w.toml", "verified"]);
+    let output = space.flow(&["run", "w.toml"]);
     assert!(output.status.success(), "{}", told(&output));
     let left = "1 of 4 runs is not valid and was left out: rotation of the disc (1)";
     assert!(told(&output).contains(left), "{}", told(&output));
@@ -170,8 +170,9 @@ fn a_verdict_that_cannot_be_read_is_no_valid_run() {
     assert!(checked.contains("0 ways to read `validity`, not one"), "{checked}");
     space.write("w.toml", WORKFLOW);
     // No match of a pattern is no reason.
-    let log = "stage.runs.validity={ file = \"stdout\", pattern = 'NOT VALID: (.+)' }";
-    assert!(space.flow(&["run", "w.toml", "runs", "--set", log]).status.success());
-    let runs = space.stdout(&["show", "w.toml", "runs", "--table", "runs", "--csv", "--quiet", "--set", log]);
+    let log = "file = \"stdout\", pattern = 'NOT VALID: (.+)'";
+    space.write("w.toml", &WORKFLOW.replace("file = \"out.json\", pointer = \"/checks\"", log));
+    space.run(&["runs"]);
+    let runs = space.stdout(&["show", "w.toml", "runs", "--table", "runs", "--csv", "--quiet"]);
     assert!(runs.contains("\n3,100,,,\n"), "{runs}");
 }
