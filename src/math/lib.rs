@@ -4,10 +4,12 @@
 //! * [`elementary`]: `exp`, `sin`, `pow` … with one implementation everywhere, so that results keep their bits
 //! * [`distribution`]: tails and quantiles of F, t and the normal distribution
 //! * [`occurrence`]: which of equal rows each row is
+//! * [`scale`]: whether a range is divided by differences or by ratios
 //! * [`text`]: numbers as people and programs read them back
 
 pub mod distribution;
 pub mod elementary;
 pub mod occurrence;
 pub mod random;
+pub mod scale;
 pub mod text;

@@ -5,8 +5,9 @@ use super::fault::Fault;
 use super::node::{Node, Table};
 use crate::stage::material::{self, Microparameter, Value};
 use crate::stage::vary::with_values;
-use crate::stage::{Context, Factor, Scale};
+use crate::stage::{Context, Factor};
 use crate::unit::{Dimension, Unit};
+use math::scale::Scale;
 use std::collections::BTreeSet;
 
 /// Levels of a factor that are tried in the settings of a stage.
@@ -22,12 +23,12 @@ impl Check<'_> {
         }
         for (name, factor) in &context.factors {
             for path in &factor.sets {
-                let place = One { factors, name, factor, path };
+                let one = One { factors, name, factor, path };
                 match path.split_once('.') {
                     Some((stage, key)) if context.sketches.contains_key(stage) => {
-                        self.stage_setting(context, &place, stage, key);
+                        self.stage_setting(context, &one, stage, key);
                     }
-                    _ => self.microparameter(context, &place),
+                    _ => self.microparameter(context, &one),
                 }
             }
         }

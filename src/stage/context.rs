@@ -1,6 +1,6 @@
 //! What a stage can see when it decides what to do next.
 
-use super::ledger::Kept;
+use super::cached::CachedRun;
 use super::material::Material;
 use super::rows::Rows;
 use super::vary::Template;
@@ -8,6 +8,7 @@ use super::{Memory, StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
 use crate::expression::Measure;
 use crate::unit::{Dimension, Unit};
+use math::scale::Scale;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -93,17 +94,6 @@ pub struct Factor {
     pub range: Option<[f64; 2]>,
 }
 
-/// How a range is divided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scale {
-    /// By equal differences.
-    #[default]
-    Linear,
-    /// By equal ratios.
-    Log,
-}
-
 impl Factor {
     /// A number in the factor's unit as a quantity; none when the unit cannot be read.
     pub fn measure(&self, value: f64) -> Option<Measure> {
@@ -174,7 +164,7 @@ pub trait Library {
 
     /// The run of a row that an earlier campaign made, if it knows of one and all that decides a run is as it was. Asked
     /// once for every row of a fan-out, in order.
-    fn kept(&self, _rows: &Arc<Rows>, _index: usize) -> Option<Kept<'_>> {
+    fn cached(&self, _rows: &Arc<Rows>, _index: usize) -> Option<CachedRun<'_>> {
         None
     }
 

@@ -37,6 +37,7 @@
 pub mod agreement;
 pub mod anova;
 pub mod beside;
+pub mod cached;
 pub mod calibrate;
 #[cfg(test)]
 pub mod census;
@@ -52,7 +53,6 @@ pub mod fitted;
 pub mod formula;
 mod given;
 pub mod invalid;
-pub mod ledger;
 pub mod material;
 mod memory;
 mod notes;
@@ -74,8 +74,7 @@ pub mod vary;
 pub mod verify;
 
 pub use context::{
-    Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Scale, Sketch,
-    Varier,
+    Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Sketch, Varier,
 };
 pub use memory::Memory;
 pub use packed::Packed;
