@@ -1,7 +1,7 @@
 //! Computed results beside values from elsewhere, as they are stored.
 
 use super::ArtifactKind;
-use super::statistics::Remarks;
+use super::statistics::NoteTable;
 use super::validity::NotValid;
 
 crate::artifact! {
@@ -16,7 +16,7 @@ crate::artifact! {
         /// runs that are not valid, and what became of them
         pub not_valid: Option<NotValid>, "";
         /// rows and pairs that the comparison is not of
-        pub notes: Option<Remarks>, "";
+        pub notes: Option<NoteTable>, "";
     }
 }
 

@@ -12,7 +12,7 @@ use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names, given::check_given, invalid::Invalid};
 use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
-use crate::artifact::statistics::Remarks;
+use crate::artifact::statistics::NoteTable;
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
@@ -158,7 +158,7 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let of = |port: &'static str| job.inputs.iter().filter(move |(name, _)| name == port).map(|(_, artifact)| artifact);
     let (mut points, mut trends, mut not_valid) = (Vec::new(), Vec::new(), NotValid::default());
-    let mut notes = Remarks::default();
+    let mut notes = NoteTable::default();
     for ((pair, ours), theirs) in params.tables.iter().zip(of("of")).zip(of("compare")) {
         let (ours, theirs) = (runs(ours)?, runs(theirs)?);
         not_valid.append(pair.ours.not_valid(ours)?);

@@ -76,7 +76,7 @@ impl Data {
             let message = format!("{file}: column `{name}` is in {given} and `{name}` of the workflow in {wanted}");
             let complaint = Complaint::new("file", message).hint("give the unit in the head of the column: `Ec [GPa]`");
             // Without a unit it may be a column that nothing reads.
-            if column.unit.is_empty() { found.remarks.push(complaint) } else { found.faults.push(complaint) }
+            if column.unit.is_empty() { found.warnings.push(complaint) } else { found.faults.push(complaint) }
         }
     }
 }

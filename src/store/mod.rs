@@ -68,6 +68,7 @@ use crate::artifact::{Artifact, ContentHash, Key};
 use cache::Cache;
 use disk::Disk;
 use journal::{Index, Segments};
+use object::Seal;
 use presence::Presence;
 use prove::Proven;
 use record::{milliseconds, moment};
