@@ -51,7 +51,11 @@ impl Figure for RankedBars {
         let largest = order.first().map_or(1.0, |&i| self.bars[i].value);
         let number = |bar: &Bar| Line::new(&number(bar.value, largest), 0.9 * size).width;
         let room = self.bars.iter().map(number).fold(0.0, f64::max) + 2.5;
-        x = Axis::between(x.label, x.scale, 0.0, x.high * (1.0 + (1.5 * room).max(9.0) / style.width), 5);
+        let beside =
+            names.iter().map(|name| Line::new(name, size).width).fold(8.0, |widest: f64, w| widest.max(w + 8.0));
+        let left = (style.width - beside - room).max(0.2 * style.width);
+        let share = if room > 9.0 { room / left } else { 9.0 / style.width };
+        x = Axis::between(x.label, x.scale, 0.0, x.high * (1.0 + share), 5);
         let mut y = Axis::categories("", &names);
         (y.low, y.high) = (y.high, y.low);
         let height = pitch * names.len() as f64 + legend_height + 12.5;
