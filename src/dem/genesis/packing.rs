@@ -209,6 +209,26 @@ pub enum PackingError {
     },
 }
 
+impl PackingError {
+    /// Whether packing came to this, which no look at the settings could foresee: another seed may come to something else.
+    pub fn is_outcome(&self) -> bool {
+        match self {
+            Self::Loose { .. }
+            | Self::Dense { .. }
+            | Self::Escaped { .. }
+            | Self::Restless { .. }
+            | Self::Unsettled { .. } => true,
+            Self::Value { .. }
+            | Self::List { .. }
+            | Self::Few { .. }
+            | Self::Many { .. }
+            | Self::Large { .. }
+            | Self::Dimension { .. }
+            | Self::Stopped => false,
+        }
+    }
+}
+
 /// Most balls that are packed.
 pub const MOST_BALLS: f64 = 5e6;
 /// Mean unbalanced force over the mean contact force that counts as rest at a fixed porosity.

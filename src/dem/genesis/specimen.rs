@@ -141,6 +141,25 @@ pub enum SpecimenError {
     ManyAggregate(f64),
 }
 
+impl SpecimenError {
+    /// Whether packing or placing came to this, which no look at the settings could foresee: another seed may come to
+    /// something else.
+    pub fn is_outcome(&self) -> bool {
+        match self {
+            Self::Packing(packing) => packing.is_outcome(),
+            Self::Placement(_) => true,
+            Self::Gradation(_)
+            | Self::Polygon(_)
+            | Self::Groups(_)
+            | Self::Value { .. }
+            | Self::SolidAggregate
+            | Self::NoAggregate { .. }
+            | Self::LargeAggregate { .. }
+            | Self::ManyAggregate(_) => false,
+        }
+    }
+}
+
 /// Most polygons that are placed.
 pub const MOST_POLYGONS: f64 = 1e5;
 

@@ -1,6 +1,7 @@
-//! How a response, and the words on the validity of a run, are read from what a program left.
+//! How a response is read from what a program left.
 
-use super::folder::{Folder, is_plain, shown};
+use super::folder::{Folder, is_plain};
+use super::number::{Number, number};
 use crate::stage::sheet::Sheet;
 use crate::stage::{Complaint, Context, rows};
 use regex::Regex;
@@ -14,69 +15,70 @@ use serde_json::Value;
 pub struct Read {
     /// The file in the run's folder; `stdout` and `stderr` hold what the program printed.
     file: String,
-    /// Column of a CSV file with a first line of names; the last row counts.
+    /// Column of a CSV file with a first line of names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     column: Option<String>,
     /// Pointer into a JSON file, such as `/result/UCS`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pointer: Option<String>,
-    /// Regular expression whose first group is the number; the last match counts.
+    /// Regular expression whose first group is the number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pattern: Option<String>,
+    /// Which row of the column, or which match of the pattern, counts.
+    #[serde(default, skip_serializing_if = "Take::is_default")]
+    take: Take,
     /// Unit of the number; none for a pure number.
     #[serde(default)]
     unit: String,
 }
 
-/// Where a text stands: the words after which a run is not valid, or is to be read with caution.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ReadText {
-    /// The file in the run's folder; `stdout` and `stderr` hold what the program printed.
-    file: String,
-    /// Column of a CSV file with a first line of names; the last row counts. An empty cell is no reason.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    column: Option<String>,
-    /// Pointer into a JSON file, such as `/checks/failed`, to a text or a list of texts. Empty ones and `null` are no reason.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pointer: Option<String>,
-    /// Regular expression whose first group is the reason; every match counts, and there is no reason without one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pattern: Option<String>,
+/// Which of several numbers is the response.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Take {
+    /// The last: what a program prints at the end of a run.
+    #[default]
+    Last,
+    /// The first.
+    First,
+    /// The smallest.
+    Minimum,
+    /// The largest, such as the peak of a history of stress.
+    Maximum,
+    /// The mean of all.
+    Mean,
 }
 
-/// A file and one of the ways to find something in it.
-struct Place<'a> {
-    file: &'a str,
-    column: Option<&'a str>,
-    pointer: Option<&'a str>,
-    pattern: Option<&'a str>,
-}
+impl Take {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 
-impl Place<'_> {
-    /// What is wrong with it; `at` is its path in the stage, `what` is what the pattern's group holds.
-    fn check(&self, at: &str, name: &str, what: &str, example: &str) -> Vec<Complaint> {
-        let key = |key: &str| format!("{at}.{key}");
-        let mut found = Vec::new();
-        if !is_plain(self.file) {
-            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
-            let hint = "leave out `..` and a leading `/`: what lies outside is in no key; list it in `files`";
-            found.push(Complaint::new(&key("file"), message).hint(hint));
+    /// The number among these texts, in their order; there is at least one. Missing values are passed over unless the
+    /// first or the last is wanted.
+    fn of(self, texts: &[String]) -> Result<Number, String> {
+        let read = |text: &String| number(text).map_err(|why| format!("`{text}` {why}"));
+        let ends = match self {
+            Self::Last => texts.last(),
+            Self::First => texts.first(),
+            Self::Minimum | Self::Maximum | Self::Mean => None,
+        };
+        if let Some(text) = ends {
+            return read(text);
         }
-        let ways = [self.column, self.pointer, self.pattern].iter().filter(|way| way.is_some()).count();
-        if ways != 1 {
-            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
-            found.push(Complaint::new(at, format!("{ways} ways to read `{name}`, not one")).hint(hint));
-        }
-        match self.pattern.map(Regex::new) {
-            Some(Err(e)) => found.push(Complaint::new(&key("pattern"), e.to_string())),
-            Some(Ok(regex)) if regex.captures_len() != 2 => {
-                let message = format!("the pattern needs exactly one group: the {what}");
-                found.push(Complaint::new(&key("pattern"), message).hint(format!("pattern = '{example}'")));
+        let mut found = Vec::with_capacity(texts.len());
+        for text in texts {
+            if let Number::Finite(value) = read(text)? {
+                found.push(value);
             }
-            Some(Ok(_)) | None => {}
         }
-        found
+        let count = found.len() as f64;
+        let value = match self {
+            Self::Minimum => found.into_iter().reduce(f64::min),
+            Self::Mean => found.into_iter().reduce(|a, b| a + b).map(|sum| sum / count),
+            Self::Maximum | Self::Last | Self::First => found.into_iter().reduce(f64::max),
+        };
+        Ok(value.map_or(Number::Missing, Number::Finite))
     }
 }
 
@@ -85,152 +87,161 @@ impl Read {
         &self.unit
     }
 
-    fn place(&self) -> Place<'_> {
-        let Self { file, column, pointer, pattern, .. } = self;
-        Place { file, column: column.as_deref(), pointer: pointer.as_deref(), pattern: pattern.as_deref() }
-    }
-
     pub(super) fn check(&self, name: &str, context: &Context) -> Vec<Complaint> {
-        let at = format!("read.{name}");
-        let mut found = self.place().check(&at, name, "number", r"UCS = (\S+)");
-        found.extend(rows::check_response(&format!("{at}.unit"), name, &self.unit, context));
+        let at = |key: &str| format!("read.{name}.{key}");
+        let mut found = Vec::new();
+        if !is_plain(&self.file) {
+            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
+            let hint = "leave out `..` and a leading `/`: what lies outside is in no key; list it in `files`";
+            found.push(Complaint::new(&at("file"), message).hint(hint));
+        }
+        let ways = [&self.column, &self.pointer, &self.pattern].iter().filter(|way| way.is_some()).count();
+        if ways != 1 {
+            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
+            found.push(Complaint::new(&at(""), format!("{ways} ways to read `{name}`, not one")).hint(hint));
+        }
+        found.extend(rows::check_response(&at("unit"), name, &self.unit, context));
+        if self.pointer.is_some() && !self.take.is_default() {
+            let message = "a pointer names one number, so there is nothing to choose from";
+            found.push(Complaint::new(&at("take"), message).hint("leave `take` out, or read a column or a pattern"));
+        }
+        match self.pattern.as_deref().map(Regex::new) {
+            Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
+            Some(Ok(regex)) if regex.captures_len() != 2 => {
+                let message = "the pattern needs exactly one group: the number";
+                found.push(Complaint::new(&at("pattern"), message).hint(r"pattern = 'UCS = (\S+)'"));
+            }
+            Some(Ok(_)) | None => {}
+        }
         found
     }
 
-    /// The number, in the unit of this response.
-    pub(super) fn value(&self, folder: &Folder) -> Result<f64, String> {
+    /// The number, in the unit of this response, or why it has no value although the program ended well.
+    ///
+    /// # Errors
+    /// What is wrong with the file or the number.
+    pub(super) fn value(&self, folder: &Folder) -> Result<Result<f64, String>, String> {
         let text = folder.text(&self.file)?;
-        let number = if let Some(column) = &self.column {
-            from_csv(&text, column)
+        let found = if let Some(column) = &self.column {
+            from_csv(&text, column).and_then(|texts| self.take.of(&texts))
         } else if let Some(pointer) = &self.pointer {
             from_json(&text, pointer)
         } else {
-            from_text(&text, self.pattern.as_deref().unwrap_or_default())
+            from_text(&text, self.pattern.as_deref().unwrap_or_default()).and_then(|texts| self.take.of(&texts))
         };
-        let number = number.map_err(|why| format!("`{}`: {why}", self.file))?;
-        let value = number_of(number.trim()).ok_or_else(|| format!("`{}`: `{number}` is not a number", self.file))?;
-        if value.is_finite() { Ok(value) } else { Err(format!("`{}`: `{number}` is not a finite number", self.file)) }
-    }
-}
-
-/// A number as programs print it: Fortran writes powers of ten with a `D`.
-fn number_of(text: &str) -> Option<f64> {
-    let fortran = || {
-        let (digits, power) = text.split_once(['d', 'D'])?;
-        let numeric = |text: &str| text.bytes().all(|b| b.is_ascii_digit() || b"+-.".contains(&b));
-        if numeric(digits) && numeric(power) { format!("{digits}e{power}").parse().ok() } else { None }
-    };
-    text.parse().ok().or_else(fortran)
-}
-
-impl ReadText {
-    pub(super) fn check(&self, key: &str) -> Vec<Complaint> {
-        let Self { file, column, pointer, pattern } = self;
-        let place = Place { file, column: column.as_deref(), pointer: pointer.as_deref(), pattern: pattern.as_deref() };
-        place.check(key, key, "reason", "not valid: (.+)")
-    }
-
-    /// The reasons, joined; empty when there is none.
-    pub(super) fn reason(&self, folder: &Folder) -> Result<String, String> {
-        let text = folder.text(&self.file)?;
-        let found = if let Some(column) = &self.column {
-            from_csv(&text, column).map(|cell| vec![cell])
-        } else if let Some(pointer) = &self.pointer {
-            reasons_from_json(&text, pointer)
-        } else {
-            all_matches(&text, self.pattern.as_deref().unwrap_or_default())
-        };
-        let mut reasons: Vec<String> = Vec::new();
-        for reason in found.map_err(|why| format!("`{}`: {why}", self.file))? {
-            let reason = shown(reason.trim());
-            if !reason.is_empty() && !reasons.contains(&reason) {
-                reasons.push(reason);
-            }
+        match found.map_err(|why| format!("`{}`: {why}", self.file))? {
+            Number::Finite(value) => Ok(Ok(value)),
+            Number::Missing => Ok(Err(format!("the program left no value for it in `{}`", self.file))),
         }
-        Ok(reasons.join(", "))
     }
 }
 
-/// The text, or the texts of the list, that the pointer leads to.
-fn reasons_from_json(text: &str, pointer: &str) -> Result<Vec<String>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
-    let word = |value: &Value| value.as_str().map(str::to_owned);
-    let found = value.pointer(pointer).ok_or_else(|| format!("nothing at `{pointer}`"))?;
-    let reasons = match found {
-        Value::Null => Some(Vec::new()),
-        Value::String(reason) => Some(vec![reason.clone()]),
-        Value::Array(reasons) => reasons.iter().map(word).collect(),
-        Value::Bool(_) | Value::Number(_) | Value::Object(_) => None,
-    };
-    reasons.ok_or_else(|| format!("`{pointer}` is `{found}`, neither a text, nor a list of texts, nor null"))
-}
-
-/// The group of every match.
-fn all_matches(text: &str, pattern: &str) -> Result<Vec<String>, String> {
-    let regex = Regex::new(pattern).map_err(|e| e.to_string())?;
-    Ok(regex.captures_iter(text).filter_map(|all| Some(all.get(1)?.as_str().to_owned())).collect())
-}
-
-fn from_csv(text: &str, column: &str) -> Result<String, String> {
+/// The cells of a column; there is at least one.
+pub(super) fn from_csv(text: &str, column: &str) -> Result<Vec<String>, String> {
     let sheet = Sheet::read(text.as_bytes()).map_err(|e| e.to_string())?;
     let place =
         sheet.place(column).ok_or_else(|| format!("no column `{column}`; it has {}", sheet.heads.join(", ")))?;
     if sheet.heads.iter().filter(|head| *head == column).count() > 1 {
         return Err(format!("two columns are called `{column}`"));
     }
-    sheet.columns[place].last().cloned().ok_or_else(|| "no rows".to_owned())
+    if sheet.rows() == 0 { Err("no rows".to_owned()) } else { Ok(sheet.columns[place].clone()) }
 }
 
-fn from_json(text: &str, pointer: &str) -> Result<String, String> {
-    let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+/// The number at a pointer; `null`, and the `NaN` that many programs write although JSON has none, are missing values.
+fn from_json(text: &str, pointer: &str) -> Result<Number, String> {
+    let text = without_nan(text);
+    let value: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
     match value.pointer(pointer) {
-        Some(Value::Number(number)) => Ok(number.to_string()),
+        Some(Value::Number(found)) => {
+            let found = found.to_string();
+            number(&found).map_err(|why| format!("`{found}` {why}"))
+        }
+        Some(Value::Null) => Ok(Number::Missing),
+        Some(Value::String(word)) => number(word).map_err(|why| format!("`{pointer}`: `{word}` {why}")),
         Some(other) => Err(format!("`{pointer}` is `{other}`, not a number")),
         None => Err(format!("nothing at `{pointer}`")),
     }
 }
 
-fn from_text(text: &str, pattern: &str) -> Result<String, String> {
+/// The text with `null` for each bare `NaN`, and with infinities in quotes, where they are refused by name.
+fn without_nan(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let (mut rest, mut quoted) = (text, false);
+    while let Some(c) = rest.chars().next() {
+        let bare = |word: &str| !quoted && rest.starts_with(word);
+        let (taken, written) = if quoted && c == '\\' {
+            let taken = rest.chars().take(2).map(char::len_utf8).sum();
+            (taken, &rest[..taken])
+        } else if bare("NaN") {
+            (3, "null")
+        } else if bare("-Infinity") {
+            (9, "\"-Infinity\"")
+        } else if bare("Infinity") {
+            (8, "\"Infinity\"")
+        } else {
+            (c.len_utf8(), &rest[..c.len_utf8()])
+        };
+        quoted ^= c == '"';
+        out.push_str(written);
+        rest = &rest[taken..];
+    }
+    out
+}
+
+/// The numbers that a pattern finds; there is at least one.
+fn from_text(text: &str, pattern: &str) -> Result<Vec<String>, String> {
     let regex = Regex::new(pattern).map_err(|e| e.to_string())?;
     // A pattern such as `(.*)` matches the empty end of the text too.
-    let found =
-        regex.captures_iter(text).filter_map(|all| Some(all.get(1)?.as_str())).filter(|group| !group.is_empty());
-    found.last().map(str::to_owned).ok_or_else(|| format!("nothing matches `{pattern}`"))
+    let groups = regex.captures_iter(text).filter_map(|all| Some(all.get(1)?.as_str()));
+    let found: Vec<String> = groups.filter(|group| !group.is_empty()).map(str::to_owned).collect();
+    if found.is_empty() { Err(format!("nothing matches `{pattern}`")) } else { Ok(found) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn csv(text: &str, take: Take) -> Result<Number, String> {
+        from_csv(text, "UCS").and_then(|texts| take.of(&texts))
+    }
+
+    fn text(text: &str, pattern: &str) -> Result<Number, String> {
+        from_text(text, pattern).and_then(|texts| Take::Last.of(&texts))
+    }
+
     #[test]
     fn numbers_are_found_in_each_form() {
-        assert_eq!(from_csv("a, UCS\n1, 2\n3, 4.5\n", "UCS"), Ok("4.5".to_owned()));
-        assert_eq!(from_json(r#"{"r": [1, {"UCS": 3e7}]}"#, "/r/1/UCS"), Ok("30000000.0".to_owned()));
-        assert_eq!(from_text("UCS = 1\nUCS = 2\n", r"UCS = (\S+)"), Ok("2".to_owned()));
-        assert_eq!(from_text("35.5\n", "(.*)"), Ok("35.5".to_owned()));
+        assert_eq!(csv("a, UCS\n1, 2\n3, 4.5\n", Take::Last), Ok(Number::Finite(4.5)));
+        assert_eq!(from_json(r#"{"r": [1, {"UCS": 3e7}]}"#, "/r/1/UCS"), Ok(Number::Finite(3e7)));
+        assert_eq!(text("UCS = 1\nUCS = 2\n", r"UCS = (\S+)"), Ok(Number::Finite(2.0)));
+        assert_eq!(text("UCS = 1.0D+03 \n", r"UCS = (\S+)"), Ok(Number::Finite(1000.0)));
+        assert_eq!(text("35.5\n", "(.*)"), Ok(Number::Finite(35.5)));
     }
 
     #[test]
-    fn powers_of_fortran_are_numbers() {
-        for (text, value) in
-            [("1.5D+03", Some(1500.0)), ("-2d-1", Some(-0.2)), ("1d", None), ("d5", None), ("*****", None)]
-        {
-            assert_eq!(number_of(text), value, "{text}");
-        }
+    fn a_history_gives_its_ends_its_extremes_and_its_mean() {
+        let history = "t,UCS\n1,2.0\n2,NaN\n3,8.0d0\n4,5.0\n";
+        let of = |take| csv(history, take);
+        assert_eq!(of(Take::First), Ok(Number::Finite(2.0)));
+        assert_eq!(of(Take::Last), Ok(Number::Finite(5.0)));
+        assert_eq!(of(Take::Minimum), Ok(Number::Finite(2.0)));
+        assert_eq!(of(Take::Maximum), Ok(Number::Finite(8.0)));
+        assert_eq!(of(Take::Mean), Ok(Number::Finite(5.0)));
+        assert_eq!(csv("UCS\nNaN\n\"\"\n", Take::Maximum).unwrap_err(), "`` is not a number");
+        assert_eq!(csv("UCS\nNaN\n", Take::Maximum), Ok(Number::Missing));
     }
 
     #[test]
-    fn reasons_are_texts_and_nothing_else() {
-        let json = |text: &str| reasons_from_json(text, "/v");
-        let words = |list: &[&str]| Ok(list.iter().map(|&word| word.to_owned()).collect::<Vec<_>>());
-        assert_eq!(json(r#"{"v": null}"#), words(&[]));
-        assert_eq!(json(r#"{"v": "rotation"}"#), words(&["rotation"]));
-        assert_eq!(json(r#"{"v": ["rotation", ""]}"#), words(&["rotation", ""]));
-        for (text, told) in [(r#"{"v": false}"#, "`false`"), (r#"{"v": [1]}"#, "`[1]`"), ("{}", "nothing at")] {
-            assert!(json(text).unwrap_err().contains(told), "{text}");
-        }
-        assert_eq!(all_matches("not valid: a\nfine\nnot valid: b\n", "not valid: (.+)"), words(&["a", "b"]));
-        assert_eq!(all_matches("fine\n", "not valid: (.+)"), words(&[]));
+    fn a_nan_in_json_costs_only_its_own_value() {
+        let json =
+            r#"{"nu": NaN, "E": 3e9, "note \"NaN": "NaN \\", "s": [-Infinity, NaN], "none": null, "D": "1.5D2"}"#;
+        assert_eq!(from_json(json, "/nu"), Ok(Number::Missing));
+        assert_eq!(from_json(json, "/none"), Ok(Number::Missing));
+        assert_eq!(from_json(json, "/E"), Ok(Number::Finite(3e9)));
+        assert_eq!(from_json(json, "/D"), Ok(Number::Finite(150.0)));
+        assert_eq!(from_json(json, "/s/1"), Ok(Number::Missing));
+        assert!(from_json(json, "/s/0").unwrap_err().contains("`-Infinity` is not a finite number"));
+        assert!(without_nan(json).contains(r#""note \"NaN": "NaN \\""#));
     }
 
     #[test]
