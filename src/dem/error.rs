@@ -1,6 +1,7 @@
 //! What can be wrong with a model, and why a run can fail.
 
 use super::particle::Group;
+use super::words::Quantity;
 
 /// One fault of the input. All faults of a model are reported together.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -139,7 +140,8 @@ pub enum Failure {
     },
     /// A body moved further in one step than contacts can be found.
     #[error(
-        "particle {particle} moved {travel:.3e} m in step {step}, more than the {limit:.3e} m within which contacts are found: unstable"
+        "particle {particle} moved {} in step {step}, more than the {} within which contacts are found: unstable",
+        Quantity(*.travel, "m"), Quantity(*.limit, "m")
     )]
     Instability {
         /// Index in the caller's list.
