@@ -55,6 +55,7 @@ pub(super) use read::Judgement;
 pub use slope::Slope;
 pub use words::parameters_in_words;
 
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -110,6 +111,18 @@ impl Stage for Calibrate {
 
     fn gives(&self) -> ArtifactKind {
         ArtifactKind::SOLUTION
+    }
+
+    fn forecast(&self, _ahead: &Ahead) -> Forecast {
+        // A curve alone is one target.
+        let sets = self.targets.len().max(1);
+        let rows = Some(sets);
+        let simulators = self.simulators().len();
+        if simulators == 0 {
+            return Forecast { rows, ..Forecast::ONE };
+        }
+        let runs = self.evaluations.map(|each| each.saturating_mul(sets).saturating_mul(simulators));
+        Forecast { rows, tasks: runs.map(|runs| TaskForecast::AtMost(runs.saturating_add(1))) }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {

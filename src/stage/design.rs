@@ -20,6 +20,7 @@ mod valid;
 pub use config::Design;
 
 use super::beside::Beside;
+use super::forecast::{Ahead, Forecast};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work, data,
 };
@@ -91,6 +92,10 @@ impl Stage for Design {
         Sketch { factors: Some(self.factors.clone()), ..Sketch::default() }
     }
 
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        Forecast { rows: self.rows_ahead(ahead), ..Forecast::ONE }
+    }
+
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let design = self.method().map_err(|c| StageError { message: c.message, hint: c.hint })?;
         let layout = self.layout();
@@ -110,6 +115,18 @@ impl Stage for Design {
 }
 
 impl Design {
+    /// How many rows the design has.
+    fn rows_ahead(&self, ahead: &Ahead) -> Option<usize> {
+        let mut method = self.method().ok()?;
+        let factors = self.factors(ahead.context);
+        if let (Method::Given(given), Some(file)) = (&mut method, &self.file) {
+            given.rows = rows(&data::parse(&(ahead.file)(file)?).ok()?, &factors, given.by_level).ok()?;
+        }
+        let table = build(&method, &factors, self.layout(), ahead.context.seed).ok()?;
+        let broken = valid::broken(&self.valid, &table).ok()?;
+        Some(valid::without(&table, &broken).runs())
+    }
+
     /// Names of the levels of the factors that are categories.
     fn names(&self, context: &Context) -> BTreeMap<String, Vec<String>> {
         let names = |name: &String| Some((name.clone(), context.factors.get(name)?.names.clone()));

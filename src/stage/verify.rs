@@ -8,6 +8,7 @@
 //! The artifact `verification` holds the tables `summary` and `runs`.
 
 use super::calibrate::{Judgement, Unmet, judgement, read_response};
+use super::forecast::{Ahead, Forecast};
 use super::given::check_given;
 use super::invalid::{Invalid, refused};
 use super::notes::short;
@@ -89,6 +90,12 @@ impl Stage for Verify {
 
     fn gives(&self) -> ArtifactKind {
         ArtifactKind::VERIFICATION
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        let simulators = self.simulator.iter().chain(&self.simulators).count();
+        let each = usize::try_from(self.replicates).unwrap_or(usize::MAX).saturating_mul(simulators);
+        Forecast::of_rows((ahead.rows)("solution").map(|sets| sets.saturating_mul(each)))
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {

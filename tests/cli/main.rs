@@ -10,6 +10,7 @@ mod columns;
 mod command;
 mod export;
 mod faults;
+mod forecast;
 mod kill;
 mod nodes;
 mod readme;

@@ -20,6 +20,7 @@ mod read;
 mod template;
 
 use super::beside::Beside;
+use super::forecast::{Ahead, Forecast};
 use super::rows::{self, GATHER};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
@@ -174,6 +175,10 @@ impl Stage for Command {
     fn sketch(&self) -> Sketch {
         let responses = Some(self.read.keys().cloned().collect());
         Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        self.design.as_ref().map_or(Forecast::ONE, |_| Forecast::of_rows((ahead.rows)("design")))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

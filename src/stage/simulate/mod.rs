@@ -26,6 +26,7 @@ pub use config::{BondConfig, PackingChoice, Simulate};
 pub use fissures::{FissureConfig, JointConfig, NetworkConfig};
 pub use speed::PlatenSpeed;
 
+use super::forecast::{Ahead, Forecast};
 use super::rows::{self, GATHER};
 use super::specimen::Loaded;
 use super::{
@@ -72,6 +73,10 @@ impl Stage for Simulate {
         let responses = self.test.responses().iter().map(|response| response.name.to_owned()).collect();
         let material = Some(self.material.clone());
         Sketch { material, responses: Some(responses), varies: true, ..Sketch::default() }
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        self.design.as_ref().map_or(Forecast::ONE, |_| Forecast::of_rows((ahead.rows)("design")))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

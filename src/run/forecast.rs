@@ -1,0 +1,22 @@
+//! What the stages of a workflow are expected to ask for, before anything runs.
+
+use super::files::path_of;
+use crate::plan::Workflow;
+use crate::stage::beside::plain;
+use crate::stage::forecast::{Ahead, Forecast};
+
+/// The forecast of every stage, in the order of the workflow.
+pub fn forecasts(workflow: &Workflow) -> Vec<Forecast> {
+    let file = |path: &str| {
+        let path = path_of(workflow, path);
+        plain(&path).ok().and_then(|_| std::fs::read(&path).ok())
+    };
+    let mut all: Vec<Forecast> = Vec::with_capacity(workflow.stages.len());
+    for node in &workflow.stages {
+        let behind = |port: &str| node.inputs.iter().find(|(key, _)| *key == port).and_then(|(_, i)| all.get(*i));
+        let rows = |port: &str| behind(port).and_then(|forecast| forecast.rows);
+        let forecast = node.stage.forecast(&Ahead { context: &workflow.context, rows: &rows, file: &file });
+        all.push(forecast);
+    }
+    all
+}
