@@ -24,6 +24,7 @@ mod schema;
 mod show;
 mod site;
 mod store;
+mod whole;
 mod work;
 
 use clap::{Parser, Subcommand};

@@ -1,6 +1,7 @@
 //! What the stages of a workflow are expected to ask for, before anything runs.
 
 use super::files::path_of;
+use super::stages::wanted;
 use crate::plan::Workflow;
 use crate::stage::beside::plain;
 use crate::stage::forecast::{Ahead, Forecast};
@@ -19,4 +20,11 @@ pub fn forecasts(workflow: &Workflow) -> Vec<Forecast> {
         all.push(forecast);
     }
     all
+}
+
+/// The forecasts of the targets and of all they need, by name; of all stages when no target is named.
+pub fn forecasts_of<'a>(workflow: &'a Workflow, targets: &[String]) -> Vec<(&'a str, Forecast)> {
+    let names = workflow.stages.iter().map(|node| node.name.as_str());
+    let all = names.zip(forecasts(workflow)).zip(wanted(workflow, targets));
+    all.filter_map(|(stage, wanted)| wanted.then_some(stage)).collect()
 }

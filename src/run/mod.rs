@@ -34,7 +34,7 @@ pub use audit::{Audited, audit};
 pub use board::{TaskCount, TaskState};
 pub use commit::commit;
 pub use event::{Event, Silent, Watch};
-pub use forecast::forecasts;
+pub use forecast::{forecasts, forecasts_of};
 pub use memo::remembered;
 pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
