@@ -98,13 +98,13 @@ mod tests {
         TaskCount { total, ran, ..TaskCount::default() }
     }
 
+    fn runs(tasks: usize) -> Forecast {
+        Forecast { tasks: Some(TaskForecast::Exactly(tasks)), ..Forecast::ONE }
+    }
+
     #[test]
     fn the_rest_counts_stages_that_have_not_begun() {
-        let mut whole = Whole::of([
-            ("runs", Forecast::of_rows(Some(9))),
-            ("more", Forecast::of_rows(Some(4))),
-            ("table", Forecast::ONE),
-        ]);
+        let mut whole = Whole::of([("runs", runs(10)), ("more", runs(5)), ("table", Forecast::ONE)]);
         assert_eq!(whole.in_words(2).unwrap(), "campaign 0/16");
         whole.note("runs", count(10, 4), Some(3.0));
         assert_eq!(whole.in_words(2).unwrap(), "campaign 4/16, more than 9.0 s left");

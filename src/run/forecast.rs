@@ -14,9 +14,11 @@ pub fn forecasts(workflow: &Workflow) -> Vec<Forecast> {
     };
     let mut all: Vec<Forecast> = Vec::with_capacity(workflow.stages.len());
     for node in &workflow.stages {
-        let behind = |port: &str| node.inputs.iter().find(|(key, _)| *key == port).and_then(|(_, i)| all.get(*i));
-        let rows = |port: &str| behind(port).and_then(|forecast| forecast.rows);
-        let forecast = node.stage.forecast(&Ahead { context: &workflow.context, rows: &rows, file: &file });
+        let behind = |port: &str| {
+            let stages = node.inputs.iter().filter(|(key, _)| *key == port);
+            stages.filter_map(|(_, index)| all.get(*index).copied()).collect()
+        };
+        let forecast = node.stage.forecast(&Ahead { context: &workflow.context, behind: &behind, file: &file });
         all.push(forecast);
     }
     all

@@ -113,16 +113,17 @@ impl Stage for Calibrate {
         ArtifactKind::SOLUTION
     }
 
-    fn forecast(&self, _ahead: &Ahead) -> Forecast {
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
         // A curve alone is one target.
         let sets = self.targets.len().max(1);
-        let rows = Some(sets);
-        let simulators = self.simulators().len();
-        if simulators == 0 {
-            return Forecast { rows, ..Forecast::ONE };
+        let one = Forecast { rows: Some(sets), ..Forecast::ONE };
+        if self.simulators().is_empty() {
+            return one;
         }
-        let runs = self.evaluations.map(|each| each.saturating_mul(sets).saturating_mul(simulators));
-        Forecast { rows, tasks: runs.map(|runs| TaskForecast::AtMost(runs.saturating_add(1))) }
+        let behind = ["simulator", "simulators", "coarse"].into_iter().flat_map(|port| (ahead.behind)(port));
+        let each: usize = behind.map(|simulator| simulator.per_run).sum();
+        let tasks = self.evaluations.map(|count| count.saturating_mul(sets).saturating_mul(each).saturating_add(1));
+        Forecast { tasks: tasks.map(TaskForecast::AtMost), ..one }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {

@@ -26,7 +26,7 @@ use super::{
 };
 use crate::artifact::{Artifact, ArtifactKind, Table};
 use design::report::power::Question;
-use design::{Factor, Fault, Layout, Method, Order, build, check, report};
+use design::{DesignTable, Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -93,7 +93,9 @@ impl Stage for Design {
     }
 
     fn forecast(&self, ahead: &Ahead) -> Forecast {
-        Forecast { rows: self.rows_ahead(ahead), ..Forecast::ONE }
+        let Some(table) = self.table_ahead(ahead) else { return Forecast::ONE };
+        let replicates = table.replicate().into_iter().max().unwrap_or(1) as usize;
+        Forecast { rows: Some(table.runs()), replicates, ..Forecast::ONE }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -115,8 +117,8 @@ impl Stage for Design {
 }
 
 impl Design {
-    /// How many rows the design has.
-    fn rows_ahead(&self, ahead: &Ahead) -> Option<usize> {
+    /// The design as it will be.
+    fn table_ahead(&self, ahead: &Ahead) -> Option<DesignTable> {
         let mut method = self.method().ok()?;
         let factors = self.factors(ahead.context);
         if let (Method::Given(given), Some(file)) = (&mut method, &self.file) {
@@ -124,7 +126,7 @@ impl Design {
         }
         let table = build(&method, &factors, self.layout(), ahead.context.seed).ok()?;
         let broken = valid::broken(&self.valid, &table).ok()?;
-        Some(valid::without(&table, &broken).runs())
+        Some(valid::without(&table, &broken))
     }
 
     /// Names of the levels of the factors that are categories.

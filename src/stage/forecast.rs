@@ -7,6 +7,10 @@ use super::Context;
 pub struct Forecast {
     /// Rows of its result, for stages that go through them; none where only the run tells.
     pub rows: Option<usize>,
+    /// How many of these rows are equal, at most.
+    pub replicates: usize,
+    /// Tasks that one more run of it asks for when it stands on a specimen of its own: the specimen and the run.
+    pub per_run: usize,
     /// Tasks that it asks for; none where only the run tells.
     pub tasks: Option<TaskForecast>,
 }
@@ -24,21 +28,34 @@ pub enum TaskForecast {
 pub struct Ahead<'a> {
     /// Of the whole workflow.
     pub context: &'a Context,
-    /// Rows of the stage behind a port, where they are known.
-    pub rows: &'a dyn Fn(&str) -> Option<usize>,
+    /// The forecasts of the stages behind a port.
+    pub behind: &'a dyn Fn(&str) -> Vec<Forecast>,
     /// The bytes of a file beside the workflow; none when it cannot be read.
     pub file: &'a dyn Fn(&str) -> Option<Vec<u8>>,
 }
 
+impl TaskForecast {
+    /// These and `more`.
+    pub fn and(self, more: usize) -> Self {
+        match self {
+            Self::Exactly(tasks) => Self::Exactly(tasks.saturating_add(more)),
+            Self::AtMost(tasks) => Self::AtMost(tasks.saturating_add(more)),
+        }
+    }
+}
+
 impl Forecast {
     /// One task.
-    pub const ONE: Self = Self { rows: None, tasks: Some(TaskForecast::Exactly(1)) };
+    pub const ONE: Self = Self { rows: None, replicates: 1, per_run: 1, tasks: Some(TaskForecast::Exactly(1)) };
 
     /// Nothing is known.
-    pub const UNKNOWN: Self = Self { rows: None, tasks: None };
+    pub const UNKNOWN: Self = Self { tasks: None, ..Self::ONE };
 
-    /// A run for each of these rows, and the task that gathers them.
-    pub fn of_rows(rows: Option<usize>) -> Self {
-        Self { rows, tasks: rows.map(|rows| TaskForecast::Exactly(rows.saturating_add(1))) }
+    /// A run for each row of the design behind the port `design`, on specimens that `specimens` counts from the design's
+    /// forecast, and the task that gathers them; one run without a design.
+    pub fn of_design(ahead: &Ahead, specimens: impl Fn(&Self, usize) -> TaskForecast) -> Self {
+        let Some(design) = (ahead.behind)("design").into_iter().next() else { return Self::ONE };
+        let tasks = |rows: usize| specimens(&design, rows).and(rows.saturating_add(1));
+        Self { rows: design.rows, tasks: design.rows.map(tasks), ..Self::ONE }
     }
 }

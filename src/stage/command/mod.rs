@@ -20,7 +20,7 @@ mod read;
 mod template;
 
 use super::beside::Beside;
-use super::forecast::{Ahead, Forecast};
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
@@ -178,7 +178,7 @@ impl Stage for Command {
     }
 
     fn forecast(&self, ahead: &Ahead) -> Forecast {
-        self.design.as_ref().map_or(Forecast::ONE, |_| Forecast::of_rows((ahead.rows)("design")))
+        Forecast::of_design(ahead, |_, _| TaskForecast::Exactly(0))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
