@@ -15,9 +15,9 @@ mod export;
 mod graph;
 mod message;
 mod new;
+mod notes;
 mod plan;
 mod progress;
-mod remarks;
 mod report;
 mod run;
 mod schema;
@@ -41,7 +41,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Run what is missing of a campaign.
+    /// Compute the missing results of a campaign.
     #[command(after_help = examples::RUN)]
     Run(run::Run),
     /// Show what `run` would do, and why, without doing it.
@@ -56,7 +56,7 @@ enum Command {
     /// Find every fault of a workflow without running anything.
     #[command(after_help = examples::CHECK)]
     Check(check::Check),
-    /// Show the stages, what they take from one another, and what is done of them.
+    /// Show the stages, their inputs, and their progress.
     #[command(after_help = examples::GRAPH)]
     Graph(graph::Graph),
     /// Write a page with every table and figure of a campaign.
@@ -65,10 +65,10 @@ enum Command {
     /// Write results as files: pictures, printed tables, CSV.
     #[command(after_help = examples::EXPORT)]
     Export(export::Export),
-    /// Compare two campaigns: what was set otherwise, what came out otherwise.
+    /// Compare two campaigns: settings that differ, results that differ.
     #[command(after_help = examples::DIFF)]
     Diff(diff::Diff),
-    /// Look after the store: list, verify, sizes, remove what nothing reaches.
+    /// Manage the store: list, verify, sizes, remove unused results.
     #[command(after_help = examples::STORE)]
     Store(store::StoreCommand),
     /// Describe a cluster for `flow run --executor slurm`.
@@ -91,7 +91,7 @@ enum Command {
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// All well.
+    /// Success.
     Done = 0,
     /// A task failed.
     Failed = 1,
@@ -103,12 +103,12 @@ pub enum Exit {
     Interrupted = 130,
 }
 
-/// Reads the command line and does what it says.
+/// Reads the command line and executes it.
 pub fn main() -> ExitCode {
     ExitCode::from(execute(std::env::args_os()) as u8)
 }
 
-/// Does what a command line says; its first word is the program.
+/// Executes a command line; its first word is the program.
 fn execute<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Exit {
     match Arguments::parse_from(arguments).command {
         Command::Run(run) => run.go(),

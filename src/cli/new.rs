@@ -109,7 +109,7 @@ impl New {
 mod tests {
     use super::*;
 
-    /// What `--from` gives can be read and checked where it lies, with all the files it names.
+    /// Every workflow that `--from` gives passes `flow check`, with all the files that it names.
     #[test]
     fn every_shipped_workflow_is_complete() {
         for shipped in SHIPPED {

@@ -37,6 +37,7 @@
 pub mod agreement;
 pub mod anova;
 pub mod beside;
+pub mod cached;
 pub mod calibrate;
 #[cfg(test)]
 pub mod census;
@@ -53,7 +54,6 @@ pub mod forecast;
 pub mod formula;
 mod given;
 pub mod invalid;
-pub mod ledger;
 pub mod material;
 mod memory;
 mod notes;

@@ -1,7 +1,7 @@
 //! The unit of work, and what runs it.
 
 use super::beside::plain;
-use super::ledger::KeptRuns;
+use super::cached::CachedRuns;
 use super::{Packed, StageError};
 use crate::artifact::{Artifact, ContentHash};
 use dem::Watch;
@@ -30,7 +30,7 @@ pub struct Task {
     /// Seconds after which an external program is ended; not part of its key.
     pub time_limit: Option<f64>,
     /// Those of its inputs that an earlier campaign made and that need not be read; not part of its key.
-    pub kept: Option<Arc<KeptRuns>>,
+    pub cached: Option<Arc<CachedRuns>>,
 }
 
 impl Task {
@@ -44,7 +44,7 @@ impl Task {
             files: Vec::new(),
             row: None,
             time_limit: None,
-            kept: None,
+            cached: None,
         }
     }
 
@@ -123,7 +123,7 @@ pub struct Job<'a> {
     pub params: &'a Value,
     /// Its seed.
     pub seed: Option<u64>,
-    /// Its inputs by name, in order; kept ones are together in one input `kept` at the end.
+    /// Its inputs by name, in order; cached runs are together in one input `cached` at the end.
     pub inputs: &'a [(String, Arc<Artifact>)],
     /// Files it reads.
     pub files: &'a [FileInput],

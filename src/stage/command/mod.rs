@@ -224,7 +224,7 @@ impl Command {
         material.flat_map(|material| material.paths()).chain(names).collect()
     }
 
-    /// Remarks on words of the command that name files beside the workflow, or by their whole path: they are in no key, so
+    /// Warnings about words of the command that name files beside the workflow, or by their whole path: they are in no key, so
     /// that a result stays as it was when they change.
     fn outside(&self, found: &mut Beside) {
         let words: Vec<&str> = match self.shell {
@@ -255,7 +255,7 @@ impl Command {
             let hint = format!(
                 "copy it with `files = {{ \"{name}\" = \"{word}\" }}`, or say `flow run … --again STAGE` after a change"
             );
-            found.remarks.push(Complaint::new("run", message).hint(hint));
+            found.warnings.push(Complaint::new("run", message).hint(hint));
         }
     }
 }
