@@ -94,6 +94,7 @@ impl Line {
             files: self.files.iter().map(file).collect::<Option<_>>().ok_or_else(|| unread("files"))?,
             row: self.row,
             time_limit: self.limit,
+            at_once: None,
             cached: None,
         };
         let contents: Vec<_> = inputs.iter().map(|(_, at)| at.object.content).collect();

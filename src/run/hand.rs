@@ -27,7 +27,9 @@ impl Loop<'_, '_> {
         let Some(far) = &mut self.far else { return };
         let goes = |node: &NodeId| {
             let stage = &self.workflow.stages[self.board.stage(*node)].name;
-            far.takes(stage, is_far(self.board.task(*node).work))
+            let task = self.board.task(*node);
+            // Workers do not know of one another, so they could not keep a bound on a program's runs.
+            task.at_once.is_none() && far.takes(stage, is_far(task.work))
         };
         let nodes: Vec<NodeId> = self.ready.iter().copied().filter(goes).collect();
         for node in nodes {

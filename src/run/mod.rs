@@ -21,6 +21,7 @@ mod files;
 mod forecast;
 mod hand;
 mod library;
+mod licences;
 mod memo;
 #[cfg(test)]
 mod pins;
@@ -49,6 +50,7 @@ use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
 use elsewhere::Elsewhere;
 use far::Far;
+use licences::Licences;
 use stages::Stages;
 use std::any::Any;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -150,6 +152,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             ready: BTreeSet::new(),
             running: 0,
             elsewhere: Elsewhere::default(),
+            licences: Licences::default(),
             far,
             far_nodes: HashMap::new(),
             past: cluster.and_then(|_| Past::of(workflow, store).ok()),
@@ -217,6 +220,8 @@ struct Loop<'pool, 'env> {
     running: usize,
     /// Tasks that other processes compute.
     elsewhere: Elsewhere,
+    /// Programs that may only run so often at once.
+    licences: Licences,
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
     far_nodes: HashMap<Key, NodeId>,
@@ -390,6 +395,9 @@ impl Loop<'_, '_> {
         self.hand_over();
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
+            if !self.licences.admits(node, self.board.task(node).at_once.as_ref()) {
+                continue;
+            }
             let again = self.forced(node);
             match task::Order::new(&mut self.board, node, self.store, &self.streamed, again) {
                 Ok(order) => self.give(order),
@@ -418,6 +426,7 @@ impl Loop<'_, '_> {
         self.untold.clear();
         self.ready.clear();
         self.elsewhere.clear();
+        self.licences.clear();
         self.far_nodes.clear();
         self.board = Board::default();
         self.stages = Stages::new(self.workflow, &self.settings.targets, false);
@@ -446,6 +455,7 @@ impl Loop<'_, '_> {
         if self.board.is_running(node) {
             self.running -= 1;
         }
+        self.ready.extend(self.licences.release(node, self.board.task(node).at_once.as_ref()));
         let failure = match answer.result {
             Ok(task::Outcome::Elsewhere(waiting)) => {
                 self.board.stopped(node);
@@ -488,14 +498,4 @@ impl Loop<'_, '_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panic_in_a_task_becomes_its_failure_with_what_was_said() {
-        for panic in [catch_unwind(|| panic!("BUG: {}", 7)), catch_unwind(|| panic!("BUG: 7"))] {
-            let Failure::Failed(error) = panicked(&*panic.unwrap_err()) else { panic!("not a failure") };
-            assert!(error.message.ends_with("BUG: 7") && error.hint.is_some(), "{error:?}");
-        }
-    }
-}
+mod tests;

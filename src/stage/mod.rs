@@ -79,7 +79,7 @@ pub use context::{
 };
 pub use memory::Memory;
 pub use packed::Packed;
-pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
+pub use task::{AtOnce, Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};
 use schemars::{JsonSchema, Schema, SchemaGenerator};

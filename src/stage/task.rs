@@ -29,6 +29,8 @@ pub struct Task {
     pub row: Option<usize>,
     /// Seconds after which an external program is ended; not part of its key.
     pub time_limit: Option<f64>,
+    /// Bound on how many tasks of its program run at once; not part of its key.
+    pub at_once: Option<AtOnce>,
     /// Those of its inputs that an earlier campaign made and that need not be read; not part of its key.
     pub cached: Option<Arc<CachedRuns>>,
 }
@@ -44,6 +46,7 @@ impl Task {
             files: Vec::new(),
             row: None,
             time_limit: None,
+            at_once: None,
             cached: None,
         }
     }
@@ -75,6 +78,15 @@ impl Task {
         self.row = Some(row);
         self
     }
+}
+
+/// A bound on how many tasks run an external program at once, such as the number of its licences.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AtOnce {
+    /// The program: stages that run the same one share its licences.
+    pub program: String,
+    /// The most that may run.
+    pub most: usize,
 }
 
 /// Where an input comes from.

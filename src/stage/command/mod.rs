@@ -7,33 +7,45 @@
 //! the time limit is not.
 //!
 //! A template names values in double braces: `{{mortar.Ec}}` (parameter, SI), `{{Ec}}` (factor, in its unit),
-//! `{{seed}}`, `{{replicate}}`.
+//! `{{seed}}`, `{{replicate}}`. The seed differs from row to row and from replicate to replicate and follows from the
+//! workflow's; the number of the replicate is the same in all rows, for programs that make the specimen themselves and
+//! shall compare rows on the same one.
+//!
+//! Numbers are read as C and Fortran write them. A value that the program itself calls `NaN` (or `null` in JSON) is a
+//! missing response, said with the run; a run that leaves no value at all has failed.
 //!
 //! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
 //! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
-//! Programs speak in any encoding: bytes of a text file that are not UTF-8 are read as `\\xE9`.
+//! `validity` and `cautions` say where the program tells that a run is not valid, or to be read with caution.
+//! Programs speak in any encoding: a text file with the mark of UTF-16 is read as that, and bytes of others that are not
+//! UTF-8 as `\\xE9`.
 //! Running out of time or being stopped is never recorded, because it says nothing about the model.
 
 mod folder;
 pub mod leftover;
+mod number;
 mod read;
 mod template;
+mod verdict;
 
 use super::beside::Beside;
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
+    AtOnce, Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError,
+    Step, Task, Work,
 };
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit;
+use math::random::Stream;
 use read::Read;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use verdict::ReadText;
 
 /// Settings of a `command` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -59,11 +71,21 @@ pub struct Command {
     pub environment: BTreeMap<String, String>,
     /// A run that takes longer is ended and has failed.
     pub time_limit: Option<unit::Time>,
+    /// Most runs of the program at once, such as the number of its licences; as many as `--jobs` allows when not given.
+    /// Stages that run the same program share the number, and such runs stay on this machine.
+    pub at_once: Option<usize>,
     /// Whether a failed run stops the campaign or is recorded with its reason.
     #[serde(default)]
     pub on_failure: OnFailure,
     /// How each response is read, by its name.
     pub read: BTreeMap<String, Read>,
+    /// Where the program says why a run is not valid: it is then treated as a test of `simulate` that does not meet its
+    /// checks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validity: Option<ReadText>,
+    /// Where the program says why a run is to be read with caution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cautions: Option<ReadText>,
 }
 
 /// What becomes of a run that failed.
@@ -86,6 +108,10 @@ struct Params {
     #[serde(default, skip_serializing_if = "stops")]
     on_failure: OnFailure,
     read: BTreeMap<String, Read>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    validity: Option<ReadText>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cautions: Option<ReadText>,
     /// Parameters and factors by the name that templates use.
     values: BTreeMap<String, f64>,
     replicate: u64,
@@ -125,12 +151,20 @@ impl Stage for Command {
             let message = format!("a run cannot be ended after {} s", limit.get());
             found.push(Complaint::new("time_limit", message).hint("give a time above 0, such as \"30 min\""));
         }
+        if self.at_once == Some(0) {
+            let message = "no run could ever start";
+            found.push(Complaint::new("at_once", message).hint("give the number of licences: at_once = 1"));
+        }
         let nul = |text: &String| text.contains('\0');
         if self.run.iter().chain(self.environment.values()).any(nul) {
             found.push(Complaint::new("run", "no program takes an argument or a variable with a zero byte"));
         }
         for name in self.environment.keys().filter(|name| name.is_empty() || name.contains(['=', '\0'])) {
             found.push(Complaint::new("environment", format!("`{name}` cannot be the name of a variable")));
+        }
+        if self.environment.contains_key(leftover::VARIABLE) {
+            let message = format!("`{}` is set by flow: it names the folder of the run", leftover::VARIABLE);
+            found.push(Complaint::new("environment", message).hint("leave it out"));
         }
         let values = self.values(context);
         if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument, &values)) {
@@ -139,21 +173,13 @@ impl Stage for Command {
             found.push(Complaint::new("run", message).hint(hint));
         }
         found.extend(rows::check_material(self.material.as_ref(), context));
-        for name in self.files.keys().filter(|name| self.templates.contains_key(*name)) {
-            found.push(Complaint::new("templates", format!("`{name}` stands in `files` and in `templates`")));
-        }
-        for name in self.files.keys().chain(self.templates.keys()).filter(|name| OUTPUT.contains(&name.as_str())) {
-            let message = format!("`{name}` is where the run's own output goes");
-            found.push(Complaint::new("", message).hint("give the file another name"));
-        }
-        for name in self.files.keys().chain(self.templates.keys()).filter(|name| !folder::is_plain(name)) {
-            let message = format!("`{name}` must be a plain name inside the run's folder");
-            found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`"));
-        }
+        found.extend(self.check_names());
         if self.read.is_empty() {
             found.push(Complaint::new("read", "no response is read").hint("add [stage.NAME.read.RESPONSE]"));
         }
         found.extend(self.read.iter().flat_map(|(name, read)| read.check(name, context)));
+        let verdicts = [("validity", &self.validity), ("cautions", &self.cautions)];
+        found.extend(verdicts.into_iter().flat_map(|(key, read)| read.iter().flat_map(move |read| read.check(key))));
         found
     }
 
@@ -186,23 +212,29 @@ impl Stage for Command {
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
-        let values = rows::values(self.material.as_ref(), point, known.context)?;
+        let mut values = rows::values(self.material.as_ref(), point, known.context)?;
+        // A template may name a factor that sets nothing of a material.
+        values.extend(point.iter().map(|(name, value)| (name.clone(), *value)));
+        let seed = row_seed(known.context.seed, &values, number);
         let params = Params {
             run: self.run.clone(),
             shell: self.shell,
             environment: self.environment.clone(),
             on_failure: self.on_failure,
             read: self.read.clone(),
+            validity: self.validity.clone(),
+            cautions: self.cautions.clone(),
             values,
             replicate: number,
         };
-        let mut task = Task::new("command", json!(params)).seed(known.context.seed);
+        let mut task = Task::new("command", json!(params)).seed(seed);
         for (kind, files) in [("file", &self.files), ("template", &self.templates)] {
             for (name, path) in files {
                 task.files.push(known.library.file(&format!("{kind}:{name}"), path)?);
             }
         }
         task.time_limit = self.time_limit.map(unit::Quantity::get);
+        task.at_once = self.at_once.map(|most| AtOnce { program: self.run[0].clone(), most });
         Ok(task)
     }
 }
@@ -212,11 +244,36 @@ impl Kind for Command {
     const ABOUT: &'static str = "an external program, once or per design row";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
+    // Version 2: Fortran's numbers and missing values are read; the seed is the row's own.
+    const WORKS: &'static [Work] = &[Work { name: "command", version: 2, run: execute }, GATHER];
     const FAR: Option<&'static str> = Some("command");
 }
 
 impl Command {
+    /// Faults of the names of files in the folder of a run.
+    fn check_names(&self) -> Vec<Complaint> {
+        let mut found = Vec::new();
+        let names = || self.files.keys().chain(self.templates.keys());
+        for name in self.files.keys().filter(|name| self.templates.contains_key(*name)) {
+            found.push(Complaint::new("templates", format!("`{name}` stands in `files` and in `templates`")));
+        }
+        for name in names().filter(|name| OUTPUT.contains(&name.split('/').next().unwrap_or(name))) {
+            let message = format!("`{name}` is where the run's own output goes");
+            found.push(Complaint::new("", message).hint("give the file another name"));
+        }
+        for name in names().filter(|name| !folder::is_plain(name)) {
+            let message = format!("`{}` must be a plain name inside the run's folder", name.escape_debug());
+            found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`, and take a short name"));
+        }
+        for name in names() {
+            if let Some(below) = names().find(|other| Path::new(other).parent().is_some_and(|p| p.starts_with(name))) {
+                let message = format!("`{name}` is a file, and the folder in which `{below}` lies");
+                found.push(Complaint::new("", message).hint("give one of them another name"));
+            }
+        }
+        found
+    }
+
     /// Every name that a template may use.
     fn values(&self, context: &Context) -> Vec<String> {
         let material = self.material.iter().filter_map(|name| context.materials.get(name));
@@ -269,19 +326,66 @@ fn placeholder<'a>(text: &'a str, values: &[String]) -> Option<&'a str> {
     within.find(|name| values.iter().any(|value| value == name.trim()))
 }
 
+/// Largest seed: the generators of some engines take no larger one (LAMMPS: 900,000,000), and none takes 0.
+const LARGEST_SEED: usize = 900_000_000;
+
+/// The seed that templates of a run may name, from 1 on: it follows from the workflow's, the values and the replicate.
+fn row_seed(seed: u64, values: &BTreeMap<String, f64>, replicate: u64) -> u64 {
+    let mut stream = Stream::new(seed, &format!("command {}", json!(values)), replicate);
+    1 + stream.below(LARGEST_SEED) as u64
+}
+
 fn execute(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let folder = folder::Folder::fill(job, &params)?;
     let outcome = match folder.run(job, &params)? {
-        Ok(()) => params.read.iter().map(|(name, read)| Ok((name, read.value(&folder)?, read.unit()))).collect(),
+        Ok(()) => given(&params, &folder),
         Err(reason) => Err(reason),
     };
-    let responses: Vec<(&String, f64, &str)> = match (outcome, params.on_failure) {
-        (Ok(responses), _) => responses,
-        (Err(reason), OnFailure::Record) => return Ok(Run::plain(&reason, Responses::default()).to_artifact()),
+    let run = match (outcome, params.on_failure) {
+        (Ok(run), _) => run,
+        (Err(reason), OnFailure::Record) => Run::plain(&reason, Responses::default()),
         (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
     };
-    let responses: Vec<(&str, f64, &str)> =
-        responses.iter().map(|(name, v, unit)| (name.as_str(), *v, *unit)).collect();
-    Ok(Run::plain("", Responses::of(&responses)).to_artifact())
+    run.warnings.iter().flatten().for_each(|words| (job.say)(Progress::warning(words)));
+    Ok(run.to_artifact())
+}
+
+/// What the program gave and what it says of it.
+fn given(params: &Params, folder: &folder::Folder) -> Result<Run, String> {
+    let (responses, missing) = responses(&params.read, folder)?;
+    let said = |read: &Option<ReadText>| read.as_ref().map(|read| read.reason(folder)).transpose();
+    let (validity, cautions) = (said(&params.validity)?, said(&params.cautions)?);
+    // A program that says anything of its runs says of all whether they are valid.
+    let validity = validity.or_else(|| cautions.is_some().then(String::new));
+    let warnings = (!missing.is_empty()).then_some(missing);
+    Ok(Run { validity, cautions, warnings, ..Run::plain("", responses) })
+}
+
+/// What a program left: the responses, and words on those that have no value.
+fn responses(read: &BTreeMap<String, Read>, folder: &folder::Folder) -> Result<(Responses, Vec<String>), String> {
+    let (mut found, mut missing) = (Vec::new(), Vec::new());
+    for (name, read) in read {
+        let value = read.value(folder)?.unwrap_or_else(|why| {
+            missing.push(format!("`{name}` is missing: {why}"));
+            f64::NAN
+        });
+        found.push((name.as_str(), value, read.unit()));
+    }
+    if missing.len() == found.len() { Err(missing.join("; ")) } else { Ok((Responses::of(&found), missing)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_seed_of_a_run_is_its_own_and_every_engine_takes_it() {
+        let values = |ec: f64| BTreeMap::from([("rock.Ec".to_owned(), ec)]);
+        let all = [(7, 1.0, 1), (7, 2.0, 1), (7, 1.0, 2), (8, 1.0, 1)];
+        let seeds: BTreeSet<u64> = all.into_iter().map(|(seed, ec, run)| row_seed(seed, &values(ec), run)).collect();
+        assert_eq!(seeds.len(), all.len());
+        assert!(seeds.iter().all(|seed| (1..=900_000_000).contains(seed)), "{seeds:?}");
+        assert_eq!(row_seed(7, &values(1.0), 1), row_seed(7, &values(1.0), 1));
+    }
 }
