@@ -23,7 +23,7 @@ pub struct Contour {
     pub xs: Vec<f64>,
     /// Grid values of `y`, equally spaced, ascending.
     pub ys: Vec<f64>,
-    /// Response at (`xs[i]`, `ys[j]`) in place `j * xs.len() + i`.
+    /// Response at (`xs[i]`, `ys[j]`) at index `j * xs.len() + i`.
     pub values: Vec<f64>,
     /// Design points to mark.
     pub points: Vec<[f64; 2]>,

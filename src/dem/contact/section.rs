@@ -1,8 +1,8 @@
 //! Contacts of one class, in blocks of eight; between them the classes hold the whole list.
 //!
 //! The order of contacts (class, wall or image, i, j) decides the order of every sum, so it depends on nothing but the contacts.
-//! Blocks stand in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second whole list
-//! stands beside it.
+//! Blocks are stored in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second list
+//! exists beside it.
 
 use crate::interaction::Bond;
 use crate::law::{ENERGIES, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
@@ -47,7 +47,7 @@ impl LawKind {
         }
     }
 
-    /// Whether a contact that is not bonded comes to the same bits by the linear law, with fewer rows.
+    /// Whether a contact that is not bonded gives the same bits by the linear law, with fewer rows.
     pub(crate) fn begins_linear(self) -> bool {
         matches!(self, Self::ParallelBond | Self::FlatJoint { .. })
     }
@@ -66,12 +66,12 @@ pub(crate) struct Key {
     pub(crate) image: u8,
 }
 
-/// What the contacts of a section have in common; sections stand in this order.
+/// What the contacts of a section have in common; sections are in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Rank {
     /// True when the second ends are walls.
     pub(crate) at_wall: bool,
-    /// Place in the contact table.
+    /// Index in the contact table.
     pub(crate) class: usize,
     /// The wall, or the image of the second ends in a periodic cell (0 for themselves).
     pub(crate) second: u32,
@@ -106,7 +106,7 @@ pub(crate) struct Section {
     /// What they have in common.
     pub(crate) rank: Rank,
     /// The law that they follow: that of the class, or the linear one as long as no parallel bond was installed in the
-    /// class. It comes to the same bits with fewer rows.
+    /// class. It gives the same bits with fewer rows.
     pub(crate) law: LawKind,
     /// Real contacts; the last block is filled up with idle ones.
     pub(crate) count: usize,
@@ -124,7 +124,7 @@ fn locate(c: usize) -> (usize, usize, usize) {
 }
 
 impl Section {
-    /// Without contacts. The two dummies stand after the `particles` real ones.
+    /// Without contacts. The two dummies follow the `particles` real ones.
     pub(crate) fn new(rank: Rank, law: LawKind, particles: usize) -> Self {
         Self { rank, law, count: 0, own_from: 0, chunks: Vec::new(), dummy: particles as u32 }
     }
@@ -254,7 +254,7 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
-    /// At the first contact of `sections`, which stand in the order of their stretches.
+    /// At the first contact of `sections`, which are in the order of their stretches.
     pub(crate) fn new(sections: Vec<Section>) -> Self {
         let mut reader = Self { sections: sections.into_iter(), now: None };
         reader.open();
@@ -305,7 +305,7 @@ impl<'a> Writer<'a> {
         Self { cuts, expected: expected.div_ceil(stretches), sections }
     }
 
-    /// Adds a contact, after all that stand before it in the order of the list.
+    /// Adds a contact, behind those that precede it in the order of the list.
     pub(crate) fn push<S: Space>(&mut self, key: Key, memory: &Memory) {
         let stretch = |p: u32| self.cuts.partition_point(|&cut| cut <= p as usize) - 1;
         let first = stretch(key.i);

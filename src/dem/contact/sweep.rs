@@ -219,7 +219,7 @@ fn work<S: Space, L: Lane>(velocity: Vector<S>, dt: f64, touch: &Touch<S, L>, lo
     S::force(touch, load).dot(S::Vector::<L>::build(|k| L::splat(way.at(k))))
 }
 
-/// Keeps the force on the wall.
+/// Stores the force on the wall.
 #[inline(always)]
 fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L>, load: &Load<S, L>) {
     let force = S::force(touch, load);

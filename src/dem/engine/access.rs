@@ -1,4 +1,4 @@
-//! What a caller may read. Particles, clumps and walls are named by their places in the caller's list; reading a place that
+//! What a caller may read. Particles, clumps and walls are named by their indices in the caller's list; reading an index that
 //! there is not panics, as it does on a slice.
 
 use super::{Engine, Settings};
@@ -75,7 +75,7 @@ impl<S: Space> Engine<S> {
         self.masses[self.index[particle] as usize]
     }
 
-    /// The clump of a particle, by its place in the caller's list of clumps.
+    /// The clump of a particle, by its index in the caller's list of clumps.
     pub fn clump_of(&self, particle: usize) -> Option<usize> {
         let body = self.bodies[self.index[particle] as usize] as usize;
         self.clump_caller.get(body).map(|&clump| clump as usize)
@@ -130,7 +130,7 @@ impl<S: Space> Engine<S> {
     }
 
     fn rigid(&self, clump: usize) -> &Rigid<S> {
-        &self.clumps[self.clump_place[clump] as usize]
+        &self.clumps[self.clump_index[clump] as usize]
     }
 
     /// Number of clumps.

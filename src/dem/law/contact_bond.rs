@@ -1,6 +1,6 @@
 //! Contact bond: the linear spring pulls too and does not slip, until F_n (tension) > T_F or |F_s| > S_F.
 //!
-//! PFC `linearcbond`. Broken in tension the contact carries nothing; broken in shear it keeps what friction allows
+//! PFC `linearcbond`. Broken in tension the contact carries nothing; broken in shear it carries what friction allows
 //! (PFC 3), or drops its shear force (present PFC) when the class says so. No moment. The bond is in force where its
 //! tensile capacity is finite.
 

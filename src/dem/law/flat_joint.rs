@@ -1,8 +1,8 @@
 //! Flat joint: two flat faces instead of a point of contact (Potyondy 2012, ARMA 12-501; PFC `flatjoint`).
 //!
-//! Between two grains stands an interface of radius R = λ min(R₁, R₂): a strip 2R wide in the plane, a disc in space. It is
+//! Between two grains is an interface of radius R = λ min(R₁, R₂): a strip 2R wide in the plane, a disc in space. It is
 //! divided into N elements of equal area A/N, each with its own state. With u the opening of the faces since they
-//! were made, g₀ the gap that they were made with, ψ the slope of one face against the other and r the place of an element:
+//! were made, g₀ the gap that they were made with, ψ the slope of one face against the other and r the position of an element:
 //!
 //! * gap g = g₀ + u + ψ·r; u is absolute, from the distance of the grains, and ψ the sum of the bending rotations;
 //! * bonded: F = k_n (A/N) g, tension positive; the shear force adds k_s (A/N) Δ_s at r, twist included;
@@ -269,7 +269,7 @@ fn limited<S: Space, L: Lane>(shear: [L; 2], limit: L) -> [L; 2] {
 }
 
 impl<L: Lane> Faces<L> {
-    /// Lets one element answer; adds to the sums and says which broke.
+    /// Computes the response of one element; adds it to the sums and returns whether it broke.
     #[inline(always)]
     fn element<S: Space>(
         &self,
