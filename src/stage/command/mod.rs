@@ -29,6 +29,7 @@ mod template;
 mod verdict;
 
 use super::beside::Beside;
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
     AtOnce, Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError,
@@ -200,6 +201,10 @@ impl Stage for Command {
     fn sketch(&self) -> Sketch {
         let responses = Some(self.read.keys().cloned().collect());
         Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        Forecast::of_design(ahead, |_, _| TaskForecast::Exactly(0))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
