@@ -75,7 +75,7 @@ enum Command {
     /// Describe a cluster for `flow run --executor slurm`.
     #[command(after_help = examples::SITE)]
     Site(site::SiteCommand),
-    /// Take tasks from a queue of a cluster; started by the jobs of `flow run --executor slurm`.
+    /// Take tasks from a queue of a cluster (the jobs of `flow run --executor slurm` do this).
     #[command(hide = true)]
     Work(work::Work),
     /// Write a commented workflow to start from.
