@@ -5,11 +5,14 @@ use super::common::{Campaign, system, workers};
 use super::notes::notes;
 use super::progress::{Progress, task_name};
 use super::site;
+use super::whole::Whole;
 use crate::cluster::Site;
 use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
-use crate::run::{Cluster, Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, record, run};
+use crate::run::{
+    Cluster, Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, forecasts_of, record, run,
+};
 use crate::stage::command::leftover;
 use crate::store::Store;
 use clap::{Args, ValueEnum};
@@ -90,7 +93,11 @@ impl Run {
         };
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
-            false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
+            false => Box::new(Progress::new(
+                Whole::of(forecasts_of(&workflow, &self.stages)),
+                || expected(&workflow, &store),
+                jobs,
+            )),
         };
         let report = run(&workflow, &store, &settings, &*watch, &stop);
         drop(watch);

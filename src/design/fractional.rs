@@ -19,7 +19,7 @@ use super::{Design, Stream, is_default};
 use generator::{Word, parse};
 use serde::{Deserialize, Serialize};
 
-/// Options of a fractional factorial: say one of `generators`, `resolution` and `runs`.
+/// Options of a fractional factorial: set one of `generators`, `resolution` and `runs`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FractionalFactorial {

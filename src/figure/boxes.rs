@@ -37,7 +37,7 @@ pub struct BoxPlot {
     pub groups: Vec<Group>,
 }
 
-/// Fewer values than this have no box: quartiles of three runs say nothing.
+/// Fewer values than this have no box: quartiles of three runs mean nothing.
 const LEAST: usize = 4;
 /// Golden ratio: points of a group never fall into columns.
 const GOLDEN: f64 = 0.618_033_988_749_895;

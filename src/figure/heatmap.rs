@@ -1,6 +1,6 @@
 //! A matrix of values over two columns: the number in its cell, on the colour of its size.
 //!
-//! Cells keep the order of their heads, not their distance. A cell without a value is struck out. Numbers are left out
+//! Cells have the order of their heads, not their distance. A cell without a value is struck out. Numbers are left out
 //! where they would be smaller than print allows, and then the colour bar is all there is.
 
 use super::axis::{Axis, extent, fixed, significant};

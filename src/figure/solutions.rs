@@ -176,7 +176,7 @@ impl Solutions {
     }
 }
 
-/// A bound as short as it can be told.
+/// A bound as a short text.
 fn significant_short(v: f64) -> String {
     (0..4)
         .map(|d| fixed(v, d))

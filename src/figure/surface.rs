@@ -49,7 +49,7 @@ impl Box3 {
         self.corner([self.unit(0, v[0]), self.unit(1, v[1]), self.unit(2, v[2])])
     }
 
-    /// Facts that let a script tell values under a pointer: the ends of the three axes, then the places on the page of
+    /// Facts from which a script reads values under a pointer: the ends of the three axes, then the points on the page of
     /// their common low corner and of the high end of each.
     fn facts(&self) -> Vec<(&'static str, String)> {
         let ends = self.axes.iter().flat_map(|axis| [axis.low, axis.high]).map(|end| end.to_string());

@@ -27,7 +27,7 @@ pub struct Cloud {
     pub y_error: Vec<f64>,
     /// A line through them, with its band.
     pub line: Option<Band>,
-    /// What the line says, in label markup, such as a slope with its standard error; may be empty.
+    /// The text at the line, in label markup, such as a slope with its standard error; may be empty.
     pub note: String,
 }
 

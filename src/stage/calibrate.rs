@@ -55,6 +55,7 @@ pub(super) use read::Judgement;
 pub use slope::Slope;
 pub use words::parameters_in_words;
 
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -110,6 +111,19 @@ impl Stage for Calibrate {
 
     fn gives(&self) -> ArtifactKind {
         ArtifactKind::SOLUTION
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        // A curve alone is one target.
+        let sets = self.targets.len().max(1);
+        let one = Forecast { rows: Some(sets), ..Forecast::ONE };
+        if self.simulators().is_empty() {
+            return one;
+        }
+        let behind = ["simulator", "simulators", "coarse"].into_iter().flat_map(|port| (ahead.behind)(port));
+        let each: usize = behind.map(|simulator| simulator.per_run).sum();
+        let tasks = self.evaluations.map(|count| count.saturating_mul(sets).saturating_mul(each).saturating_add(1));
+        Forecast { tasks: tasks.map(TaskForecast::AtMost), ..one }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {

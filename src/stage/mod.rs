@@ -50,6 +50,7 @@ pub mod design;
 pub mod effort;
 pub mod figure;
 pub mod fitted;
+pub mod forecast;
 pub mod formula;
 mod given;
 pub mod invalid;
@@ -152,6 +153,11 @@ pub trait Stage: Settings + Send + Sync {
     /// What other stages know of it before anything runs.
     fn sketch(&self) -> Sketch {
         Sketch::default()
+    }
+
+    /// What it is expected to ask for.
+    fn forecast(&self, _ahead: &forecast::Ahead) -> forecast::Forecast {
+        forecast::Forecast::ONE
     }
 
     /// What to do next, given all that is known; a pure function.

@@ -285,7 +285,7 @@ impl<T: Real> PureError<T> {
     }
 }
 
-/// The aliased terms of a reduced table, each with the terms that say the same.
+/// The aliased terms of a reduced table, each with the terms that it is aliased with.
 pub(crate) fn aliases<T: Real>(
     triangle: &Triangle<T>,
     terms: usize,

@@ -1,10 +1,10 @@
-//! Choosing terms by significance, with hierarchy kept.
+//! Choice of terms by significance, with hierarchy.
 //!
 //! Backward: the term with the largest p above the level is removed, as long as no remaining term contains it; the rest
 //! is fitted again; until none can go. Forward: from the constant, the term with the smallest p below the level is
 //! added among those whose divisors are all in; until none comes. The constant always stays.
 //!
-//! Stepwise p-values are optimistic (the same data choose and judge); the steps are kept so that a reader sees it.
+//! Stepwise p-values are optimistic (the same data choose and judge); the steps are reported so that a reader sees it.
 //! Source: Draper and Smith 1998, chapter 15; Peixoto 1987, doi:10.2307/2684752 (hierarchy).
 
 use super::error::Fault;
@@ -44,7 +44,7 @@ impl Selection {
 pub struct Step {
     /// The term that came or went.
     pub term: String,
-    /// Whether it came.
+    /// Whether it was added.
     pub added: bool,
     /// Its p in the model that held it.
     pub p: f64,

@@ -172,7 +172,7 @@ impl<T: Real> Triangle<T> {
 
     /// For each of the first `terms` columns that depends on earlier ones: its number and theirs.
     ///
-    /// A reflection along rounding noise would hide what later columns still have to say, so a dependent column is set
+    /// A reflection along rounding noise would hide the contribution of later columns, so a dependent column is set
     /// aside and the others are reduced without it.
     pub(crate) fn dependent(&self, terms: usize) -> Vec<(usize, Vec<usize>)> {
         if self.is_independent(terms) {

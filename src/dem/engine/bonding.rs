@@ -51,7 +51,7 @@ impl<S: Space> Engine<S> {
         Ok(chosen.len())
     }
 
-    /// Strengths of the chosen contacts, drawn in the caller's order; each stands at the number of its contact.
+    /// Strengths of the chosen contacts, drawn in the caller's order; each at the index of its contact.
     fn draw_strengths(&self, chosen: &mut [(Key, u32)], stream: &mut Stream) -> Vec<[f64; 2]> {
         chosen.sort_unstable_by_key(|&(key, order)| (self.caller_ends(key), order));
         let laws: Vec<Option<[Strength; 2]>> =
@@ -82,7 +82,7 @@ impl<S: Space> Engine<S> {
         drawn
     }
 
-    /// The caller's places of the two ends, the smaller first; walls after all particles.
+    /// The caller's indices of the two ends, the smaller first; walls after all particles.
     fn caller_ends(&self, key: Key) -> (usize, usize) {
         let i = self.caller[key.i as usize] as usize;
         let j = if key.at_wall { self.caller.len() + key.j as usize } else { self.caller[key.j as usize] as usize };

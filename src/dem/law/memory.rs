@@ -1,4 +1,4 @@
-//! The rows of one contact outside its block, as they stand while a list is written anew.
+//! The rows of one contact outside its block, while a list is written anew.
 
 use super::Rows;
 use crate::space::{D3, Space};

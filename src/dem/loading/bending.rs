@@ -167,7 +167,7 @@ impl Beam {
         Particle::ball(position, radius, piece.density, PLATEN)
     }
 
-    /// What the record says of the beam.
+    /// Results of the beam from the record.
     fn values(&self, samples: &[Sample]) -> Macro {
         let all = evaluate(samples);
         let nan = f64::NAN;

@@ -1,7 +1,7 @@
 //! Models and whether a table can estimate them.
 //!
 //! The columns of the model matrix X (coded units) are made orthogonal one after the other, X = QR, by Gram–Schmidt
-//! done twice (Giraud, Langou & Rozložník 2005, doi:10.1016/j.camwa.2005.08.009). A column of which nothing is left
+//! done twice (Giraud, Langou & Rozložník 2005, doi:10.1016/j.camwa.2005.08.009). A column of which nothing remains
 //! beside the earlier ones is a term that the runs cannot tell from them; the number of the others is the rank.
 //!
 //! * variance of a coefficient: σ² c_jj, C = (XᵀX)⁻¹ = R⁻¹R⁻ᵀ
@@ -303,7 +303,7 @@ fn condition(columns: &[Vec<f64>]) -> f64 {
     if p == 0 { f64::NAN } else { most / least }
 }
 
-/// Turns two columns until they are orthogonal; whether that was needed.
+/// Turns two columns until they are orthogonal; returns whether they were not.
 fn rotate(a: &mut [f64], b: &mut [f64]) -> bool {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
     if ab.abs() <= 1e-13 * (aa * bb).sqrt() {

@@ -11,6 +11,9 @@
 //! Packed to a `porosity`, or as `[stage.NAME.packing]` says: to a `stress`, or as a `lattice`. Replicate k is another
 //! packing and another aggregate of the same recipe; its seed comes from the workflow's seed and k. What is computed and
 //! why: [`dem::genesis`].
+//!
+//! A packing that comes to nothing (overlaps beyond half a radius, no rest) is a result with its reason, as a test without
+//! a peak is: of a design, the rows on that packing have no result, and the others go on.
 
 mod aggregate;
 mod config;
@@ -20,7 +23,7 @@ mod stored;
 
 pub use aggregate::{AggregateConfig, GradationName};
 pub use config::{ClassesConfig, PackingConfig, SieveConfig, SizeName, Specimen};
-pub use stored::{Loaded, load};
+pub use stored::{Loaded, load, stored};
 
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
@@ -66,6 +69,10 @@ impl Stage for Specimen {
         Ok(Step::Finish(self.task(known.context.seed, 1).map_err(faults)?))
     }
 
+    fn unmet(&self, result: &Artifact) -> Option<String> {
+        Stored::from_artifact(result).ok()?.failure
+    }
+
     fn replicate(&self, context: &Context, number: u64) -> Option<Task> {
         self.task(context.seed, number).ok()
     }
@@ -84,13 +91,23 @@ impl Kind for Specimen {
 fn make(job: &Job) -> Result<Artifact, Failure> {
     let recipe: Recipe = job.params()?;
     let seed = job.seed.ok_or_else(|| StageError::new("a specimen needs a seed"))?;
-    let failure = |faults: Vec<SpecimenError>| match faults[..] {
-        [SpecimenError::Packing(PackingError::Stopped)] => Failure::Stopped,
-        _ => StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")).into(),
+    let made = match recipe.region.dimension() {
+        2 => made::<D2>(&recipe, seed, job),
+        _ => made::<D3>(&recipe, seed, job),
     };
-    match recipe.region.dimension() {
-        2 => made::<D2>(&recipe, seed, job).map_err(failure),
-        _ => made::<D3>(&recipe, seed, job).map_err(failure),
+    made.or_else(|faults| unmade(&recipe, &faults, job))
+}
+
+/// What is stored where packing came to nothing, so that the rows that rest on this specimen alone are without a result.
+fn unmade(recipe: &Recipe, faults: &[SpecimenError], job: &Job) -> Result<Artifact, Failure> {
+    let words = faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+    match faults {
+        [SpecimenError::Packing(PackingError::Stopped)] => Err(Failure::Stopped),
+        [fault] if fault.is_outcome() => {
+            (job.say)(Progress::warning(fault));
+            Ok(stored::nothing(&recipe.region, recipe.density, words).to_artifact())
+        }
+        _ => Err(StageError::new(words).into()),
     }
 }
 
