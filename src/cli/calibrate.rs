@@ -16,7 +16,7 @@ use super::whole::Whole;
 use crate::artifact::Artifact;
 use crate::exec::cores;
 use crate::plan::{Workflow, nearest};
-use crate::run::{Report, Settings, Silent, StageStatus, Watch, decide, forecasts_of, run};
+use crate::run::{Report, RunSettings, Silent, StageStatus, Watch, decide, forecasts_of, run};
 use crate::stage::Kind;
 use crate::stage::calibrate::{Calibrate as Calibration, Wanted};
 use crate::stage::verify::Verify;
@@ -222,7 +222,7 @@ impl Calibrate {
 
 impl Asked {
     fn run(&self, stages: &[String], jobs: usize, watch: &dyn Watch, stop: &Arc<AtomicBool>) -> Report {
-        let settings = Settings {
+        let settings = RunSettings {
             jobs,
             keep_going: false,
             dry: false,

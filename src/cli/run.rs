@@ -11,7 +11,7 @@ use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
 use crate::run::{
-    Cluster, Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, forecasts_of, record, run,
+    Cluster, Past, Report, RunSettings, Silent, StageReport, StageStatus, TaskState, Watch, forecasts_of, record, run,
 };
 use crate::stage::command::leftover;
 use crate::store::Store;
@@ -82,7 +82,7 @@ impl Run {
         let stop = interruption(cluster.as_ref().map(|cluster| &cluster.leave));
         leftover::sweep().iter().for_each(|line| err!("warning: {line}"));
         let jobs = self.jobs.unwrap_or_else(cores);
-        let settings = Settings {
+        let settings = RunSettings {
             jobs,
             keep_going: self.keep_going,
             dry: false,

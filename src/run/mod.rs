@@ -62,7 +62,7 @@ use streamed::Streamed;
 
 /// How a campaign is run.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub struct RunSettings {
     /// Cores that all tasks together may use.
     pub jobs: usize,
     /// Go on with what does not depend on a failed task.
@@ -133,7 +133,7 @@ impl Report {
 }
 
 /// Runs what is missing of `workflow`, or only decides when the settings say so.
-pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn Watch, stop: &AtomicBool) -> Report {
+pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &dyn Watch, stop: &AtomicBool) -> Report {
     let (answers, inbox) = channel();
     let jobs = if settings.dry { 1 } else { settings.jobs };
     let ran = with_threads(jobs, |pool| {
@@ -187,7 +187,7 @@ fn panicked(panic: &(dyn Any + Send)) -> Failure {
 /// Decides what is done of `workflow` and what is left, by the decisions of [`run`], and starts nothing. `targets` are the
 /// stages that are wanted, all when empty; without `memos` every task is looked up.
 pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Report {
-    let settings = Settings {
+    let settings = RunSettings {
         jobs: 0,
         keep_going: true,
         dry: true,
@@ -208,7 +208,7 @@ struct Answer {
 struct Loop<'pool, 'env> {
     workflow: &'env Workflow,
     store: &'env Store,
-    settings: &'env Settings,
+    settings: &'env RunSettings,
     watch: &'env dyn Watch,
     stop: &'env AtomicBool,
     pool: Threads<'pool, 'env>,

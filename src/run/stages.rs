@@ -8,7 +8,7 @@ use super::run_memo::RunMemo;
 use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
-use crate::stage::rows::Rows;
+use crate::stage::rows::DesignRows;
 use crate::stage::{Input, Known, Library, Memory, StageError, Step, vary};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
@@ -78,7 +78,7 @@ struct Entry {
     /// Key of the memo of its runs, known at the same time.
     run: Option<Key>,
     /// The rows whose runs it gathers.
-    rows: Option<Arc<Rows>>,
+    rows: Option<Arc<DesignRows>>,
     /// Every node it asked for, and the node that is its result.
     asked: Vec<NodeId>,
     files: Files,

@@ -230,7 +230,7 @@ fn levels_like<'a>(sample: &'a Sample, other: &Sample) -> Vec<&'a [f64]> {
     other.factors.iter().filter_map(|f| own(&f.name)).map(|f| f.values.as_slice()).collect()
 }
 
-/// Effects on 100 ln(computed/reference) of the factors that vary; none where the pairs cannot tell them apart.
+/// Effects on 100 ln(computed/reference) of the factors that vary; `None` where the pairs cannot separate them.
 fn trend(ours: &Sample, response: &str, table: &str, paired: &[(usize, usize, f64, f64)]) -> Vec<Trend> {
     let usable: Vec<&(usize, usize, f64, f64)> = paired.iter().filter(|(_, _, y, x)| y / x > 0.0).collect();
     let column = |f: &Factor| Factor::new(&f.name, usable.iter().map(|p| f.values[p.0]).collect());

@@ -135,10 +135,10 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
     Ok(Results { runs: table, notes }.to_artifact())
 }
 
-/// Reads the whole table in whatever way it is written, or says what is wrong with it.
+/// Reads the whole table in any dialect, or returns its faults.
 ///
 /// # Errors
-/// What is wrong with it, and where.
+/// A fault of it, and where.
 pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
     parse_as(bytes, &Dialect::default()).map(|(table, _)| table)
 }

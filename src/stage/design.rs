@@ -1,4 +1,4 @@
-//! `kind = "design"`: the runs of an experiment, and what they can tell.
+//! `kind = "design"`: the runs of an experiment, and a report on what they can estimate.
 //!
 //! `method` picks the design; the other keys are its options, and an option of another method is refused. The factors
 //! are those of the workflow, in the order named. Orthogonal, factorial designs take a factor's levels (its range if it
@@ -198,7 +198,7 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
 /// What to do about rows that break a rule.
 const LEAVE_OUT: &str = "change the factors, or say `invalid_rows = \"leave-out\"`";
 
-/// So many rows that break a rule are told one by one.
+/// Most rows that break a rule and are named one by one.
 const MOST_TOLD: usize = 10;
 
 impl Design {

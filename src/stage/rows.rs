@@ -5,7 +5,7 @@
 
 mod points;
 
-pub use points::Rows;
+pub use points::DesignRows;
 
 use super::cached::{CachedRuns, RunSummaries};
 use super::material::{self, Material};
@@ -118,7 +118,7 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
     };
     let artifact = known.load(design)?;
     let mut task = gather(known, design, &artifact)?;
-    let rows = Arc::new(Rows::of(&artifact, known.context)?);
+    let rows = Arc::new(DesignRows::of(&artifact, known.context)?);
     task.inputs.reserve(rows.len());
     let mut cached_runs = CachedRuns::with_room(rows.len());
     for index in 0..rows.len() {

@@ -190,7 +190,7 @@ struct Verified {
 }
 
 impl Verified {
-    /// How far a value lies from what is wanted.
+    /// Deviation of a value from its target.
     fn off(&self, value: f64) -> f64 {
         (value - self.target.nearest(value)).abs()
     }

@@ -5,7 +5,7 @@
 //! exists beside it.
 
 use crate::interaction::Bond;
-use crate::law::{ENERGIES, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
+use crate::law::{ENERGIES, Memory, RowIndex, flat_joint_rows, fresh, idle, smooth_joint_rows};
 use crate::simd::{Row, WIDEST};
 use crate::space::Space;
 use std::ops::Range;
@@ -39,9 +39,9 @@ impl LawKind {
     /// Rows of memory of a contact.
     fn rows<S: Space>(self) -> usize {
         match self {
-            Self::Linear => Rows::<S>::TENSION,
-            Self::ContactBond => Rows::<S>::BOND,
-            Self::ParallelBond => Rows::<S>::COUNT,
+            Self::Linear => RowIndex::<S>::TENSION,
+            Self::ContactBond => RowIndex::<S>::BOND,
+            Self::ParallelBond => RowIndex::<S>::COUNT,
             Self::FlatJoint { elements } => flat_joint_rows::<S>(elements),
             Self::SmoothJoint => smooth_joint_rows::<S>(),
         }
@@ -153,12 +153,12 @@ impl Section {
         let rows = self.law.rows::<S>();
         let mut memory = fresh::<S>();
         let own = &self.chunks[chunk].rows[block * rows..(block + 1) * rows];
-        let (shared, tail) = own.split_at(rows.min(Rows::<S>::COUNT));
+        let (shared, tail) = own.split_at(rows.min(RowIndex::<S>::COUNT));
         for (value, row) in memory.iter_mut().zip(shared) {
             *value = row.0[lane];
         }
         // Rows of elements matter where there is an interface.
-        if memory[Rows::<S>::BOND] > 0.0 {
+        if memory[RowIndex::<S>::BOND] > 0.0 {
             memory.tail.extend(tail.iter().map(|row| row.0[lane]));
         }
         memory
@@ -176,7 +176,7 @@ impl Section {
         let chunk = &mut self.chunks[chunk];
         if block == chunk.ends.len() {
             chunk.ends.push([[self.dummy; WIDEST], [self.dummy + 1; WIDEST]]);
-            let (idle_memory, shared) = (fresh::<S>(), Rows::<S>::COUNT);
+            let (idle_memory, shared) = (fresh::<S>(), RowIndex::<S>::COUNT);
             let flat = matches!(self.law, LawKind::FlatJoint { .. });
             let tail = |row| if flat { idle::<S>(row) } else { 0.0 };
             let value = |row| if row < shared { idle_memory[row] } else { tail(row) };
@@ -191,7 +191,7 @@ impl Section {
             ends[1][lane] = key.j;
         }
         let own = &mut chunk.rows[block * rows..(block + 1) * rows];
-        let (shared, tail) = own.split_at_mut(rows.min(Rows::<S>::COUNT));
+        let (shared, tail) = own.split_at_mut(rows.min(RowIndex::<S>::COUNT));
         for (row, value) in shared.iter_mut().zip(&**memory) {
             row.0[lane] = *value;
         }
@@ -203,12 +203,12 @@ impl Section {
 
     /// Whether contact `c` is bonded.
     pub(crate) fn bonded<S: Space>(&self, c: usize) -> bool {
-        self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
+        self.value::<S>(c, RowIndex::<S>::TENSION) < f64::INFINITY
     }
 
     /// Whether contact `c` is bonded or an interface, bonded or not.
     pub(crate) fn joined<S: Space>(&self, c: usize) -> bool {
-        self.bonded::<S>(c) || self.value::<S>(c, Rows::<S>::BOND) > 0.0
+        self.bonded::<S>(c) || self.value::<S>(c, RowIndex::<S>::BOND) > 0.0
     }
 
     /// Force of contact `c` on the wall; the third component is 0 in the plane.

@@ -4,7 +4,7 @@
 use super::{Engine, Settings};
 use crate::body::{self, Rigid};
 use crate::contact::{Contact, Key, LawKind, Other, Section};
-use crate::law::{Interface, KN, REFERENCE, Rows, SHEAR, joint_energy};
+use crate::law::{Interface, KN, REFERENCE, RowIndex, SHEAR, joint_energy};
 use crate::measure::Crack;
 use crate::particle::{Clump, Group, Particle};
 use crate::space::{Load, Space, Spin, Touch, Tuple, Vector};
@@ -202,13 +202,13 @@ impl<S: Space> Engine<S> {
         let push = value(KN) * if point_bond { overlap } else { overlap.max(0.0) };
         let shear = |first: usize| S::Shear::<f64>::build(|k| value(first + k));
         let interface = self.interface(section, c, gap);
-        let touches = interface.is_some() && value(Rows::<S>::BOND_NORMAL) != 0.0;
+        let touches = interface.is_some() && value(RowIndex::<S>::BOND_NORMAL) != 0.0;
         let solid = S::DIMENSION == 3;
         let cement = Load::<S, f64> {
-            normal: value(Rows::<S>::BOND_NORMAL),
-            shear: shear(Rows::<S>::BOND_SHEAR),
-            twist: if solid { value(Rows::<S>::BOND_TWIST) } else { 0.0 },
-            bend: shear(Rows::<S>::BOND_BEND),
+            normal: value(RowIndex::<S>::BOND_NORMAL),
+            shear: shear(RowIndex::<S>::BOND_SHEAR),
+            twist: if solid { value(RowIndex::<S>::BOND_TWIST) } else { 0.0 },
+            bend: shear(RowIndex::<S>::BOND_BEND),
         };
         let spring = Load::<S, f64> { normal: -push, shear: shear(SHEAR), ..cement };
         let touch = Touch::<S, f64>::still(normal, gap);
@@ -227,8 +227,8 @@ impl<S: Space> Engine<S> {
             bonded,
             active: bonded || touches || (interface.is_none() && overlap > 0.0),
             stiffness: [value(KN), value(KN) * constants.shear_share],
-            bond_stiffness: [value(Rows::<S>::BOND), value(Rows::<S>::BOND) * constants.bond_share],
-            capacity: if bonded { [Rows::<S>::TENSION, Rows::<S>::COHESION].map(value) } else { [0.0; 2] },
+            bond_stiffness: [value(RowIndex::<S>::BOND), value(RowIndex::<S>::BOND) * constants.bond_share],
+            capacity: if bonded { [RowIndex::<S>::TENSION, RowIndex::<S>::COHESION].map(value) } else { [0.0; 2] },
             gyration: S::GYRATION * bond_radius * bond_radius,
             spring: S::force(&touch, &spring),
             cement: S::force(&touch, &cement),

@@ -4,7 +4,7 @@ use super::Engine;
 use crate::contact::Key;
 use crate::error::Faults;
 use crate::interaction::{Bond, FlatJoint};
-use crate::law::{Memory, REFERENCE, Rows, SHEAR, join};
+use crate::law::{Memory, REFERENCE, RowIndex, SHEAR, join};
 use crate::space::Space;
 use crate::strength::Strength;
 use math::random::Stream;
@@ -104,10 +104,10 @@ impl<S: Space> Engine<S> {
         let capacity = strengths.map(|strength| (strength * section).min(f64::MAX));
         rows[REFERENCE] = reference;
         rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
-        rows[Rows::<S>::BOND..].fill(0.0);
-        rows[Rows::<S>::TENSION] = capacity[0];
-        rows[Rows::<S>::COHESION] = capacity[1];
-        rows[Rows::<S>::BOND] = stiffness;
+        rows[RowIndex::<S>::BOND..].fill(0.0);
+        rows[RowIndex::<S>::TENSION] = capacity[0];
+        rows[RowIndex::<S>::COHESION] = capacity[1];
+        rows[RowIndex::<S>::BOND] = stiffness;
     }
 
     /// An interface in place of the contact.
@@ -118,7 +118,7 @@ impl<S: Space> Engine<S> {
         let origin = if kind == Kind::Gapped { gap - joint.shares.gap } else { gap };
         let layout = &self.classes[self.class_of(key) as usize].constants.layout;
         rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
-        rows[Rows::<S>::BOND..].fill(0.0);
+        rows[RowIndex::<S>::BOND..].fill(0.0);
         join::<S>(rows, layout, origin, joint.normal::<S>(radii), capacity, self.normal_of(key));
     }
 

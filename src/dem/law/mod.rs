@@ -30,9 +30,9 @@ pub(crate) const REFERENCE: usize = 1;
 pub(crate) const SHEAR: usize = 2;
 
 /// Indices of the other rows, which depend on the space.
-pub(crate) struct Rows<S>(std::marker::PhantomData<S>);
+pub(crate) struct RowIndex<S>(std::marker::PhantomData<S>);
 
-impl<S: Space> Rows<S> {
+impl<S: Space> RowIndex<S> {
     /// Tensile capacity σ_c A (∞ where nothing is bonded), N.
     pub(crate) const TENSION: usize = SHEAR + S::SHEAR;
     /// Shear capacity c A (∞ where nothing is bonded), N.

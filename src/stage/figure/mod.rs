@@ -116,7 +116,7 @@ struct Params {
     /// What becomes of runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     invalid: Invalid,
-    /// What is said of the runs that curves are drawn of.
+    /// Statements on the runs whose curves are drawn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
 }
