@@ -12,7 +12,7 @@
 //! shall compare rows on the same one.
 //!
 //! Numbers are read as C and Fortran write them. A value that the program itself calls `NaN` (or `null` in JSON) is a
-//! missing response, said with the run; a run that leaves no value at all has failed.
+//! missing response, which a warning of the run names; a run that leaves no value at all has failed.
 //!
 //! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
 //! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
