@@ -57,8 +57,8 @@ impl Factor {
         let mut found: Vec<f64> = Vec::new();
         for row in rows {
             let value = self.values[row] + 0.0;
-            if let Err(place) = found.binary_search_by(|level| level.total_cmp(&value)) {
-                found.insert(place, value);
+            if let Err(index) = found.binary_search_by(|level| level.total_cmp(&value)) {
+                found.insert(index, value);
             }
         }
         found

@@ -11,6 +11,8 @@ mod command;
 mod engines;
 mod export;
 mod faults;
+mod forecast;
+mod guide;
 mod hostile;
 mod kill;
 mod nodes;
