@@ -32,6 +32,16 @@ pub fn scale_to_porosity<S: Space>(radii: &mut [f64], volume: f64, porosity: f64
 /// Random centres for balls of half the given radii, inside `region` and without overlap. A ball that finds no place in
 /// a thousand tries is put at the last one tried; the relaxation moves it.
 pub fn scatter<S: Space>(radii: &[f64], region: &Region, stream: &mut Stream) -> Vec<Vector<S>> {
+    scatter_where::<S>(radii, region, &|_, _| true, stream)
+}
+
+/// The same at places that are free for a ball of half the radius, as `room(centre, half radius)` says.
+pub(super) fn scatter_where<S: Space>(
+    radii: &[f64],
+    region: &Region,
+    room: &dyn Fn(Vector<S>, f64) -> bool,
+    stream: &mut Stream,
+) -> Vec<Vector<S>> {
     let largest = radii.iter().copied().fold(0.0, f64::max);
     let edges = region.edges();
     let mut grid = Bins::new(edges, largest.max(1e-300), S::DIMENSION);
@@ -41,7 +51,7 @@ pub fn scatter<S: Space>(radii: &[f64], region: &Region, stream: &mut Stream) ->
         for _ in 0..1000 {
             centre = Vector::<S>::build(|k| edges[k] * (stream.uniform() - 0.5));
             let free = |j: usize| centres[j].minus(centre).norm() >= r + 0.5 * radii[j];
-            if region.depth::<S>(centre) >= r && grid.near::<S>(centre).all(free) {
+            if region.depth::<S>(centre) >= r && grid.near::<S>(centre).all(free) && room(centre, r) {
                 break;
             }
         }

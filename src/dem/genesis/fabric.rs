@@ -131,8 +131,12 @@ mod tests {
         let step = side / f64::from(n);
         let place = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
         let centres = (0..n * n).map(|k| [place(k % n), place(k / n)]).collect();
-        let heap =
-            Heap::<D2> { region: Region::Rectangle { width: side, height: side }, centres, radii: vec![1.0; 36] };
+        let heap = Heap::<D2> {
+            region: Region::Rectangle { width: side, height: side },
+            centres,
+            radii: vec![1.0; 36],
+            fixed: 0,
+        };
         let fabric = Fabric::of(&heap);
         assert!((fabric.coordination - 2.0 * 60.0 / 36.0).abs() < 1e-12);
         assert_eq!(fabric.floaters, 0);
@@ -152,7 +156,7 @@ mod tests {
         let place = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
         let centres = (0..n * n * n).map(|k| [place(k % n), place(k / n % n), place(k / n / n)]).collect();
         let region = Region::Box { width: side, height: side, depth: side };
-        let heap = Heap::<D3> { region, centres, radii: vec![1.0; 64] };
+        let heap = Heap::<D3> { region, centres, radii: vec![1.0; 64], fixed: 0 };
         let fabric = Fabric::of(&heap);
         assert!((fabric.coordination - 2.0 * 144.0 / 64.0).abs() < 1e-12);
         let stress = std::f64::consts::PI * e / (step * step);

@@ -17,6 +17,8 @@ pub struct Heap<S: Space = D2> {
     pub centres: Vec<Vector<S>>,
     /// Radii.
     pub radii: Vec<f64>,
+    /// The first so many stand still: pebbles of stones, which overlap one another and the walls as they like.
+    pub fixed: usize,
 }
 
 /// Two balls, or a ball and a wall (`second` is then `None`), that overlap.
@@ -59,7 +61,8 @@ impl<S: Space> Heap<S> {
     /// All pairs whose surfaces are nearer than `margin` (m), each once with the smaller index first, sorted.
     pub fn pairs(&self, margin: f64) -> Vec<(usize, usize)> {
         let places: Vec<[f64; 3]> = self.centres.iter().map(|&x| flat::<S>(x)).collect();
-        let bodies: Vec<u32> = (0..self.radii.len() as u32).collect();
+        // Pebbles that stand still are one body, so that no pair of them is listed.
+        let bodies: Vec<u32> = (0..self.radii.len()).map(|i| if i < self.fixed { 0 } else { i as u32 }).collect();
         let mut pairs = Vec::with_capacity(4 * self.radii.len());
         neighbour::pairs(&places, &self.radii, &bodies, margin, |i, j| pairs.push((i as usize, j as usize)));
         pairs
@@ -73,7 +76,7 @@ impl<S: Space> Heap<S> {
             Pair { i: i as u32, j: j as u32, reach: ri + rj, stiffness }
         };
         let near = |&i: &usize| self.region.depth::<S>(self.centres[i]) < self.radii[i] + margin;
-        let at_wall = (0..self.radii.len()).filter(near).map(|i| i as u32).collect();
+        let at_wall = (self.fixed..self.radii.len()).filter(near).map(|i| i as u32).collect();
         Neighbours { pairs: self.pairs(margin).into_iter().map(pair).collect(), at_wall, scale }
     }
 
@@ -124,20 +127,20 @@ impl<S: Space> Heap<S> {
         counts
     }
 
-    /// Σ V(R), overlaps counted twice (m³, or m²).
+    /// Σ V(R) of the balls that are not fixed, overlaps counted twice (m³, or m²).
     pub fn ball_volume(&self) -> f64 {
-        ball_volume::<S>(&self.radii)
+        ball_volume::<S>(&self.radii[self.fixed..])
     }
 
-    /// Multiplies all radii.
+    /// Multiplies the radii of the balls that are not fixed.
     pub(super) fn scale(&mut self, factor: f64) {
-        self.radii.iter_mut().for_each(|r| *r *= factor);
+        self.radii[self.fixed..].iter_mut().for_each(|r| *r *= factor);
     }
 
-    /// The balls with these indices, in this order.
+    /// The balls with these indices, in this order; fixed ones must come first and all be there.
     pub(super) fn chosen(&self, order: &[usize]) -> Self {
         let centres = order.iter().map(|&i| self.centres[i]).collect();
-        Self { region: self.region, centres, radii: order.iter().map(|&i| self.radii[i]).collect() }
+        Self { region: self.region, centres, radii: order.iter().map(|&i| self.radii[i]).collect(), fixed: self.fixed }
     }
 }
 
@@ -160,7 +163,7 @@ mod tests {
         let centres: Vec<[f64; 3]> =
             (0..300).map(|_| std::array::from_fn(|k| edges[k] * (stream.uniform() - 0.5))).collect();
         let radii: Vec<f64> = (0..300).map(|_| stream.uniform_in(0.03, 0.06)).collect();
-        let heap = Heap::<D3> { region, centres, radii };
+        let heap = Heap::<D3> { region, centres, radii, fixed: 0 };
         let mut expected = Vec::new();
         for i in 0..300 {
             for j in i + 1..300 {

@@ -107,7 +107,7 @@ impl Lattice {
             }
         }
         let radii = vec![radius * (1.0 + OVERLAP); centres.len()];
-        Heap { region: *region, centres, radii }
+        Heap { region: *region, centres, radii, fixed: 0 }
     }
 
     /// Largest whole number of half repeats (whole ones where there is one place) in `room`.

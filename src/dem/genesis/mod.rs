@@ -6,6 +6,7 @@
 //! * [`groups`]: minerals by their share
 //! * [`gradation`]: how many particles of aggregate of each size; [`polygon`]: random convex outlines; [`placement`]: their
 //!   places without overlap; [`clump`]: balls inside a polygon as pebbles of a rigid body (plane only)
+//! * [`stones`]: clumps of given shapes placed in a solid; [`mix`]: mortar of balls packed around them
 //! * [`specimen`]: all of it put together; [`quality`]: the report on it
 
 pub mod cloud;
@@ -16,6 +17,7 @@ pub mod gradation;
 pub mod groups;
 pub mod heap;
 pub mod lattice;
+pub mod mix;
 pub mod packing;
 pub mod placement;
 pub mod polygon;
@@ -24,3 +26,4 @@ pub mod region;
 pub mod relax;
 pub mod sizes;
 pub mod specimen;
+pub mod stones;

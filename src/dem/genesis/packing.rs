@@ -207,8 +207,8 @@ pub enum PackingError {
 /// Most balls that are packed.
 pub const MOST_BALLS: f64 = 5e6;
 /// Mean unbalanced force over the mean contact force that counts as rest at a fixed porosity.
-const REST: f64 = 1e-3;
-const AT_REST: Until = Until { unbalanced: REST, slack: 0.0, iterations: 40_000, margin: 0.5 };
+pub(super) const REST: f64 = 1e-3;
+pub(super) const AT_REST: Until = Until { unbalanced: REST, slack: 0.0, iterations: 40_000, margin: 0.5 };
 const MOST_ROUNDS: usize = 30;
 /// Factor on a floater's radius in one round.
 const GROWTH: f64 = 1.02;
@@ -284,7 +284,7 @@ fn cloud<S: Space>(sizes: &Sizes, porosity: f64, region: &Region, stream: &mut S
         GivesWay::Number => 1.0,
     };
     let centres = scatter::<S>(&radii, region, stream);
-    (renumbered(&Heap { region: *region, centres, radii }), factor)
+    (renumbered(&Heap { region: *region, centres, radii, fixed: 0 }), factor)
 }
 
 /// Enlarges floaters until few enough are left; a round that finds no rest is undone and ends it.
@@ -405,7 +405,7 @@ fn as_lattice<S: Space>(lattice: Lattice, radius: f64, region: &Region) -> Packe
 
 impl<S: Space> Packed<S> {
     /// A heap to which nothing happened.
-    fn of(heap: Heap<S>) -> Self {
+    pub(super) fn of(heap: Heap<S>) -> Self {
         Self {
             heap,
             radius_factor: 1.0,
@@ -420,13 +420,13 @@ impl<S: Space> Packed<S> {
 }
 
 /// The balls in the order of a Morton curve over 1024 cells along each axis of the vessel.
-fn renumbered<S: Space>(heap: &Heap<S>) -> Heap<S> {
+pub(super) fn renumbered<S: Space>(heap: &Heap<S>) -> Heap<S> {
     let edges = heap.region.edges();
     let cell = |x: f64, length: f64| ((x / length + 0.5).clamp(0.0, 0.999_999) * 1024.0) as u32;
     let code =
         |c: &Vector<S>| (0..S::DIMENSION).fold(0, |code, k| code | spread(cell(c.at(k), edges[k]), S::DIMENSION) << k);
     let mut order: Vec<usize> = (0..heap.radii.len()).collect();
-    order.sort_by_key(|&i| code(&heap.centres[i]));
+    order[heap.fixed..].sort_by_key(|&i| code(&heap.centres[i]));
     heap.chosen(&order)
 }
 

@@ -169,7 +169,8 @@ impl Quality {
             polygon_fraction: polygons.iter().fold(0.0, |sum, p| sum + p.moments().area) / volume,
             pebble_fraction: super::heap::ball_volume::<S>(&pebbles) / all,
             polygons: polygons.len(),
-            empty_polygons: polygons.len() - clumps.len(),
+            // Stones are clumps without polygons.
+            empty_polygons: polygons.len().saturating_sub(clumps.len()),
             empty_classes: circles.empty_classes,
         }
     }

@@ -19,6 +19,7 @@ use super::placement::{DoesNotFit, Placement, place};
 use super::polygon::{Polygon, PolygonError, PolygonRecipe};
 use super::quality::{Circles, Quality};
 use super::region::Region;
+use super::stones::StoneFault;
 use crate::Watch;
 use crate::particle::Group;
 use crate::space::{D2, Space, Vector, flat};
@@ -108,6 +109,9 @@ pub enum SpecimenError {
         /// What it must be.
         expected: &'static str,
     },
+    /// Stones.
+    #[error(transparent)]
+    Stones(#[from] StoneFault),
     /// Polygons in a solid.
     #[error(
         "specimen: aggregate is made of polygons and needs a plane outline (a rectangle or a disc), not a solid one"
@@ -188,7 +192,7 @@ impl Recipe {
         let names = self.groups.iter().map(|group| &group.name).chain(self.aggregate.iter().map(|a| &a.group));
         let group_names = names.cloned().collect();
         let quality = Quality::of(&packed, &polygons, &clumps, &circles);
-        let Heap { region, centres, radii } = packed.heap;
+        let Heap { region, centres, radii, .. } = packed.heap;
         let density = self.density;
         Ok((Specimen { region, centres, radii, groups, group_names, density, polygons, clumps }, quality))
     }
