@@ -358,6 +358,10 @@ kinds! {
     Length, LengthKind = (1, 0, 0), "length", "0.5 mm";
     /// Pascals: stress, strength, modulus.
     Pressure, PressureKind = (-1, 1, -2), "stress or modulus", "16 GPa";
+    /// Pascals per metre: stiffness of a joint.
+    Stiffness, StiffnessKind = (-2, 1, -2), "stiffness per area", "5e12 Pa/m";
+    /// Per metre: intensity of fractures.
+    Intensity, IntensityKind = (-1, 0, 0), "intensity of fractures", "50 m^-1";
     /// Metres per second.
     Velocity, VelocityKind = (1, 0, -1), "velocity", "0.02 m/s";
     /// Per second.

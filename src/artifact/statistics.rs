@@ -97,14 +97,26 @@ crate::table! {
     pub struct CodedFactors {
         /// the factor
         pub factor: Vec<String>, "";
-        /// natural value at coded 0
+        /// value at coded 0; on a logarithmic scale its logarithm
         pub centre: Vec<f64>, "";
-        /// natural length of a coded unit
+        /// length of a coded unit; on a logarithmic scale that of the logarithm
         pub half: Vec<f64>, "";
         /// least value fitted
         pub low: Vec<f64>, "";
         /// greatest value fitted
         pub high: Vec<f64>, "";
+        /// how the model takes each, where it takes some by their logarithms
+        pub scale: Option<Vec<TakenAs>>, "";
+    }
+}
+
+crate::words! {
+    /// How a model takes the values of a factor.
+    pub enum TakenAs {
+        /// As they are.
+        Linear = "linear",
+        /// By their natural logarithms.
+        Log = "log",
     }
 }
 
@@ -315,6 +327,8 @@ crate::table! {
         pub low: Vec<f64>, "";
         /// greatest value fitted
         pub high: Vec<f64>, "";
+        /// how the model takes each, where it takes some by their logarithms
+        pub scale: Option<Vec<TakenAs>>, "";
     }
 }
 

@@ -27,6 +27,8 @@ struct Shipped {
 const SHIPPED: &[Shipped] = &[
     Shipped { name: "start", text: include_str!("../../workflows/start.toml"), files: &[] },
     Shipped { name: "rock", text: include_str!("../../workflows/rock.toml"), files: &[] },
+    Shipped { name: "granite", text: include_str!("../../workflows/granite.toml"), files: &[] },
+    Shipped { name: "fissure", text: include_str!("../../workflows/fissure.toml"), files: &[] },
     Shipped { name: "concrete", text: include_str!("../../workflows/concrete.toml"), files: &[] },
     Shipped { name: "c30", text: include_str!("../../workflows/c30.toml"), files: SU2021 },
     Shipped { name: "calibrate", text: include_str!("../../workflows/calibrate.toml"), files: &[] },

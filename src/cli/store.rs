@@ -1,5 +1,7 @@
 //! `flow store`: what the store holds, whether it is sound, what it takes, and what may go.
 
+mod share;
+
 use super::Exit;
 use super::common::{Campaign, Common, system};
 use crate::artifact::Key;
@@ -31,6 +33,14 @@ enum What {
     Du,
     /// Remove results that none of the named workflows can reach; says what would go, unless told --yes.
     Gc(Gc),
+    /// Copy all results to a remote, a folder that others can read, and sign the list of them.
+    Push(share::Push),
+    /// Take the results of a remote from those whom you trust; what is taken is proven first.
+    Pull(share::Pull),
+    /// Copy a remote to another one, signatures with it.
+    Mirror(share::Mirror),
+    /// Compute some results of a workflow again and compare: equal bits prove them.
+    Audit(share::Audit),
 }
 
 #[derive(Args)]
@@ -51,6 +61,10 @@ impl StoreCommand {
             What::Verify => self.verify(),
             What::Du => self.usage(),
             What::Gc(gc) => self.collect(gc),
+            What::Push(push) => push.go(&self.common),
+            What::Pull(pull) => pull.go(&self.common),
+            What::Mirror(mirror) => mirror.go(),
+            What::Audit(audit) => audit.go(&self.common),
         };
         done.unwrap_or_else(|exit| exit)
     }

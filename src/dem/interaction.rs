@@ -244,6 +244,50 @@ impl FlatJoint {
     }
 }
 
+/// Bond of a smooth joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointBond {
+    /// σ, Pa.
+    pub tensile_strength: f64,
+    /// c, Pa.
+    pub cohesion: f64,
+    /// φ, rad: τ = c − σ_n tan φ, tension positive.
+    pub friction_angle: f64,
+}
+
+/// What acts between grains on the two sides of a fracture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothJoint {
+    /// λ: radius of the section over the smaller particle radius.
+    pub radius_multiplier: f64,
+    /// Stiffness.
+    pub stiffness: BondStiffness,
+    /// μ.
+    pub friction: f64,
+    /// ψ, rad: a slip parts the faces by its tangent.
+    pub dilation: f64,
+    /// The bond, if any.
+    pub bond: Option<JointBond>,
+}
+
+impl SmoothJoint {
+    /// Unbonded, without dilation: stiffnesses per area (Pa/m) and μ.
+    pub fn new(kn: f64, ks: f64, friction: f64) -> Self {
+        let stiffness = BondStiffness::PerArea { kn, ks };
+        Self { radius_multiplier: 1.0, stiffness, friction, dilation: 0.0, bond: None }
+    }
+
+    /// Section of a contact, m².
+    pub fn section<S: Space>(&self, radii: [f64; 2]) -> f64 {
+        S::section(self.radius_multiplier * radii[0].min(radii[1]))
+    }
+
+    /// k_n A, N/m.
+    pub fn normal<S: Space>(&self, radii: [f64; 2]) -> f64 {
+        self.stiffness.per_area(radii) * self.section::<S>(radii)
+    }
+}
+
 /// The bond that [`install_bonds`](super::Engine::install_bonds) puts into a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Bond {

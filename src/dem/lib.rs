@@ -102,11 +102,11 @@ mod union;
 
 pub use boundary::{Cell, Motion, Servo, Wall};
 pub use contact::{Contact, Other};
-pub use engine::{Ended, Engine, Masses, Model, Settings, Watch};
+pub use engine::{Ended, Engine, Fracture, Masses, Model, Settings, Watch};
 pub use error::{Failure, Fault, Faults};
 pub use interaction::{
-    Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Division, FlatJoint, Interaction, Linear,
-    NormalForce, ParallelBond, Shares, ShearBreak, Stiffness,
+    Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Division, FlatJoint, Interaction, JointBond,
+    Linear, NormalForce, ParallelBond, Shares, ShearBreak, SmoothJoint, Stiffness,
 };
 pub use law::Interface;
 pub use particle::{Clump, Group, Particle};

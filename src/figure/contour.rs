@@ -29,6 +29,8 @@ pub struct Contour {
     pub points: Vec<[f64; 2]>,
     /// What is held constant, in label markup; drawn above the plot. May be empty.
     pub note: String,
+    /// How the axes of the two factors are divided; their nodes are even on them.
+    pub scales: [Scale; 2],
 }
 
 const BAR: f64 = 3.0;
@@ -44,8 +46,8 @@ impl Figure for Contour {
         let note = if self.note.is_empty() { 0.0 } else { 1.5 * size };
         let page = scene.page().inset(0.8, 0.8 + note, 0.8, 0.8);
         let bar_width = bands.width(style);
-        let x = Axis::between(self.x.title(), Scale::Linear, first(&self.xs), last(&self.xs), 5);
-        let y = Axis::between(self.y.title(), Scale::Linear, first(&self.ys), last(&self.ys), 5);
+        let x = Axis::between(self.x.title(), self.scales[0], first(&self.xs), last(&self.xs), 5);
+        let y = Axis::between(self.y.title(), self.scales[1], first(&self.ys), last(&self.ys), 5);
         let mut margins = Margins::of(&x, &y, style);
         margins.right = margins.right.max(bar_width + 2.4);
         let panel = Panel::with_margins(page, margins, x, y).boxed();

@@ -99,14 +99,15 @@ impl Figure for Surface {
 impl Surface {
     fn space(&self, area: Rect, (low, high): (f64, f64)) -> Box3 {
         let f = &self.field;
-        let axis = |v: &[f64]| {
+        let axis = |v: &[f64], scale: Scale| {
             let (low, high) = extent(v.iter().copied());
-            Axis::between("", Scale::Linear, low, high, 4)
+            Axis::between("", scale, low, high, 4)
         };
         let z = Axis::between("", Scale::Linear, low, high, 4);
         let step = if z.ticks.len() > 1 { z.ticks[1].at - z.ticks[0].at } else { high - low };
         let (z_low, z_high) = ((low / step).floor() * step, (high / step).ceil() * step);
-        let axes = [axis(&f.xs), axis(&f.ys), Axis::between("", Scale::Linear, z_low, z_high, 4)];
+        let axes =
+            [axis(&f.xs, f.scales[0]), axis(&f.ys, f.scales[1]), Axis::between("", Scale::Linear, z_low, z_high, 4)];
         let mut space = Box3 { view: View::new(self.azimuth, self.elevation), axes, scale: 1.0, centre: [0.0, 0.0] };
         let bounds = Rect::around(corners().map(|c| space.corner(c))).unwrap_or(area);
         space.scale = (area.width() / bounds.width()).min(area.height() / bounds.height());

@@ -10,6 +10,7 @@
 //! whose inputs are known by looking its key up in the store; start what is ready; wait for one answer. `plan` is the
 //! same loop that starts nothing, so it cannot disagree with `run`.
 
+mod audit;
 mod board;
 mod commit;
 mod elsewhere;
@@ -27,6 +28,7 @@ mod streamed;
 mod task;
 mod worker;
 
+pub use audit::{Audited, audit};
 pub use board::{TaskCount, TaskState};
 pub use commit::commit;
 pub use memo::remembered;

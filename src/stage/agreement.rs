@@ -10,7 +10,7 @@
 
 use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use super::{Context, figure::Names, invalid::Invalid};
+use super::{Context, figure::Names, given::check_given, invalid::Invalid};
 use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -71,6 +71,10 @@ impl Stage for Agreement {
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = check_names(context, &[], &self.responses);
+        for stages in [self.of.list(), self.compare.list()] {
+            let all: Vec<&String> = stages.iter().collect();
+            found.extend(check_given(context, "responses", &all, &self.responses));
+        }
         let (ours, theirs) = (self.of.list().len(), self.compare.list().len());
         if ours != theirs {
             let message = format!("`of` names {ours} stages and `compare` {theirs}; they are compared in pairs");

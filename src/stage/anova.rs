@@ -7,6 +7,7 @@
 use super::beside::Beside;
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused_without, runs};
 use super::fitted::{fit_table, residual_table};
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::notes::{Notes, short};
 use super::published::{Computed, beside, prints};
@@ -169,6 +170,7 @@ impl Stage for Anova {
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = check_names(context, &self.factors, &self.responses);
+        found.extend(check_given(context, "responses", &[&self.table], &self.responses));
         let rounded: Vec<String> = self.rounding.keys().cloned().collect();
         let retitled = |key: &'static str| move |c: Complaint| Complaint { path: vec![key.to_owned()], ..c };
         found.extend(check_names(context, &self.as_error, &[]).into_iter().map(retitled("as_error")));
@@ -200,6 +202,7 @@ impl Stage for Anova {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: true,
+            scales: false,
             invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;

@@ -101,7 +101,9 @@ impl Stage for Calibrate {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { material: self.material.clone(), simulator: self.simulators().into_iter().next(), ..Sketch::default() }
+        let responses = self.targets.iter().flat_map(BTreeMap::keys).cloned().collect();
+        let simulator = self.simulators().into_iter().next();
+        Sketch { material: self.material.clone(), responses: Some(responses), simulator, ..Sketch::default() }
     }
 
     fn gives(&self) -> ArtifactKind {

@@ -2,7 +2,7 @@
 
 use super::derived::Derived;
 use super::invalid::Invalid;
-use super::{Complaint, Context, StageError};
+use super::{Complaint, Context, Scale, StageError};
 use crate::artifact::groups::Groups;
 use crate::artifact::results::Results;
 use crate::artifact::validity::NotValid;
@@ -38,6 +38,9 @@ struct FactorColumn {
     /// Values of −1 and +1 in coded units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     coding: Option<(f64, f64)>,
+    /// Whether a model takes its logarithm.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    log: bool,
     /// Names of the levels of a category.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     labels: Vec<String>,
@@ -60,6 +63,8 @@ pub(super) struct Wanted<'a> {
     pub weights: Option<&'a str>,
     /// Whether factors are categories, so that every value must be a declared level.
     pub levels: bool,
+    /// Whether factors with a logarithmic scale enter by their logarithms.
+    pub scales: bool,
     /// What becomes of runs that are not valid.
     pub invalid: Invalid,
 }
@@ -102,6 +107,7 @@ impl Columns {
                 unit: factor.unit.clone(),
                 levels: if wanted.levels && is_number { factor.levels.clone() } else { Vec::new() },
                 coding: coding.filter(|_| !wanted.levels && is_number),
+                log: wanted.scales && is_number && factor.scale == Scale::Log,
                 labels,
             })
         };
@@ -149,6 +155,11 @@ impl Columns {
         self.responses.iter().map(|r| r.name.clone()).collect()
     }
 
+    /// The factors that a model takes by their logarithms.
+    pub(super) fn logarithmic(&self) -> impl Iterator<Item = &str> {
+        self.factors.iter().filter(|factor| factor.log).map(|factor| factor.name.as_str())
+    }
+
     /// Unit of a factor.
     pub(super) fn unit_of(&self, factor: &str) -> &str {
         let plain = self.factors.iter().map(|f| (&f.name, &f.unit));
@@ -177,7 +188,8 @@ impl Columns {
                 return named(table, own);
             }
             let values = table.numbers(&own.name, &own.unit)?;
-            Ok(Factor { levels: own.levels.clone(), coding: own.coding, ..Factor::new(&own.name, values) })
+            let scale = if own.log { stats::sample::Scale::Log } else { stats::sample::Scale::Linear };
+            Ok(Factor { levels: own.levels.clone(), coding: own.coding, scale, ..Factor::new(&own.name, values) })
         };
         let derived = |own: &Derived| {
             let parts = own.factors.iter().map(|(name, unit)| Ok(table.numbers(name, unit)?));

@@ -46,6 +46,8 @@ pub struct Sketch {
     pub factors: Option<Vec<String>>,
     /// The name under its key `material`: a `[material.NAME]`, or a stage that gives one.
     pub material: Option<String>,
+    /// The responses that its runs, fits or targets are of; `None` where that is not known before it runs.
+    pub responses: Option<Vec<String>>,
     /// The stage whose runs it asks for.
     pub simulator: Option<String>,
     /// Whether factors may set its numbers: it makes specimens, or runs tests.

@@ -137,6 +137,15 @@ fn notes<'a>(found: &[(&Fitting, Regression)], points: Option<&Predict>, not_val
             );
             notes.add(response, text);
         }
+        let axes = &regression.model.axes;
+        for factor in fitting.columns.logarithmic().filter(|own| axes.iter().any(|axis| axis.name == *own)) {
+            let unit = fitting.columns.unit_of(factor);
+            let value = if unit.is_empty() { factor.to_owned() } else { format!("{factor} in {unit}") };
+            notes.add(
+                response,
+                format!("`{factor}` has a logarithmic scale: its terms are of the logarithm, ln({value})"),
+            );
+        }
         notes.residuals(response, &regression.residuals);
         notes.inflation(response, if regression.coded.is_empty() { &regression.natural } else { &regression.coded });
         if let Some(place) = canonical(&regression.model).filter(|place| !place.inside) {
@@ -282,6 +291,7 @@ fn domain_table(found: &[(&Fitting, Regression)]) -> Domains {
         unit: rows.texts(|(f, axis)| f.columns.unit_of(&axis.name)),
         low: rows.reals(|(_, axis)| Some(axis.low)),
         high: rows.reals(|(_, axis)| Some(axis.high)),
+        scale: keep::scales(&all.iter().map(|(_, axis)| *axis).collect::<Vec<_>>()),
     }
 }
 

@@ -89,7 +89,8 @@ impl Stage for Formula {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { material: self.material.clone(), varies: true, ..Sketch::default() }
+        let responses = Some(self.responses.keys().cloned().collect());
+        Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -50,6 +50,7 @@ pub mod effort;
 pub mod figure;
 pub mod fitted;
 pub mod formula;
+mod given;
 pub mod invalid;
 pub mod ledger;
 pub mod material;

@@ -4,6 +4,7 @@
 //! the response) and the table `levels` (the values that level 1, 2, … stand for), and `notes`.
 
 use super::columns::{Columns, Rows, Wanted, check_names, refused_without, runs};
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::notes::Notes;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -44,7 +45,9 @@ impl Stage for Range {
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
-        check_names(context, &self.factors, &self.responses)
+        let mut found = check_names(context, &self.factors, &self.responses);
+        found.extend(check_given(context, "responses", &[&self.table], &self.responses));
+        found
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -55,6 +58,7 @@ impl Stage for Range {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: true,
+            scales: false,
             invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;

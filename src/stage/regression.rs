@@ -15,6 +15,7 @@ pub(super) mod origin;
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
@@ -118,6 +119,7 @@ impl Stage for Regression {
             let path = vec!["terms".to_owned(), response.clone()];
             found.extend(check_doubled(terms, &path));
             found.extend(own.into_iter().map(|c| Complaint { path: path.clone(), ..c }));
+            found.extend(check_given(context, &format!("terms.{response}"), &[&self.table], [response]));
         }
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(self.check_groups());
@@ -137,8 +139,13 @@ impl Stage for Regression {
             let factors = terms.map(|terms| factors_of(terms)).unwrap_or_default();
             let responses = [response.to_owned()];
             let weights = self.weights.as_deref();
-            let wanted =
-                Wanted { factors: &factors, responses: &responses, weights, levels: false, invalid: self.invalid };
+            let wanted = Wanted {
+                factors: &factors,
+                responses: &responses,
+                weights,
+                invalid: self.invalid,
+                ..Wanted::default()
+            };
             let columns = Columns::of(table, known.context, wanted)?;
             let terms = terms.map_or_else(|| Term::first_order(&columns.factor_names()), |terms| with_constant(terms));
             let constant = |term: &Term| term.degree() == 0;

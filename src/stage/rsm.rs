@@ -1,13 +1,17 @@
 //! `kind = "rsm"`: second-order response surfaces, each response from its own table or all from one.
 //!
+//! A factor with `scale = "log"` enters by its logarithm: −1, 0 and +1 in coded units are the levels of a design on that
+//! scale, and coefficients are per unit of ln(value in the factor's unit).
+//!
 //! The result is an artifact `surfaces`, as [`super::regression`] gives it.
 
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict};
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
-use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,6 +60,10 @@ impl Stage for Rsm {
         ArtifactKind::SURFACES
     }
 
+    fn sketch(&self) -> Sketch {
+        Sketch { responses: Some(self.responses.clone()), ..Sketch::default() }
+    }
+
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = check_names(context, &[], &self.responses);
         if self.responses.is_empty() {
@@ -70,6 +78,9 @@ impl Stage for Rsm {
             );
         }
         for (i, response) in self.responses.iter().enumerate() {
+            let table = self.tables.get(i).or(self.tables.last().filter(|_| self.tables.len() == 1));
+            let table: Vec<&String> = table.into_iter().collect();
+            found.extend(check_given(context, "responses", &table, [response]));
             if self.responses[..i].contains(response) {
                 found.push(Complaint::new("responses", format!("`{response}` is listed twice")));
             }
@@ -132,7 +143,14 @@ impl Rsm {
         let factors = own.map(|terms| factors_of(terms)).unwrap_or_default();
         let responses = [response.to_owned()];
         let weights = self.weights.as_deref();
-        let wanted = Wanted { factors: &factors, responses: &responses, weights, levels: false, invalid: self.invalid };
+        let wanted = Wanted {
+            factors: &factors,
+            responses: &responses,
+            weights,
+            scales: true,
+            invalid: self.invalid,
+            ..Wanted::default()
+        };
         let columns = Columns::of(table, context, wanted)?;
         let varied = |name: &String| {
             let values = table.shown(name).unwrap_or_default().0;

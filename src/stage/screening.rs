@@ -6,6 +6,7 @@
 
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused_without, runs};
 use super::fitted::{fit_table, residual_table};
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::notes::Notes;
 use super::regression::{check_doubled, factors_of};
@@ -64,6 +65,7 @@ impl Stage for Screening {
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = check_names(context, &[], &self.responses);
+        found.extend(check_given(context, "responses", &[&self.table], &self.responses));
         let terms = check_names(context, &factors_of(&self.terms), &[]);
         found.extend(check_doubled(&self.terms, &["terms".to_owned()]));
         found.extend(terms.into_iter().map(|c| Complaint { path: vec!["terms".to_owned()], ..c }));
@@ -80,6 +82,7 @@ impl Stage for Screening {
             responses: &self.responses,
             weights: self.weights.as_deref(),
             levels: false,
+            scales: false,
             invalid: self.invalid,
         };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;

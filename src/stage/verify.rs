@@ -8,6 +8,7 @@
 //! The artifact `verification` holds the tables `summary` and `runs`.
 
 use super::calibrate::{Judgement, Unmet, judgement, read_response};
+use super::given::check_given;
 use super::invalid::{Invalid, refused};
 use super::notes::short;
 use super::{
@@ -90,7 +91,7 @@ impl Stage for Verify {
         ArtifactKind::VERIFICATION
     }
 
-    fn check(&self, _context: &Context) -> Vec<Complaint> {
+    fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = Vec::new();
         if !(2..=MOST_SPECIMENS).contains(&self.replicates) {
             let message = match self.replicates {
@@ -103,6 +104,8 @@ impl Stage for Verify {
         if simulators.is_empty() {
             found.push(Complaint::new("simulator", "no simulator is named").hint("name that of the calibration"));
         }
+        let targets = context.sketches.get(&self.solution).and_then(|sketch| sketch.responses.as_ref());
+        found.extend(check_given(context, "simulator", &simulators, targets.into_iter().flatten()));
         for name in self.from.values().filter(|name| !simulators.contains(name)) {
             found.push(Complaint::new("from", format!("`{name}` is none of the simulators")));
         }

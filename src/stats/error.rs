@@ -54,6 +54,18 @@ pub enum Fault {
         /// Its only value.
         value: String,
     },
+    /// A value has no logarithm.
+    #[error(
+        "row {row}: factor `{factor}` is {value}, which has no logarithm; a logarithmic scale is for values above zero"
+    )]
+    NotPositive {
+        /// The factor.
+        factor: String,
+        /// Counted from 1.
+        row: usize,
+        /// Its value.
+        value: f64,
+    },
     /// A declared level does not occur.
     #[error(
         "factor `{factor}` never takes its level {level} in a usable row of `{response}` ({missing} missing); \

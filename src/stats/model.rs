@@ -3,6 +3,7 @@
 use super::diagnostics::Residual;
 use super::fit::Solution;
 use super::number::Real;
+use super::sample::Scale;
 use super::terms::Term;
 use math::distribution::t_for_coverage;
 use serde::{Deserialize, Serialize};
@@ -12,9 +13,11 @@ use serde::{Deserialize, Serialize};
 pub struct Axis {
     /// The factor.
     pub name: String,
-    /// Natural value at coded 0.
+    /// How the model takes its values.
+    pub scale: Scale,
+    /// Value at coded 0; on a logarithmic scale its logarithm.
     pub centre: f64,
-    /// Natural length of one coded unit.
+    /// Length of one coded unit; on a logarithmic scale that of the logarithm.
     pub half: f64,
     /// Least value that was fitted.
     pub low: f64,
@@ -25,12 +28,12 @@ pub struct Axis {
 impl Axis {
     /// Coded units of a natural value.
     pub fn coded(&self, natural: f64) -> f64 {
-        (natural - self.centre) / self.half
+        (self.scale.of(natural) - self.centre) / self.half
     }
 
     /// Natural value of coded units.
     pub fn natural(&self, coded: f64) -> f64 {
-        self.half.mul_add(coded, self.centre)
+        self.scale.natural(self.half.mul_add(coded, self.centre))
     }
 
     /// Whether a natural value lies in the domain.
@@ -38,7 +41,7 @@ impl Axis {
         (self.low..=self.high).contains(&natural)
     }
 
-    /// `u = constant + slope·x`.
+    /// `u = constant + slope·x`, x the value or its logarithm.
     pub(crate) fn of_coded<T: Real>(&self) -> (T, T) {
         let half = T::from(self.half);
         (-T::from(self.centre) / half, T::from(1.0) / half)

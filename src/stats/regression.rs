@@ -6,6 +6,9 @@
 //! from the rows of `S R⁻¹`. A model that is not hierarchical depends on the origin of its factors; it is fitted in
 //! natural units alone.
 //!
+//! A factor with a logarithmic [`Scale`] enters by ln x everywhere: in coded units, whose −1 and +1 are the logarithms of its
+//! ends, and in natural coefficients, which are per unit of ln x. A constant and `x` are then `y = a + b ln x`.
+//!
 //! A factor whose levels are names enters by dummy coding, one term per level but the first ([`super::categories`]).
 //!
 //! Variance inflation of a coefficient: the squared norm of its row of `R⁻¹` times the squared norm of its column about
@@ -20,7 +23,7 @@ use super::error::{Fault, Faults};
 use super::fit::{Estimate, Fit, PureError, Solution, is_small, squares_about_mean};
 use super::model::{Axis, Model};
 use super::number::{Real, Twofold};
-use super::sample::{Sample, Usable};
+use super::sample::{Sample, Scale, Usable};
 use super::selection::{Selection, Step, select};
 use super::terms::Term;
 use serde::{Deserialize, Serialize};
@@ -83,13 +86,12 @@ pub fn regress(sample: &Sample, response: &str, terms: &[Term], settings: &Setti
     let index = sample.response(response)?;
     let unknown = check_terms(sample, terms);
     Faults::none_in(unknown)?;
-    let (sample, terms) = spread(sample, terms)?;
-    let (sample, terms) = (&sample, terms.as_slice());
+    let (natural, terms) = spread(sample, terms)?;
+    let (scaled, terms) = (on_scales(&natural, &terms), terms.as_slice());
+    let (sample, natural) = (scaled.as_ref().unwrap_or(&natural), &natural);
     let usable = sample.usable(index);
-    let mut faults = Vec::new();
-    if faults.is_empty() {
-        faults.extend(flat_factors(sample, &usable, terms));
-    }
+    let mut faults = without_logarithm(natural, &usable, terms);
+    faults.extend(flat_factors(natural, &usable, terms));
     faults.extend(sample.check_response(index, &usable, terms.len()));
     if !(settings.outlier_alpha > 0.0 && settings.outlier_alpha < 1.0) {
         faults.push(Fault::Probability { what: "outlier level", value: settings.outlier_alpha });
@@ -98,7 +100,7 @@ pub fn regress(sample: &Sample, response: &str, terms: &[Term], settings: &Setti
         faults.extend(selection.check());
     }
     Faults::none_in(faults)?;
-    let job = Job { sample, usable: &usable, response, settings };
+    let job = Job { sample, natural, usable: &usable, response, settings };
     let fitted =
         if is_small(usable.rows.len(), terms.len()) { job.fit::<Twofold>(terms) } else { job.fit::<f64>(terms) };
     fitted.map_err(Faults)
@@ -125,6 +127,28 @@ fn check_terms(sample: &Sample, terms: &[Term]) -> Vec<Fault> {
         }
     }
     faults
+}
+
+/// The table with logarithms in place of the values of factors that a model takes so; `None` when it has none.
+fn on_scales(sample: &Sample, terms: &[Term]) -> Option<Sample> {
+    let logs: Vec<usize> =
+        used_factors(sample, terms).into_iter().filter(|&f| sample.factors[f].scale == Scale::Log).collect();
+    let mut scaled = (!logs.is_empty()).then(|| sample.clone())?;
+    for factor in logs {
+        scaled.factors[factor].values.iter_mut().for_each(|value| *value = Scale::Log.of(*value));
+    }
+    Some(scaled)
+}
+
+/// Values that have no logarithm where a model takes it.
+fn without_logarithm(sample: &Sample, usable: &Usable, terms: &[Term]) -> Vec<Fault> {
+    let first = |&f: &usize| {
+        let factor = &sample.factors[f];
+        let bad = |row: &&usize| factor.scale == Scale::Log && !(factor.values[**row] > 0.0);
+        let row = *usable.rows.iter().find(bad)?;
+        Some(Fault::NotPositive { factor: factor.name.clone(), row: row + 1, value: factor.values[row] })
+    };
+    used_factors(sample, terms).iter().filter_map(first).collect()
 }
 
 /// Factors of the model that never change in the usable rows.
@@ -159,7 +183,10 @@ fn constant_first(terms: &[Term]) -> Vec<Term> {
 
 /// One response to be fitted.
 struct Job<'a> {
+    /// The table with logarithms where a factor has such a scale.
     sample: &'a Sample,
+    /// The table as it was given.
+    natural: &'a Sample,
     usable: &'a Usable,
     response: &'a str,
     settings: &'a Settings,
@@ -196,13 +223,15 @@ impl Job<'_> {
 
     /// The coding of a factor and the range in which it was seen.
     fn axis(&self, factor: usize, coded: bool) -> Axis {
-        let Sample { factors, .. } = self.sample;
-        let seen = self.usable.rows.iter().map(|&row| factors[factor].values[row]);
+        let factor = &self.natural.factors[factor];
+        let seen = self.usable.rows.iter().map(|&row| factor.values[row]);
         let low = seen.clone().fold(f64::INFINITY, f64::min);
         let high = seen.fold(f64::NEG_INFINITY, f64::max);
-        let (minus, plus) = factors[factor].coding.unwrap_or((low, high));
+        let scale = factor.scale;
+        let (minus, plus) = factor.coding.unwrap_or((low, high));
+        let (minus, plus) = (scale.of(minus), scale.of(plus));
         let (centre, half) = if coded { (0.5 * (minus + plus), 0.5 * (plus - minus)) } else { (0.0, 1.0) };
-        Axis { name: factors[factor].name.clone(), centre, half, low, high }
+        Axis { name: factor.name.clone(), scale, centre, half, low, high }
     }
 }
 

@@ -1,6 +1,37 @@
 //! The table that is analysed: factors, responses, weights, and which rows are missing.
 
 use super::error::{Fault, Faults};
+use math::elementary::{exp, ln};
+use serde::{Deserialize, Serialize};
+
+/// How a model takes the values of a factor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scale {
+    /// As they are.
+    #[default]
+    Linear,
+    /// By their natural logarithms: equal ratios are equal steps.
+    Log,
+}
+
+impl Scale {
+    /// The number that a model computes with: the value, or its logarithm.
+    pub fn of(self, natural: f64) -> f64 {
+        match self {
+            Self::Linear => natural,
+            Self::Log => ln(natural),
+        }
+    }
+
+    /// The value of such a number.
+    pub fn natural(self, coordinate: f64) -> f64 {
+        match self {
+            Self::Linear => coordinate,
+            Self::Log => exp(coordinate),
+        }
+    }
+}
 
 /// A column that was set by the experimenter.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +44,8 @@ pub struct Factor {
     pub levels: Vec<f64>,
     /// The values that stand for −1 and +1 in coded units; `None` takes the least and greatest that occur.
     pub coding: Option<(f64, f64)>,
+    /// How a regression takes its values; analyses of levels do not look at it.
+    pub scale: Scale,
     /// Names of the levels 0, 1, 2 … of a category such as the kind of cement; empty when the values are numbers.
     pub labels: Vec<String>,
 }
@@ -20,7 +53,7 @@ pub struct Factor {
 impl Factor {
     /// A factor whose levels are the values that occur.
     pub fn new(name: &str, values: Vec<f64>) -> Self {
-        Self { name: name.into(), values, levels: Vec::new(), coding: None, labels: Vec::new() }
+        Self { name: name.into(), values, levels: Vec::new(), coding: None, scale: Scale::Linear, labels: Vec::new() }
     }
 
     /// A factor whose values are names; its levels are the names that occur, in alphabetical order.

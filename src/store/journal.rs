@@ -13,7 +13,7 @@ mod index;
 mod record;
 
 pub(super) use index::Index;
-pub(super) use record::{RECORD, pack, seal};
+pub(super) use record::{RECORD, pack, seal, unpack};
 
 use super::disk::{Disk, Draft};
 use super::folder::{self, Folder};
@@ -145,7 +145,7 @@ pub(super) fn write_segment(disk: &Disk, records: &[Record]) -> Result<(), Store
 }
 
 /// The head of a segment: one line of text, padded.
-fn head(origin: &Origin) -> Vec<u8> {
+pub(super) fn head(origin: &Origin) -> Vec<u8> {
     let mut line = format!("{MAGIC}{}", serde_json::to_string(&origin.shortened()).unwrap_or_default());
     while line.len() < HEAD - 1 {
         line.push(' ');
@@ -155,7 +155,7 @@ fn head(origin: &Origin) -> Vec<u8> {
 }
 
 /// The version of a segment and where its records were made.
-fn read_head(bytes: &[u8]) -> (u32, Origin) {
+pub(super) fn read_head(bytes: &[u8]) -> (u32, Origin) {
     let text = str::from_utf8(bytes).unwrap_or_default();
     let (version, json) = match (text.strip_prefix(MAGIC), text.strip_prefix(MAGIC_1)) {
         (None, Some(json)) => (1, json),

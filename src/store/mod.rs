@@ -40,6 +40,7 @@ mod origin;
 mod presence;
 mod prove;
 mod queue;
+mod remote;
 mod root;
 mod verify;
 
@@ -53,6 +54,7 @@ pub use memo::Memo;
 pub use object::ObjectId;
 pub use origin::Origin;
 pub use queue::{LookedAfter, Queue, ReportFile};
+pub use remote::{Mirrored, Pulled, Pushed, RemoteError, Signing, Trust, mirror};
 pub use verify::Verdict;
 
 use crate::artifact::{Artifact, ContentHash, Key};

@@ -49,6 +49,24 @@ pub(super) fn named(disk: &Disk, name: &str) -> Result<Proven, StoreError> {
     judge(disk, (&folder, name), image)
 }
 
+/// The bytes of an object, compared with what an own record says of its file.
+///
+/// # Errors
+/// As [`object`].
+pub(super) fn image_of(disk: &Disk, id: &ObjectId, seal: Option<&Seal>) -> Result<Vec<u8>, StoreError> {
+    image(disk, (&id.folder(), &id.file_name()), &id.content, seal)
+}
+
+/// Proves an object that lies in no store yet; what is wrong with it, in words.
+pub(super) fn bytes(id: &ObjectId, image: Vec<u8>) -> Result<(), String> {
+    let (artifact, text) = hdf5::decode(image).map_err(|error| error.to_string())?;
+    match (artifact.content_hash() == id.content, Key::of(&text) == id.key) {
+        (true, true) => Ok(()),
+        (false, _) => Err("its values are not those of its name".to_owned()),
+        (true, false) => Err("it belongs to another task".to_owned()),
+    }
+}
+
 /// The bytes under an object's name, compared with its seal.
 fn image(
     disk: &Disk,

@@ -14,6 +14,8 @@ mod nodes;
 mod readme;
 mod report;
 mod reruns;
+mod scales;
+mod share;
 mod space;
 mod stop;
 mod trust;

@@ -137,3 +137,58 @@ fn a_choice_without_effect_and_an_unknown_one_are_faults() {
     let said = told(&space.flow(&["check", "w.toml"]));
     assert!(said.contains("`invalid` has no effect on a figure that shows `specimen`"), "{said}");
 }
+
+/// A Brazilian test has no modulus: said before anything runs, wherever it is asked for, with what the test gives.
+#[test]
+fn a_response_that_the_test_cannot_give_is_a_fault() {
+    let space = Space::new();
+    let workflow = r#"
+[workflow]
+seed = 1
+[factor]
+Ec = { sets = "mortar.Ec", unit = "GPa", range = [10, 20] }
+[response]
+E = { unit = "GPa" }
+sigma_t = { unit = "kN" }
+[material.m]
+mortar = { Ec = "10 GPa", kn_ks = 2, sigma_c = "5 MPa", tau_c = "10 MPa", mu = 0.5 }
+[stage.disc]
+kind = "specimen"
+diameter = "50 mm"
+porosity = 0.12
+mean_radius = "1 mm"
+radius_ratio = 2
+density = "2000 kg/m^3"
+[stage.points]
+kind = "design"
+method = "full-factorial"
+factors = ["Ec"]
+[stage.split]
+kind = "simulate"
+specimen = "disc"
+design = "points"
+material = "m"
+test = "brazilian"
+platen_speed = "0.02 m/s"
+[stage.ranges]
+kind = "range"
+table = "split"
+responses = ["E"]
+[stage.surface]
+kind = "rsm"
+tables = ["split"]
+responses = ["E"]
+[stage.found]
+kind = "calibrate"
+simulator = "split"
+factors = ["Ec"]
+targets = [{ E = "20 GPa" }]
+"#;
+    space.write("w.toml", workflow);
+    let output = space.flow(&["check", "w.toml"]);
+    assert_eq!(output.status.code(), Some(2), "{}", told(&output));
+    let said = told(&output);
+    assert_eq!(said.matches("`E` is no response of `split`").count(), 3, "{said}");
+    assert!(said.contains("`split` gives sigma_t, "), "{said}");
+    assert!(said.contains("`sigma_t` comes in `Pa` and cannot be shown in `kN`"), "{said}");
+}

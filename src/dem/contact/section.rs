@@ -5,7 +5,7 @@
 //! stands beside it.
 
 use crate::interaction::Bond;
-use crate::law::{LEDGER, Memory, Rows, flat_joint_rows, fresh, idle};
+use crate::law::{LEDGER, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
 use crate::simd::{Row, WIDEST};
 use crate::space::Space;
 use std::ops::Range;
@@ -23,6 +23,7 @@ pub(crate) enum LawKind {
         /// Elements of an interface.
         elements: u32,
     },
+    SmoothJoint,
 }
 
 impl LawKind {
@@ -42,6 +43,7 @@ impl LawKind {
             Self::ContactBond => Rows::<S>::BOND,
             Self::ParallelBond => Rows::<S>::COUNT,
             Self::FlatJoint { elements } => flat_joint_rows::<S>(elements),
+            Self::SmoothJoint => smooth_joint_rows::<S>(),
         }
     }
 
@@ -175,7 +177,9 @@ impl Section {
         if block == chunk.ends.len() {
             chunk.ends.push([[self.dummy; WIDEST], [self.dummy + 1; WIDEST]]);
             let (idle_memory, shared) = (fresh::<S>(), Rows::<S>::COUNT);
-            let value = |row| if row < shared { idle_memory[row] } else { idle::<S>(row) };
+            let flat = matches!(self.law, LawKind::FlatJoint { .. });
+            let tail = |row| if flat { idle::<S>(row) } else { 0.0 };
+            let value = |row| if row < shared { idle_memory[row] } else { tail(row) };
             chunk.rows.extend((0..rows).map(|row| Row([value(row); WIDEST])));
             if self.rank.at_wall {
                 chunk.reactions.resize(chunk.ends.len() * S::DIMENSION, Row::default());

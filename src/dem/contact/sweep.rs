@@ -3,7 +3,7 @@
 use super::section::{Chunk, LawKind, Rank, Section};
 use crate::boundary::Image;
 use crate::law::{BOUNDARY, Constants, ContactBondLaw, FlatJointLaw, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw};
-use crate::law::{Piece, Viscous};
+use crate::law::{Piece, SmoothJointLaw, Viscous};
 use crate::simd::{Lane, Quad, Row, WIDEST, prefetch, prefetch_rows};
 use crate::space::{End, Load, Space, Touch, Tuple, Vector};
 
@@ -121,6 +121,7 @@ pub(crate) fn sweep_section<S: Space, L: Lane>(
             LawKind::FlatJoint { .. } => {
                 blocks::<S, L, FlatJointLaw>(constants, second, rank, chunk, task, loads, breaks);
             }
+            LawKind::SmoothJoint => blocks::<S, L, SmoothJointLaw>(constants, second, rank, chunk, task, loads, breaks),
         }
     }
 }

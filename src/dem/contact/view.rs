@@ -51,7 +51,7 @@ pub struct Contact<S: Space> {
     pub moment: Spin<S>,
     /// Its part about the normal (solid only), N·m.
     pub twist: f64,
-    /// The interface, for a flat joint. `cement` and `moment` are its resultants.
+    /// The interface, for a flat or smooth joint. `cement` and `moment` are its resultants.
     pub interface: Option<Interface>,
 }
 

@@ -4,7 +4,7 @@
 use super::{Engine, Settings};
 use crate::body::{self, Rigid};
 use crate::contact::{Contact, Key, LawKind, Other, Section};
-use crate::law::{Interface, KN, REFERENCE, Rows, SHEAR};
+use crate::law::{Interface, KN, REFERENCE, Rows, SHEAR, joint_energy};
 use crate::measure::Crack;
 use crate::particle::{Clump, Group, Particle};
 use crate::space::{Load, Space, Spin, Touch, Tuple, Vector};
@@ -238,10 +238,14 @@ impl<S: Space> Engine<S> {
         }
     }
 
-    /// The interface of a flat joint.
+    /// The interface of a flat or smooth joint.
     fn interface(&self, section: &Section, c: usize, gap: f64) -> Option<Interface> {
-        let LawKind::FlatJoint { .. } = section.law else { return None };
         let constants = &self.classes[section.rank.class].constants;
+        if section.law == LawKind::SmoothJoint {
+            let energy = joint_energy::<S>(&section.memory::<S>(c), constants)?;
+            return Some(Interface { elements: 1, intact: u32::from(section.bonded::<S>(c)), energy });
+        }
+        let LawKind::FlatJoint { .. } = section.law else { return None };
         let [first, second] = self.contact_radii(section.key(c));
         Interface::read::<S>(&section.memory::<S>(c), constants, gap, constants.multiplier * first.min(second))
     }

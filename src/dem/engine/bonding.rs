@@ -29,7 +29,7 @@ impl<S: Space> Engine<S> {
         let mut classes: Vec<usize> = Vec::new();
         for (section, own) in self.stretches() {
             let class = section.rank.class;
-            if self.table.entries[class].2.bond == Bond::None {
+            if self.table.entries.get(class).is_none_or(|entry| entry.2.bond == Bond::None) {
                 continue;
             }
             let before = chosen.len();

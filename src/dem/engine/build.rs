@@ -79,6 +79,7 @@ impl<S: Space> Engine<S> {
             clump_caller: Vec::with_capacity(model.clumps.len()),
             walls: Vec::with_capacity(model.walls.len()),
             cell: model.settings.cell.as_ref().map(MovingCell::new),
+            joints: super::joints::Joints::default(),
             domains: Vec::new(),
             threads: 1,
             width: Width::detect(),

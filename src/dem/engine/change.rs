@@ -103,7 +103,9 @@ impl<S: Space> Engine<S> {
     /// All faults of the table.
     pub fn set_contacts(&mut self, table: &ContactTable) -> Result<(), Faults> {
         super::validate::check_table::<S>(table, &self.meetings())?;
-        let before = std::mem::replace(&mut self.classes, classes::<S>(table));
+        let mut after = classes::<S>(table);
+        after.extend(self.joints.classes());
+        let before = std::mem::replace(&mut self.classes, after);
         self.table = table.clone();
         // A class is a pair of groups, so a section keeps its contacts and takes the pair's place in the new table.
         let mut domains = std::mem::take(&mut self.domains);

@@ -120,7 +120,8 @@ impl<S: Space> Engine<S> {
     fn merge(&self, rank: Rank, found: &[[u32; 2]], mut old: Reader, mut put: impl FnMut(Key, Memory)) {
         let keep = |key: Key, old: &mut Reader, put: &mut dyn FnMut(Key, Memory)| {
             let memory = old.take::<S>();
-            if self.memorable(key, &memory) {
+            // A contact that a joint took is not this one any more.
+            if self.memorable(key, &memory) && self.class_of(key) as usize == rank.class {
                 put(key, memory);
             }
         };
@@ -218,6 +219,9 @@ impl<S: Space> Engine<S> {
 
     /// Gives a contact the stiffness of its class and radii. An incremental spring keeps its force.
     pub(super) fn set_stiffness(&self, key: Key, rows: &mut Memory) {
+        if rows.tail.is_empty() {
+            self.begin_joint(key, rows);
+        }
         let (class, kn) = (self.class_of(key), self.linear_stiffness(key));
         if self.classes[class as usize].constants.incremental && rows[KN] > 0.0 && rows[KN] != kn {
             let gap = self.gap(key);
@@ -236,8 +240,13 @@ impl<S: Space> Engine<S> {
         [self.radii[key.i as usize], second]
     }
 
-    /// Class of a pair. Checked with the model: every pair that can meet has one.
+    /// Class of a contact: that of its pair of groups, or of the joint that it crosses, after those of all pairs.
     pub(super) fn class_of(&self, key: Key) -> u32 {
+        self.joint_of(key).map_or_else(|| self.pair_class(key), |set| (self.table.entries.len() + set) as u32)
+    }
+
+    /// Class of a pair of groups. Checked with the model: every pair that can meet has one.
+    fn pair_class(&self, key: Key) -> u32 {
         let other = if key.at_wall { self.walls[key.j as usize].group } else { self.groups[key.j as usize] };
         let class = self.table.class(self.groups[key.i as usize], other);
         class.unwrap_or_else(|| panic!("BUG: groups {:?} and {other:?} have no class", self.groups[key.i as usize]))
@@ -245,7 +254,7 @@ impl<S: Space> Engine<S> {
     }
 
     pub(super) fn linear_stiffness(&self, key: Key) -> f64 {
-        let interaction = &self.table.entries[self.class_of(key) as usize].2;
+        let interaction = &self.table.entries[self.pair_class(key) as usize].2;
         interaction.linear.stiffness.normal::<S>(self.contact_radii(key))
     }
 

@@ -6,12 +6,15 @@ mod books;
 mod build;
 mod change;
 mod domain;
+mod joints;
 mod list;
 mod march;
 mod refuse;
 mod run;
 mod timestep;
 mod validate;
+
+pub use joints::Fracture;
 
 use super::body::Rigid;
 use super::boundary::{Cell, Motion, MovingCell, Wall};
@@ -141,6 +144,7 @@ pub struct Engine<S: Space> {
     clump_caller: Vec<u32>,
     walls: Vec<MovingWall<S>>,
     cell: Option<MovingCell<S>>,
+    joints: joints::Joints<S>,
     domains: Vec<Domain>,
     threads: usize,
     width: Width,

@@ -298,6 +298,39 @@ fn joint_faults(joint: &FlatJoint, dimension: usize, check: Check<'_>) {
     check("gap", gap, gap >= 0.0 && gap.is_finite(), NOT_NEGATIVE);
 }
 
+/// All faults of fractures and of the joints that they have.
+pub(super) fn check_joints<S: Space>(
+    fractures: &[super::Fracture<S>],
+    sets: &[crate::interaction::SmoothJoint],
+) -> Result<(), Faults> {
+    let mut faults = Vec::new();
+    let mut check = |quantity, value: f64, good: bool, wanted| {
+        if !good {
+            faults.push(Fault::Setting { quantity, value, wanted });
+        }
+    };
+    for fracture in fractures {
+        let (length, middle) = (fracture.normal.norm(), fracture.centre.norm());
+        check("centre of a fracture", middle, middle.is_finite(), FINITE);
+        check("normal of a fracture", length, positive(length), "a vector that is not zero");
+        check("radius of a fracture", fracture.radius, fracture.radius > 0.0, POSITIVE);
+        let set = fracture.set as f64;
+        check("joint of a fracture", set, fracture.set < sets.len(), "the number of one that there is");
+    }
+    for set in sets {
+        cement_faults(set.stiffness, &mut check);
+        check("radius multiplier", set.radius_multiplier, positive(set.radius_multiplier), POSITIVE);
+        check("friction", set.friction, set.friction >= 0.0 && set.friction.is_finite(), NOT_NEGATIVE);
+        angle(set.dilation, &mut check);
+        if let Some(bond) = set.bond {
+            check("tensile strength", bond.tensile_strength, bond.tensile_strength > 0.0, POSITIVE);
+            check("cohesion", bond.cohesion, bond.cohesion > 0.0, POSITIVE);
+            angle(bond.friction_angle, &mut check);
+        }
+    }
+    ok(faults)
+}
+
 fn interaction_faults(interaction: &Interaction, dimension: usize, check: Check<'_>) {
     let linear = &interaction.linear;
     match linear.stiffness {

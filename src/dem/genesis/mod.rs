@@ -7,6 +7,7 @@
 //! * [`gradation`]: how many particles of aggregate of each size; [`polygon`]: random convex outlines; [`placement`]: their
 //!   places without overlap; [`clump`]: balls inside a polygon as pebbles of a rigid body (plane only)
 //! * [`stones`]: clumps of given shapes placed in a solid; [`mix`]: mortar of balls packed around them
+//! * [`network`]: fractures by their statistics
 //! * [`specimen`]: all of it put together; [`quality`]: the report on it
 
 pub mod cloud;
@@ -18,6 +19,7 @@ pub mod groups;
 pub mod heap;
 pub mod lattice;
 pub mod mix;
+pub mod network;
 pub mod packing;
 pub mod placement;
 pub mod polygon;

@@ -8,6 +8,7 @@ mod flat_joint;
 mod linear;
 mod memory;
 mod parallel_bond;
+mod smooth_joint;
 
 pub(crate) use contact_bond::ContactBondLaw;
 pub use flat_joint::Interface;
@@ -15,8 +16,9 @@ pub(crate) use flat_joint::{FlatJointLaw, Layout, idle, join, rows as flat_joint
 pub(crate) use linear::LinearLaw;
 pub(crate) use memory::{Memory, bonded, fresh, unbond};
 pub(crate) use parallel_bond::ParallelBondLaw;
+pub(crate) use smooth_joint::{SmoothJointLaw, energy as joint_energy, lay, rows as smooth_joint_rows};
 
-use super::interaction::{Bond, Interaction, NormalForce, ShearBreak};
+use super::interaction::{Bond, Interaction, NormalForce, ShearBreak, SmoothJoint};
 use super::simd::{Lane, Row};
 use super::space::{Load, Space, Touch, Tuple};
 
@@ -74,6 +76,8 @@ pub(crate) struct Constants {
     pub(crate) zero_shear: bool,
     /// Elements of a flat joint.
     pub(crate) layout: Layout,
+    /// tan ψ of a smooth joint.
+    pub(crate) dilation: f64,
 }
 
 impl Constants {
@@ -91,6 +95,7 @@ impl Constants {
             tensile_dashpot: linear.dashpot.tensile,
             zero_shear: false,
             layout: Layout::default(),
+            dilation: 0.0,
         };
         match interaction.bond {
             Bond::None => {}
@@ -109,6 +114,26 @@ impl Constants {
             }
         }
         c
+    }
+}
+
+impl Constants {
+    /// Of a smooth joint.
+    pub(crate) fn joint(joint: &SmoothJoint) -> Self {
+        Self {
+            shear_share: 0.0,
+            friction: joint.friction,
+            bond_share: joint.stiffness.shear_share(),
+            multiplier: joint.radius_multiplier,
+            moment_factor: 0.0,
+            slope: joint.bond.map_or(0.0, |bond| math::elementary::tan(bond.friction_angle)),
+            incremental: false,
+            dashpot: [0.0; 2],
+            tensile_dashpot: false,
+            zero_shear: false,
+            layout: Layout::default(),
+            dilation: math::elementary::tan(joint.dilation),
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //! Linear spring and cement act in parallel. Without stiffness of its own the cement has the modulus and ratio of the spring, so
 //! an intact contact is twice as stiff as one of them (E_c = Ē_c and k_n/k_s = k̄_n/k̄_s, Su et al. 2021, doi:10.3390/ma14071627).
 
+use super::fissure::Fissures;
 use crate::parameter::{Law, Parameter};
 use crate::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Distribution, Group, Interaction};
 use crate::{Division, FlatJoint, Linear, NormalForce, ParallelBond, Scatter, Shares, ShearBreak, Space, Stiffness};
@@ -76,6 +77,9 @@ pub struct Material {
     /// How a modulus becomes a stiffness.
     #[serde(default)]
     pub convention: Convention,
+    /// Fissures in the piece.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fissures: Option<Fissures>,
 }
 
 /// What is wrong with a microparameter of a contact.

@@ -39,6 +39,7 @@ pub mod confined;
 pub mod crack;
 pub mod curve;
 pub mod drive;
+pub mod fissure;
 pub mod gauge;
 pub mod judgement;
 pub mod kind;

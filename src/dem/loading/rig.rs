@@ -135,7 +135,11 @@ pub fn mount<S: Space>(
     if !fixed.is_empty() {
         engine.fix(&fixed, true, true)?;
     }
-    engine.install_bonds(material.gap * piece.mean_radius(), seed)?;
+    let gap = material.gap * piece.mean_radius();
+    if let Some(fissures) = &material.fissures {
+        fissures.lay(&mut engine, material, piece, (gap, seed))?;
+    }
+    engine.install_bonds(gap, seed)?;
     engine.absorb_overlaps();
     let (bonds, scales) = (engine.bond_count(), scales(&engine, &table, piece.density));
     Ok(Mounted { engine, scales, bonds })

@@ -213,6 +213,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     fn raised<L: Lane>(flat: [L; 2], frame: Self::Shear<L>, normal: Self::Vector<L>) -> Self::Shear<L>;
     /// Slope of the face of j against that of i, along t₁ and t₂, that a relative bending rotation makes.
     fn slope<L: Lane>(bend: Self::Shear<L>, frame: Self::Shear<L>, normal: Self::Vector<L>) -> [L; 2];
+    /// A vector of the contact plane in its own components.
+    fn across<L: Lane>(vector: Self::Vector<L>, normal: Self::Vector<L>) -> Self::Shear<L>;
     /// Bending moment on i of normal forces (tension positive) with the first moments ∑ r f along t₁ and t₂.
     fn bend<L: Lane>(moments: [L; 2], frame: Self::Shear<L>, normal: Self::Vector<L>) -> Self::Shear<L>;
     /// Moment of the bond on i as a spin-like quantity.

@@ -109,6 +109,11 @@ impl Space for D2 {
     }
 
     #[inline(always)]
+    fn across<L: Lane>([x, y]: [L; 2], [nx, ny]: [L; 2]) -> [L; 1] {
+        [y * nx - x * ny]
+    }
+
+    #[inline(always)]
     fn raised<L: Lane>(flat: [L; 2], _frame: [L; 1], _normal: [L; 2]) -> [L; 1] {
         [flat[0]]
     }

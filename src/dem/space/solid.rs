@@ -148,6 +148,11 @@ impl Space for D3 {
     }
 
     #[inline(always)]
+    fn across<L: Lane>(vector: [L; 3], _normal: [L; 3]) -> [L; 3] {
+        vector
+    }
+
+    #[inline(always)]
     fn raised<L: Lane>(flat: [L; 2], frame: [L; 3], normal: [L; 3]) -> [L; 3] {
         frame.times(flat[0]).plus(cross(normal, frame).times(flat[1]))
     }

@@ -1,6 +1,7 @@
 //! What can be wrong with the settings of a calibration before anything runs.
 
 use super::config::{Calibrate, MethodName};
+use crate::stage::given::check_given;
 use crate::stage::{Complaint, Context};
 use optim::Error;
 use std::collections::BTreeMap;
@@ -134,13 +135,24 @@ impl Calibrate {
         for name in self.targets.iter().flat_map(BTreeMap::keys) {
             unknown("targets".to_owned(), "response", name, context.responses.keys().collect());
         }
+        let simulators = self.simulators();
+        let givers: Vec<&String> =
+            if simulators.is_empty() { self.surfaces.iter().collect() } else { simulators.iter().collect() };
+        let mut lacking = Vec::new();
+        for name in self.targets.iter().flat_map(BTreeMap::keys) {
+            let own: Vec<&String> = self.from.get(name).map_or(givers.clone(), |stage| vec![stage]);
+            for complaint in check_given(context, "targets", &own, [name]) {
+                if !lacking.contains(&complaint) {
+                    lacking.push(complaint);
+                }
+            }
+        }
         for (key, names) in [("weights", self.weights.keys().collect::<Vec<_>>()), ("from", self.from.keys().collect())]
         {
             for name in names {
                 unknown(key.to_owned(), "response", name, context.responses.keys().collect());
             }
         }
-        let simulators = self.simulators();
         for name in self.from.values() {
             unknown("from".to_owned(), "simulator", name, simulators.iter().collect());
         }
@@ -161,6 +173,7 @@ impl Calibrate {
         if let Some(material) = &self.material {
             unknown("material".to_owned(), "material", material, context.materials.keys().collect());
         }
+        found.extend(lacking);
         found
     }
 

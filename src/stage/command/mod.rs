@@ -172,7 +172,8 @@ impl Stage for Command {
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { material: self.material.clone(), varies: true, ..Sketch::default() }
+        let responses = Some(self.read.keys().cloned().collect());
+        Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -39,6 +39,7 @@ mod space;
 mod validity;
 
 use super::beside::Beside;
+use super::given::check_given;
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::presentation::Picture as Stored;
@@ -138,6 +139,8 @@ impl Stage for Figure {
             let message = format!("there is no [response.{name}]");
             found.push(Complaint::new("response", message).hint(format!("known: {}", known.join(", "))));
         }
+        let of = self.of.list();
+        found.extend(check_given(context, "response", &of.iter().collect::<Vec<_>>(), &self.response.list()));
         let factors = self.factors.iter().map(|f| ("factors", f)).chain(self.at.keys().map(|f| ("at", f)));
         for (key, name) in factors.filter(|(_, name)| !context.factors.contains_key(*name)) {
             let known: Vec<&str> = context.factors.keys().map(String::as_str).collect();

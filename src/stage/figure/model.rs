@@ -3,7 +3,9 @@
 use super::super::{StageError, artifact_kind};
 use super::source::{Source, Sources, pick, rows_of};
 use super::{Label, Params};
-use crate::artifact::statistics::{Anova, Coefficients, Domains, Residuals as StoredResiduals, Screening, Surfaces};
+use crate::artifact::statistics::{
+    Anova, Coefficients, Domains, Residuals as StoredResiduals, Screening, Surfaces, TakenAs,
+};
 use figure::Quantity;
 use figure::agreement::{Agreement, Cloud, Pair};
 use figure::axis::{fixed, significant};
@@ -14,6 +16,7 @@ use figure::residuals::Residuals;
 use figure::surface::Surface;
 use math::distribution::normal_quantile;
 use math::elementary::ln;
+use stats::sample::Scale;
 use stats::terms::Term;
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {
@@ -23,7 +26,7 @@ fn one_response(params: &Params) -> Result<&Label, StageError> {
 /// Nodes along one side of a drawn surface.
 const NODES: usize = 61;
 
-/// A polynomial in natural units: terms with their coefficients.
+/// A polynomial in natural units, of logarithms where a factor has such a scale: terms with their coefficients.
 struct Polynomial(Vec<(Term, f64)>);
 
 impl Polynomial {
@@ -69,10 +72,18 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
         let own = domain.of(&label.key).or(label.range);
         own.ok_or_else(|| StageError::new(format!("[factor.{}] has neither levels nor range", label.key)))
     };
-    let nodes = |[low, high]: [f64; 2]| {
-        (0..NODES).map(|i| low + (high - low) * i as f64 / (NODES - 1) as f64).collect::<Vec<_>>()
+    let nodes = |label: &Label| -> Result<Vec<f64>, StageError> {
+        let ([low, high], scale) = (range(label)?, domain.scale(&label.key));
+        let [from, to] = [low, high].map(|end| scale.of(end));
+        let even = |i: usize| scale.natural(from + (to - from) * i as f64 / (NODES - 1) as f64);
+        let node = |i: usize| match (scale, i) {
+            (Scale::Log, 0) => low,
+            (Scale::Log, i) if i == NODES - 1 => high,
+            _ => even(i),
+        };
+        Ok((0..NODES).map(node).collect())
     };
-    let (xs, ys) = (nodes(range(x)?), nodes(range(y)?));
+    let (xs, ys) = (nodes(x)?, nodes(y)?);
     let mut held: Vec<(&Label, f64)> = Vec::new();
     for key in used.iter().filter(|key| **key != x.key && **key != y.key) {
         let label = params.factors.iter().find(|l| l.key == *key);
@@ -80,7 +91,7 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
             label.ok_or_else(|| StageError::new(format!("the surface depends on `{key}`, which is no factor")))?;
         let value = match params.at.get(key) {
             Some(value) => *value,
-            None => range(label).map(|[low, high]| (low + high) / 2.0)?,
+            None => range(label).map(|[low, high]| middle(domain.scale(key), low, high))?,
         };
         held.push((label, value));
     }
@@ -90,7 +101,7 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
         key => held.iter().find(|(l, _)| l.key == key).map_or(0.0, |(_, value)| *value),
     };
     let values = ys.iter().flat_map(|&v| xs.iter().map(move |&u| (u, v)));
-    let values = values.map(|(u, v)| model.value(&|key| at(key, u, v))).collect();
+    let values = values.map(|(u, v)| model.value(&|key| domain.scale(key).of(at(key, u, v)))).collect();
     let note = held.iter().map(|(l, v)| {
         let unit = if l.unit.is_empty() { String::new() } else { format!(" {}", figure::text::unit_markup(&l.unit)) };
         format!("{} = {}{unit}", l.quantity().sign(), short(*v))
@@ -105,20 +116,39 @@ pub(super) fn contour(params: &Params, sources: &Sources) -> Result<Contour, Sta
         values,
         points: marks(sources, x, y)?,
         note,
+        scales: [x, y].map(|label| match domain.scale(&label.key) {
+            Scale::Linear => figure::axis::Scale::Linear,
+            Scale::Log => figure::axis::Scale::Log,
+        }),
     })
 }
 
-/// The ranges over which a response was fitted.
-struct Domain(Vec<(String, [f64; 2])>);
+/// The middle of a range on a scale.
+fn middle(scale: Scale, low: f64, high: f64) -> f64 {
+    match scale {
+        Scale::Linear => (low + high) / 2.0,
+        Scale::Log => (low * high).sqrt(),
+    }
+}
+
+/// The ranges over which a response was fitted, and how the model takes each factor.
+struct Domain(Vec<(String, [f64; 2], Scale)>);
 
 impl Domain {
     fn read(stored: &Domains, response: &str) -> Self {
         let own = (0..stored.response.len()).filter(|&i| stored.response[i] == response);
-        Self(own.map(|i| (stored.factor[i].clone(), [stored.low[i], stored.high[i]])).collect())
+        let log = |i: usize| stored.scale.as_ref().is_some_and(|all| all[i] == TakenAs::Log);
+        let scale = |i: usize| if log(i) { Scale::Log } else { Scale::Linear };
+        Self(own.map(|i| (stored.factor[i].clone(), [stored.low[i], stored.high[i]], scale(i))).collect())
+    }
+
+    /// How the model takes a factor.
+    fn scale(&self, factor: &str) -> Scale {
+        self.0.iter().find(|(name, ..)| name == factor).map_or(Scale::Linear, |(_, _, scale)| *scale)
     }
 
     fn of(&self, factor: &str) -> Option<[f64; 2]> {
-        self.0.iter().find(|(name, [low, high])| name == factor && low < high).map(|(_, range)| *range)
+        self.0.iter().find(|(name, [low, high], _)| name == factor && low < high).map(|(_, range, _)| *range)
     }
 }
 

@@ -129,6 +129,7 @@ fn surfaces() -> Artifact {
         ..Coefficients::default()
     };
     let domain = Domains {
+        scale: None,
         response: words(["UCS", "UCS"]),
         factor: words(["Ec", "mu"]),
         unit: words(["GPa", ""]),

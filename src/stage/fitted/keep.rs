@@ -3,9 +3,10 @@
 use super::super::StageError;
 use super::unreadable;
 use crate::artifact::Artifact;
-use crate::artifact::statistics::{CodedFactors, CodedTerms, FittedModel, Surfaces};
+use crate::artifact::statistics::{CodedFactors, CodedTerms, FittedModel, Surfaces, TakenAs};
 use ndarray::Array2;
 use stats::model::{Axis, Model};
+use stats::sample::Scale;
 use stats::terms::Term;
 
 /// A model as it is stored.
@@ -19,6 +20,7 @@ pub(super) fn stored(model: &Model) -> FittedModel {
             half: of(|axis| axis.half),
             low: of(|axis| axis.low),
             high: of(|axis| axis.high),
+            scale: scales(&model.axes.iter().collect::<Vec<_>>()),
         },
         terms: CodedTerms {
             term: model.terms.iter().map(Term::to_string).collect(),
@@ -29,6 +31,15 @@ pub(super) fn stored(model: &Model) -> FittedModel {
         df_residual: model.df_residual as i64,
         greatest_leverage: model.greatest_leverage,
     }
+}
+
+/// How a model takes the values of its factors; nothing when it takes all as they are.
+pub(super) fn scales(axes: &[&Axis]) -> Option<Vec<TakenAs>> {
+    let taken = |axis: &&Axis| match axis.scale {
+        Scale::Linear => TakenAs::Linear,
+        Scale::Log => TakenAs::Log,
+    };
+    axes.iter().any(|axis| axis.scale != Scale::Linear).then(|| axes.iter().map(taken).collect())
 }
 
 /// The models of an artifact `surfaces`, by response.
@@ -45,6 +56,10 @@ fn read(stored: FittedModel) -> Result<Model, StageError> {
         stored;
     let axis = |(i, name): (usize, &String)| Axis {
         name: name.clone(),
+        scale: match factors.scale.as_ref().map_or(TakenAs::Linear, |all| all[i]) {
+            TakenAs::Linear => Scale::Linear,
+            TakenAs::Log => Scale::Log,
+        },
         centre: factors.centre[i],
         half: factors.half[i],
         low: factors.low[i],

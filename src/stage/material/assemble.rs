@@ -4,6 +4,7 @@ use super::{Material, PairRule, Values};
 use crate::stage::Complaint;
 use crate::unit::{Dimension, Unit};
 use dem::Convention;
+use dem::loading::fissure::Fissures;
 use dem::loading::material::{BondKind, Contact, Material as Made, MaterialFault};
 use dem::parameter::{Parameter, Quantity};
 use serde::Serialize;
@@ -18,6 +19,8 @@ pub struct Bonding {
     pub gap: f64,
     /// How a modulus becomes a stiffness.
     pub convention: Convention,
+    /// Fissures in the specimen.
+    pub fissures: Option<Fissures>,
     /// Values of the entries that have none of their own.
     pub values: BTreeMap<Parameter, f64>,
 }
@@ -60,8 +63,13 @@ impl Material {
 
     fn made(&self, values: &Values, need: Need<'_>) -> Result<Made, Vec<Complaint>> {
         let names = self.group_names(need.groups)?;
-        let mut made =
-            Made { groups: names, gap: need.bonding.gap, convention: need.bonding.convention, ..Made::default() };
+        let mut made = Made {
+            groups: names,
+            gap: need.bonding.gap,
+            convention: need.bonding.convention,
+            fissures: need.bonding.fissures.clone(),
+            ..Made::default()
+        };
         let mut faults = Vec::new();
         let groups = made.groups.clone();
         let pairs = || (0..groups.len()).flat_map(|a| (a..groups.len()).map(move |b| (a, b)));

@@ -3,6 +3,7 @@
 use super::super::material::{self, Bonding, GivenMaterial, Need};
 use super::super::rows;
 use super::super::{Complaint, Context, Known, Point, StageError};
+use super::fissures::FissureConfig;
 use super::speed::PlatenSpeed;
 use crate::expression::Measure;
 use crate::unit::{Angle, Length, Pressure};
@@ -79,6 +80,9 @@ pub struct Simulate {
     /// How bonds form and act.
     #[serde(default)]
     pub bond: BondConfig,
+    /// Fissures laid into the specimen before it is bonded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fissures: Option<FissureConfig>,
 }
 
 /// Whether different rows share packings.
@@ -118,7 +122,7 @@ impl BondConfig {
             (Parameter::FrictionAngle, self.friction_angle.map(Angle::get)),
         ];
         let values = values.into_iter().filter_map(|(parameter, value)| Some((parameter, value?))).collect();
-        Bonding { kind: self.kind, gap: self.gap, convention: self.convention, values }
+        Bonding { kind: self.kind, gap: self.gap, convention: self.convention, fissures: None, values }
     }
 
     fn faults(&self) -> Vec<Complaint> {
@@ -172,7 +176,7 @@ impl Simulate {
         point: &Point,
     ) -> Result<Material, StageError> {
         let values = rows::apply(material, point, context)?;
-        let bonding = self.bond.bonding();
+        let bonding = self.bonding();
         material.contacts(&values, self.need(context, &bonding)).map_err(|faults| {
             let hint = faults.iter().find_map(|fault| fault.hint.clone());
             let words: Vec<String> = faults.into_iter().map(|fault| fault.message).collect();
@@ -193,6 +197,11 @@ impl Simulate {
         material::given(input.stage, &*known.load(input)?, self.set.unwrap_or(1), groups, known.context)
     }
 
+    /// What the stage says on all bonds.
+    fn bonding(&self) -> Bonding {
+        Bonding { fissures: self.fissures.as_ref().map(FissureConfig::made), ..self.bond.bonding() }
+    }
+
     fn need<'a>(&'a self, context: &'a Context, bonding: &'a Bonding) -> Need<'a> {
         let groups = context.sketches.get(&self.specimen).map_or(&[][..], |sketch| &sketch.groups);
         Need { name: context.materials.contains_key(&self.material).then_some(&self.material), groups, bonding }
@@ -202,6 +211,7 @@ impl Simulate {
     pub(super) fn faults(&self, context: &Context) -> Vec<Complaint> {
         let mut faults = self.setting_faults();
         faults.extend(self.bond.faults());
+        faults.extend(self.fissures.iter().flat_map(FissureConfig::faults));
         let named = context.materials.get(&self.material);
         if self.set.is_some() && named.is_some() {
             let message = format!("`set` has no effect: [material.{}] is no calibrated one", self.material);
@@ -222,7 +232,7 @@ impl Simulate {
                 complaint
             }
         }));
-        let bonding = self.bond.bonding();
+        let bonding = self.bonding();
         // Without the specimen there is another fault.
         if unresolved.is_empty() && context.sketches.get(&self.specimen).is_some_and(|sketch| !sketch.groups.is_empty())
         {

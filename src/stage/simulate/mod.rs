@@ -17,11 +17,13 @@
 //! responses are microparameters, or a calibration, of whose solution `set` picks the target set.
 
 mod config;
+mod fissures;
 mod loading;
 mod record;
 mod speed;
 
 pub use config::{BondConfig, PackingChoice, Simulate};
+pub use fissures::{FissureConfig, JointConfig, NetworkConfig};
 pub use speed::PlatenSpeed;
 
 use super::rows::{self, GATHER};
@@ -60,12 +62,16 @@ impl Stage for Simulate {
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
         let mut found = rows::check_units(context);
+        let given = self.test.responses().iter();
+        found.extend(given.filter_map(|own| rows::check_response("test", own.name, own.unit, context)));
         found.extend(self.faults(context));
         found
     }
 
     fn sketch(&self) -> Sketch {
-        Sketch { material: Some(self.material.clone()), varies: true, ..Sketch::default() }
+        let responses = self.test.responses().iter().map(|response| response.name.to_owned()).collect();
+        let material = Some(self.material.clone());
+        Sketch { material, responses: Some(responses), varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -53,7 +53,7 @@ pub(in crate::store) fn seal(mark: &Mark, record: Record) -> Record {
 }
 
 /// The record of these bytes, when its checksum is right.
-pub(super) fn unpack(mark: &Mark, bytes: &[u8; RECORD], origin: &Arc<Origin>) -> Option<Record> {
+pub(in crate::store) fn unpack(mark: &Mark, bytes: &[u8; RECORD], origin: &Arc<Origin>) -> Option<Record> {
     let own = mark.record(&bytes[..BODY]) == bytes[112..];
     if !own && blake3::hash(&bytes[..BODY]).as_bytes()[..8] != bytes[BODY..112] {
         return None;

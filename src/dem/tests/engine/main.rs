@@ -36,6 +36,7 @@ mod page;
 mod piece;
 mod rest;
 mod scaling;
+mod smooth_joint;
 mod split;
 mod step;
 mod stiffness;

@@ -26,6 +26,7 @@ fn families() -> Vec<Family> {
         crate::incremental::family(),
         crate::bond::family(),
         crate::flat_joint::family(),
+        crate::smooth_joint::family(),
         crate::strength::family(),
         crate::beam::family(),
         crate::lattice::family(),

@@ -7,6 +7,7 @@ mod identities;
 mod models;
 mod nist;
 mod other_code;
+mod scales;
 mod su2021;
 
 use stats::sample::{Factor, Response, Sample};

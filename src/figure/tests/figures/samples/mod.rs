@@ -4,6 +4,7 @@ mod columns;
 mod fits;
 mod spatial;
 
+use figure::axis::Scale;
 use figure::bars::{Bar, RankedBars};
 use figure::contour::Contour;
 use figure::curve::{Curve, StressStrain};
@@ -30,6 +31,8 @@ pub(crate) fn all() -> Vec<(&'static str, Style, Box<dyn Figure>)> {
         ("surface", one.clone(), Box::new(Surface { field: contour(), azimuth: -60.0, elevation: 28.0 })),
         ("surface-saddle", one.clone(), Box::new(Surface { field: saddle(), azimuth: -50.0, elevation: 30.0 })),
         ("contour-saddle", one.clone(), Box::new(saddle())),
+        ("contour-log", one.clone(), Box::new(decades())),
+        ("surface-log", one.clone(), Box::new(Surface { field: decades(), azimuth: -60.0, elevation: 28.0 })),
         ("points-ccd", one.clone(), Box::new(points_ccd())),
         ("points-bbd", one.clone(), Box::new(points_cube("Box–Behnken design", false))),
         ("points-orthogonal", one.clone(), Box::new(points_cube("orthogonal table", true))),
@@ -186,6 +189,7 @@ fn contour() -> Contour {
     let axis: Vec<f64> = (0..n).map(|i| 5.858 + 28.284 * i as f64 / (n - 1) as f64).collect();
     let f = |s: f64, t: f64| -0.48 + 1.083 * s + 0.919 * t - 0.03138 * s * s - 0.0259 * t * t + 0.0656 * s * t;
     Contour {
+        scales: [Scale::Linear; 2],
         x: Quantity::new("", r"\bar\sigma_c", "MPa"),
         y: Quantity::new("", r"\bar\tau_c", "MPa"),
         z: Quantity::new("Peak strength", r"\sigma_u", "MPa"),
@@ -205,6 +209,26 @@ fn contour() -> Contour {
         ]
         .to_vec(),
         note: r"$E_c$ = 20 GPa, $k_n/k_s$ = 2.5, $\mu$ = 1".into(),
+    }
+}
+
+/// A strength over the ratio of stiffnesses, three decades of it.
+fn decades() -> Contour {
+    let n = 41;
+    let part = |i: usize| i as f64 / (n - 1) as f64;
+    let xs: Vec<f64> = (0..n).map(|i| math::elementary::pow(10.0, -1.0 + 3.0 * part(i))).collect();
+    let ys: Vec<f64> = (0..n).map(|i| 1.0 + 4.0 * part(i)).collect();
+    let f = |x: f64, y: f64| 20.0 + 6.0 * math::elementary::ln(x) - y * y;
+    Contour {
+        scales: [Scale::Log, Scale::Linear],
+        x: Quantity::new("", "k_n/k_s", ""),
+        y: Quantity::new("", r"\mu", ""),
+        z: Quantity::new("Peak strength", r"\sigma_u", "MPa"),
+        values: ys.iter().flat_map(|&y| xs.iter().map(move |&x| f(x, y))).collect(),
+        points: vec![[0.1, 1.0], [3.162, 3.0], [100.0, 5.0]],
+        xs,
+        ys,
+        ..Contour::default()
     }
 }
 

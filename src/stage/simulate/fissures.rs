@@ -1,0 +1,168 @@
+//! Fissures of a `simulate` stage: their places, and what acts on them.
+
+use super::super::Complaint;
+use crate::unit::{Angle, Intensity, Length, Pressure, Stiffness};
+use dem::genesis::network::Network;
+use dem::loading::fissure::{Fissure, Fissures};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Fissures laid into the specimen before it is bonded, each with smooth joints.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FissureConfig {
+    /// Fissures one by one.
+    #[serde(default)]
+    pub list: Vec<JointConfig>,
+    /// Fissures by their statistics; every specimen has its own.
+    pub network: Option<NetworkConfig>,
+    /// Friction on them.
+    pub friction: f64,
+    /// Dilation angle; 0 when not given.
+    pub dilation: Option<Angle>,
+    /// Normal stiffness per area; that of the contacts of the first group when not given.
+    pub kn: Option<Stiffness>,
+    /// Shear stiffness per area; goes with `kn`.
+    pub ks: Option<Stiffness>,
+    /// Tensile strength of bonded fissures; they are open when not given.
+    pub tensile_strength: Option<Pressure>,
+    /// Cohesion of bonded fissures; goes with `tensile_strength`.
+    pub cohesion: Option<Pressure>,
+    /// Friction angle of their bond; 0 when not given.
+    pub friction_angle: Option<Angle>,
+}
+
+/// One fissure: a straight line in the plane, a disc in space.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointConfig {
+    /// Its middle from that of the specimen: along the width, the axis of loading and (in space) the depth; the middle
+    /// itself when not given.
+    pub centre: Option<Vec<Length>>,
+    /// Angle below the horizontal.
+    pub dip: Angle,
+    /// Azimuth of the steepest descent, from the width towards the depth; 0 when not given, and in the plane.
+    pub direction: Option<Angle>,
+    /// Length, or diameter of the disc; it cuts through the specimen when not given.
+    pub length: Option<Length>,
+}
+
+/// Statistics of a network of fissures.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NetworkConfig {
+    /// Length per area (P21) in the plane, area per volume (P32) in space.
+    pub intensity: Intensity,
+    /// Smallest and largest length, or diameter of the discs.
+    pub sizes: [Length; 2],
+    /// Exponent a of the density of the sizes, l^(−a).
+    pub exponent: f64,
+    /// Mean angle below the horizontal.
+    pub dip: Angle,
+    /// Azimuth of the mean dip; 0 when not given, and in the plane.
+    pub direction: Option<Angle>,
+    /// κ of Fisher's law (space) or von Mises' law (plane); 0 has no preferred orientation.
+    pub concentration: f64,
+}
+
+/// Most fissures per square (cubic) metre of a network whose sizes all are the smallest.
+const DENSEST: f64 = 1e8;
+
+impl NetworkConfig {
+    fn made(&self) -> Network {
+        Network {
+            intensity: self.intensity.get(),
+            exponent: self.exponent,
+            sizes: self.sizes.map(Length::get),
+            mean: [self.dip.get(), self.direction.map_or(0.0, Angle::get)],
+            concentration: self.concentration,
+        }
+    }
+
+    fn faults(&self) -> Vec<Complaint> {
+        let Network { intensity, exponent, sizes: [low, high], concentration, .. } = self.made();
+        let densest = intensity / low;
+        let rules = [
+            (intensity > 0.0, "intensity", intensity, "above 0"),
+            (low > 0.0 && high >= low, "sizes", low, "a smallest size above 0 and a largest one not below it"),
+            (exponent.is_finite() && exponent.abs() <= 10.0, "exponent", exponent, "a number from -10 to 10"),
+            ((0.0..=1e4).contains(&concentration), "concentration", concentration, "0 to 10000"),
+            (densest <= DENSEST, "intensity", intensity, "lower for sizes that small"),
+        ];
+        let wrong = rules.into_iter().filter(|(good, ..)| !good);
+        let fault = |(_, key, found, wanted): (bool, &str, f64, &str)| {
+            let message = format!("`{key}` of the network is {found}; it must be {wanted}");
+            Complaint::new(&format!("fissures.network.{key}"), message)
+        };
+        wrong.map(fault).collect()
+    }
+}
+
+impl FissureConfig {
+    /// As the loading tests take them.
+    pub(super) fn made(&self) -> Fissures {
+        let centre = |one: &JointConfig, k: usize| one.centre.as_ref().and_then(|x| x.get(k)).map_or(0.0, |x| x.get());
+        let fissure = |one: &JointConfig| Fissure {
+            centre: std::array::from_fn(|k| centre(one, k)),
+            dip: one.dip.get(),
+            direction: one.direction.map_or(0.0, Angle::get),
+            length: one.length.map(Length::get),
+        };
+        let angle = self.friction_angle.map_or(0.0, Angle::get);
+        let bond =
+            self.tensile_strength.zip(self.cohesion).map(|(tension, cohesion)| [tension, cohesion].map(Pressure::get));
+        Fissures {
+            list: self.list.iter().map(fissure).collect(),
+            network: self.network.as_ref().map(NetworkConfig::made),
+            stiffness: self.kn.zip(self.ks).map(|(kn, ks)| [kn.get(), ks.get()]),
+            friction: self.friction,
+            dilation: self.dilation.map_or(0.0, Angle::get),
+            bond: bond.map(|[tension, cohesion]| [tension, cohesion, angle]),
+        }
+    }
+
+    /// All that is wrong with them.
+    pub(super) fn faults(&self) -> Vec<Complaint> {
+        let mut faults = Vec::new();
+        let mut check = |good: bool, key: &str, message: String| {
+            if !good {
+                faults.push(Complaint::new(&format!("fissures.{key}"), message));
+            }
+        };
+        let acute = |angle: f64| (0.0..std::f64::consts::FRAC_PI_2).contains(&angle);
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let none = self.list.is_empty() && self.network.is_none();
+        check(!none, "list", "there is no fissure: give a `list` or a `network`, or leave out `fissures`".to_owned());
+        let friction = self.friction;
+        check(friction >= 0.0, "friction", format!("`friction` is {friction}; it must be 0 or more"));
+        let angles = [("dilation", self.dilation), ("friction_angle", self.friction_angle)];
+        for (key, angle) in angles.into_iter().filter_map(|(key, angle)| Some((key, angle?.get()))) {
+            check(acute(angle), key, format!("`{key}` is {angle} rad; it must be 0 to below 90°"));
+        }
+        let pressures = [("tensile_strength", self.tensile_strength), ("cohesion", self.cohesion)];
+        for (key, value) in pressures.into_iter().filter_map(|(key, value)| Some((key, value?.get()))) {
+            check(positive(value), key, format!("`{key}` is {value} Pa; it must be above 0"));
+        }
+        if let Some(kn) = self.kn {
+            check(positive(kn.get()), "kn", format!("`kn` is {} Pa/m; it must be above 0", kn.get()));
+        }
+        if let Some(ks) = self.ks {
+            check(ks.get() >= 0.0, "ks", format!("`ks` is {} Pa/m; it must be 0 or more", ks.get()));
+        }
+        check(self.kn.is_some() == self.ks.is_some(), "kn", "`kn` and `ks` go together".to_owned());
+        let bonded = self.tensile_strength.is_some();
+        let words = "`tensile_strength` and `cohesion` go together".to_owned();
+        check(bonded == self.cohesion.is_some(), "tensile_strength", words);
+        let words = "`friction_angle` has no effect without `tensile_strength` and `cohesion`".to_owned();
+        check(bonded || self.friction_angle.is_none(), "friction_angle", words);
+        for one in &self.list {
+            let length = one.length.map_or(1.0, Length::get);
+            check(positive(length), "list", format!("`length` of a fissure is {length} m; it must be above 0"));
+            let count = one.centre.as_ref().map_or(2, Vec::len);
+            let words = format!("`centre` of a fissure has {count} coordinates; it must have 2, in space 3");
+            check((2..=3).contains(&count), "list", words);
+        }
+        faults.extend(self.network.iter().flat_map(NetworkConfig::faults));
+        faults
+    }
+}

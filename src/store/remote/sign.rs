@@ -1,0 +1,78 @@
+//! Who pushed a segment: signatures of SSH keys, as git has them.
+//!
+//! OpenSSH's own `ssh-keygen -Y` signs and verifies. So keys in an agent and on hardware tokens work, a list of allowed
+//! signers means what it means to ssh and git (validity, certificates, namespaces), and no second reader of keys can
+//! disagree with it.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// What keeps a signature of something else from being taken for one of a segment.
+const NAMESPACE: &str = "flow-store";
+
+/// How a push is signed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Signing {
+    /// With this key: a private key, or a public one whose private part an agent has.
+    Key(PathBuf),
+    /// Not at all.
+    None,
+}
+
+/// Whose segments are taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Trust {
+    /// Those of the signers in this file, in the format of `ssh-keygen`'s allowed signers.
+    Signers(PathBuf),
+    /// Anybody's.
+    Anybody,
+}
+
+impl Signing {
+    /// The signature of these bytes; none when nothing is signed.
+    pub(super) fn sign(&self, bytes: &[u8]) -> Result<Option<Vec<u8>>, String> {
+        let Self::Key(key) = self else { return Ok(None) };
+        let mut command = Command::new("ssh-keygen");
+        command.args(["-Y", "sign", "-n", NAMESPACE, "-f"]).arg(key);
+        run(command, bytes).map(Some)
+    }
+}
+
+impl Trust {
+    /// Who signed these bytes.
+    pub(super) fn signer(&self, bytes: &[u8], signature: Option<&[u8]>) -> Result<String, String> {
+        let file = match self {
+            Self::Anybody => return Ok("anybody".to_owned()),
+            Self::Signers(file) => file,
+        };
+        let signature = signature.ok_or("nobody has signed it; `--unsigned` takes it all the same")?;
+        let mut kept = tempfile::NamedTempFile::new().map_err(|error| error.to_string())?;
+        kept.write_all(signature).map_err(|error| error.to_string())?;
+        let mut find = Command::new("ssh-keygen");
+        find.args(["-Y", "find-principals", "-f"]).arg(file).arg("-s").arg(kept.path());
+        let unknown = |_| format!("its signer is not in {}", file.display());
+        let found = run(find, bytes).map_err(unknown)?;
+        let found = String::from_utf8_lossy(&found).into_owned();
+        let principal = found.lines().next().unwrap_or_default().split(',').next().unwrap_or_default().trim();
+        let mut verify = Command::new("ssh-keygen");
+        verify.args(["-Y", "verify", "-n", NAMESPACE, "-I", principal, "-f"]).arg(file).arg("-s").arg(kept.path());
+        run(verify, bytes).map_err(|why| format!("the signature of {principal} does not fit it ({why})"))?;
+        Ok(principal.to_owned())
+    }
+}
+
+/// Runs a program on these bytes; its output, or the last line of what it complains of.
+fn run(mut command: Command, bytes: &[u8]) -> Result<Vec<u8>, String> {
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().map_err(|error| format!("`ssh-keygen` of OpenSSH cannot be run: {error}"))?;
+    let written = child.stdin.take().map(|mut input| input.write_all(bytes));
+    let output = child.wait_with_output().map_err(|error| error.to_string())?;
+    if output.status.success() {
+        // It may have known enough before it had read all.
+        let _ = written;
+        return Ok(output.stdout);
+    }
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    Err(said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it says nothing").trim().to_owned())
+}
