@@ -156,7 +156,7 @@ fn unbalanced(ran: &Ran) {
     let coefficient = |term| ran.number(("missing", "coefficients"), ("term", term), "estimate");
     all_near(&["const", "a", "b"].map(coefficient), &[0.0, 2.0, 0.001], 1e-13, "z in MPa and kPa");
     assert_eq!(ran.number(("missing", "fit"), ("response", "z"), "missing"), 3.0);
-    assert_eq!(ran.notes("missing")[0], "3 of 37 runs have no value; the analysis is of the other 34");
+    assert_eq!(ran.notes("missing")[0], "3 of 37 runs have no value; the analysis is of 34");
     let (a, z) = (numbers(&set["a"]), ran.column("unbalanced", "runs", "z"));
     let w = numbers(&set["w"]);
     let at_one = (0..37).filter(|&i| a[i] == 1.0 && !z[i].is_nan());

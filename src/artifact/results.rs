@@ -30,7 +30,7 @@ pub struct Verdicts {
 }
 
 impl Results {
-    /// The runs of a simulator: `runs` without what is said of them.
+    /// The runs of a simulator: `runs` without the columns on their validity.
     pub fn of(runs: Table, verdicts: Verdicts) -> Self {
         let runs = runs.texts_column(FAILURE, "why the run gave no result; empty when it did", verdicts.failures);
         let Some((validity, cautions)) = verdicts.checked else { return Self::from(runs) };

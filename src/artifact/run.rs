@@ -93,6 +93,8 @@ crate::table! {
         pub volumetric_strain: Vec<f64>, "";
         /// broken bonds so far
         pub cracks: Vec<usize>, "";
+        /// speed of each platen or grip, where it adapts
+        pub speed: Option<Vec<f64>>, "m/s";
     }
 }
 

@@ -5,6 +5,7 @@
 //! `--verify` the solution is run on fresh specimens as the workflow's own verification says, and nothing else is run.
 
 mod answer;
+mod page;
 
 use super::Exit;
 use super::common::{Campaign, system, workers};
@@ -20,6 +21,7 @@ use crate::stage::verify::Verify;
 use crate::store::Store;
 use clap::Args;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -29,11 +31,14 @@ pub(super) struct Calibrate {
     #[command(flatten)]
     campaign: Campaign,
     /// A wanted response: `UCS="30 MPa"`, `nu=0.2`. May be given more than once.
-    #[arg(long = "target", value_name = "RESPONSE=VALUE", required = true)]
+    #[arg(long = "target", value_name = "RESPONSE=VALUE", required_unless_present = "page")]
     targets: Vec<String>,
     /// The calibration whose surfaces and settings are used; needed when several search on surfaces.
     #[arg(long, value_name = "NAME")]
     stage: Option<String>,
+    /// Write the calibrator as a page of its own, for someone who has no `flow`; `-` for standard output.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["verify", "json", "csv"])]
+    page: Option<PathBuf>,
     /// Run the solution on fresh specimens, as the workflow's verification does.
     #[arg(long)]
     verify: bool,
@@ -65,6 +70,9 @@ impl Calibrate {
     fn answer(&self) -> Result<Exit, Exit> {
         let asked = self.asked()?;
         self.finished(&asked)?;
+        if let Some(file) = &self.page {
+            return page::write(&self.campaign, &asked, file);
+        }
         let stop = Arc::new(AtomicBool::new(false));
         let report = asked.run(std::slice::from_ref(&asked.stage), 1, &Silent, &stop);
         let solution = asked.result(&report, &asked.stage)?;
@@ -105,7 +113,9 @@ impl Calibrate {
             return Err(Exit::BadInput);
         };
         let mut campaign = self.campaign.clone();
-        campaign.sets.push(format!("stage.{stage}.targets=[{targets}]"));
+        if !self.targets.is_empty() {
+            campaign.sets.push(format!("stage.{stage}.targets=[{targets}]"));
+        }
         let workflow = campaign.load(&[])?;
         let checks = checks.and_then(Result::ok).unwrap_or_default();
         Ok(Asked { workflow, store: self.campaign.open()?, stage, checks })

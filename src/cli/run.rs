@@ -126,7 +126,7 @@ impl Run {
         match self.executor {
             Executor::Threads if self.site.is_some() || self.dry_run => {
                 let option = if self.dry_run { "--dry-run" } else { "--site" };
-                err!("error: `{option}` needs `--executor slurm`\n  what a run would do here is told by `flow plan`");
+                err!("error: `{option}` needs `--executor slurm`\n  `flow plan` shows what a run would do here");
                 Err(Exit::BadInput)
             }
             Executor::Threads => Ok(None),

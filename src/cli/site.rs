@@ -122,7 +122,8 @@ pub(super) fn show_submission(workflow: &Workflow, store: &Store, site: &Site, s
     }
     for (needs, tasks) in &counts {
         let workers = needs.workers.min(tasks.div_ceil(needs.cpus));
-        err!("{tasks} tasks are ready for {workers} workers:");
+        let plural = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+        err!("ready: {} for {}", plural(*tasks, "task"), plural(workers, "worker"));
         out!("{}", text(site, needs, store.root(), workers).trim_end());
     }
     if counts.is_empty() {

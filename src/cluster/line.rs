@@ -114,8 +114,13 @@ mod tests {
     use super::*;
     use serde_json::json;
 
+    /// Numbers of all sizes: a reader of text that rounds carelessly misses the last bit of some.
+    fn hard() -> Vec<f64> {
+        (1..400).map(|k| 0.013 * f64::from(k) / 7.0 * 10f64.powi(k % 40 - 20)).chain([0.013, 0.1 + 0.7]).collect()
+    }
+
     fn task() -> Task {
-        let params = json!({ "a": 0.1 + 0.2, "b": -0.0, "c": [1, 2.5e300], "run": ["sh", "-c", "echo \"x\n\""] });
+        let params = json!({ "a": 0.1 + 0.2, "b": -0.0, "c": [1, 2.5e300], "hard": hard(), "run": ["sh", "-c", "echo \"x\n\""] });
         let mut task = Task::new("command", params).seed(u64::MAX).row(6);
         task.files = vec![FileInput { name: "t".to_owned(), path: "in.txt".into(), digest: [3; 32] }];
         task.time_limit = Some(0.1);

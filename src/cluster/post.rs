@@ -35,6 +35,15 @@ pub enum News {
     },
 }
 
+/// What is new of a queue.
+#[derive(Default)]
+pub struct Reports {
+    /// News of tasks, by their numbers.
+    pub news: Vec<(usize, News)>,
+    /// Words on workers.
+    pub words: Vec<String>,
+}
+
 /// One submission.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Round {
@@ -93,7 +102,7 @@ const ALONE: &str = "-alone";
 const LISTED_AFTER: Duration = Duration::from_secs(10);
 /// Pause after a refusal, while some workers are there.
 const REFUSED: Duration = Duration::from_secs(60);
-/// So many submissions in a row may end without a task done.
+/// Largest number of submissions in a row that may end without a finished task.
 const MOST_IDLE: usize = 3;
 
 impl Post {
@@ -242,8 +251,9 @@ impl Post {
         loop {
             match self.submit(site, store, program, scheduler, workers) {
                 Ok(job) => {
-                    let s = if workers == 1 { "" } else { "s" };
-                    return Ok(vec![format!("job {job}: {workers} worker{s} for {open} tasks")]);
+                    let plural = |count: usize| if count == 1 { "" } else { "s" };
+                    let (many, more) = (plural(workers), plural(open));
+                    return Ok(vec![format!("job {job}: {workers} worker{many} for {open} task{more}")]);
                 }
                 // A limit on jobs may leave room for fewer.
                 Err(_) if workers > 1 => workers /= 2,
@@ -306,11 +316,11 @@ impl Post {
         Ok(())
     }
 
-    /// Reads what the workers have reported since: news of tasks by their number, and words on workers.
+    /// Reads what the workers have reported since.
     ///
     /// # Errors
     /// The store cannot be read.
-    pub fn read(&mut self) -> Result<(Vec<(usize, News)>, Vec<String>), StoreError> {
+    pub fn read(&mut self) -> Result<Reports, StoreError> {
         let (mut news, mut words) = (Vec::new(), Vec::new());
         for name in self.queue.reports()? {
             if self.workers.get(&name).is_some_and(|worker| worker.ended) {
@@ -333,7 +343,7 @@ impl Post {
                 self.lose(&name, &mut news, &mut words);
             }
         }
-        Ok((news, words))
+        Ok(Reports { news, words })
     }
 
     fn heard(&mut self, name: &str, said: Said, news: &mut Vec<(usize, News)>, words: &mut Vec<String>) {
@@ -416,7 +426,7 @@ impl Post {
     }
 
     /// Compares with what the scheduler says is still there: news of the tasks of workers that are gone, and words.
-    pub fn apply(&mut self, alive: &Alive) -> (Vec<(usize, News)>, Vec<String>) {
+    pub fn apply(&mut self, alive: &Alive) -> Reports {
         let (mut news, mut words) = (Vec::new(), Vec::new());
         for number in 0..self.rounds.len() {
             let round = &self.rounds[number];
@@ -448,7 +458,7 @@ impl Post {
                 .collect();
             lost.iter().for_each(|name| self.lose(name, &mut news, &mut words));
         }
-        (news, words)
+        Reports { news, words }
     }
 }
 

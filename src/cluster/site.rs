@@ -238,7 +238,7 @@ impl Site {
     /// is taken when there is one, else a Slurm of which nothing is known.
     ///
     /// # Errors
-    /// It cannot be read or has faults, all of which are told.
+    /// It cannot be read, or it has faults; the error lists all of them.
     pub fn load(name: Option<&str>) -> Result<Self, SiteError> {
         let path = match name {
             Some(name) if name.ends_with(".toml") => PathBuf::from(name),

@@ -13,7 +13,7 @@
 
 use super::File;
 use super::bodies::contacts;
-use super::vtu::{Cells, Field, Grid, pvd};
+use super::vtu::{Cells, Field, Grid, in_space, pvd};
 use crate::artifact::Artifact;
 use crate::artifact::run::{CrackMode, Run};
 use dem::genesis::specimen::Specimen;
@@ -21,7 +21,7 @@ use std::collections::BTreeSet;
 
 /// The files of a specimen.
 pub fn specimen(name: &str, specimen: &Specimen) -> Vec<File> {
-    let particles = Grid { on_points: bodies(specimen), ..points(specimen.centres.clone()) };
+    let particles = Grid { on_points: bodies(specimen), ..points(&specimen.centres) };
     let mut files = vec![
         (format!("{name}.particles.vtu"), particles.vtu().into_bytes()),
         (format!("{name}.contacts.vtu"), links(specimen).vtu().into_bytes()),
@@ -45,7 +45,7 @@ pub fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec<File>,
         let mut fields = bodies(specimen);
         fields.push(Field::Vectors("displacement", moved));
         let grids = [
-            ("particles", Some(Grid { on_points: fields, ..points(centres.clone()) })),
+            ("particles", Some(Grid { on_points: fields, ..points(centres) })),
             ("forces", forces(&run, state, centres)?),
             ("cracks", cracks(&run, strain)?),
         ];
@@ -60,8 +60,8 @@ pub fn run(name: &str, run: &Artifact, specimen: &Specimen) -> Result<Vec<File>,
     Ok(files)
 }
 
-fn points(points: Vec<[f64; 2]>) -> Grid {
-    Grid { points, cells: Cells::Points, on_points: Vec::new(), on_cells: Vec::new() }
+fn points(points: &[[f64; 2]]) -> Grid {
+    Grid { points: in_space(points), cells: Cells::Points, on_points: Vec::new(), on_cells: Vec::new() }
 }
 
 /// What is the same in every state.
@@ -77,7 +77,7 @@ fn bodies(specimen: &Specimen) -> Vec<Field> {
 fn links(specimen: &Specimen) -> Grid {
     let contacts = contacts(specimen, 0.0);
     Grid {
-        points: specimen.centres.clone(),
+        points: in_space(&specimen.centres),
         cells: Cells::Lines(contacts.iter().map(|c| c.ends).collect()),
         on_points: Vec::new(),
         on_cells: vec![
@@ -97,7 +97,7 @@ fn clumps(specimen: &Specimen) -> Grid {
     let numbers = 0..specimen.polygons.len();
     let clump = |polygon: usize| specimen.clumps.iter().position(|clump| clump.polygon == polygon);
     Grid {
-        points,
+        points: in_space(&points),
         cells: Cells::Polygons(polygons),
         on_points: Vec::new(),
         on_cells: vec![
@@ -129,7 +129,7 @@ fn forces(run: &Run, state: usize, centres: &[[f64; 2]]) -> Result<Option<Grid>,
     let (normal, shear) = (pick(&forces.normal_force), pick(&forces.shear_force));
     let mean = normal.iter().map(|force| force.abs()).sum::<f64>() / normal.len().max(1) as f64;
     Ok(Some(Grid {
-        points: centres.to_vec(),
+        points: in_space(centres),
         cells: Cells::Lines(lines),
         on_points: Vec::new(),
         on_cells: vec![
@@ -160,7 +160,7 @@ fn cracks(run: &Run, until: f64) -> Result<Option<Grid>, String> {
     let number = |name: &String| names.iter().position(|known| *known == name).map_or(-1, |place| place as i64);
     let marked = |is: &dyn Fn(usize) -> bool| open.iter().map(|&crack| i64::from(is(crack))).collect();
     Ok(Some(Grid {
-        points: open.iter().flat_map(ends).collect(),
+        points: in_space(&open.iter().flat_map(ends).collect::<Vec<_>>()),
         cells: Cells::Lines((0..open.len()).map(|k| [2 * k, 2 * k + 1]).collect()),
         on_points: Vec::new(),
         on_cells: vec![

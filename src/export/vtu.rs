@@ -4,7 +4,8 @@
 //! binary forms, but exact, free of byte order, and a few dozen lines. The crate there is for the format (`vtkio`) brings
 //! an XML parser, a parser for legacy files and three compressors for what is here one kind of cell per file.
 //!
-//! Format: VTK User's Guide, "VTK XML formats"; cell types 1 (vertex), 3 (line), 7 (polygon). z is 0.
+//! Format: VTK User's Guide, "VTK XML formats"; cell types 1 (vertex), 3 (line), 5 (triangle), 7 (polygon). What is
+//! plane has z = 0.
 
 use std::fmt::{Display, Write};
 
@@ -14,6 +15,8 @@ pub(super) enum Cells {
     Points,
     /// Pairs of points.
     Lines(Vec<[usize; 2]>),
+    /// Corners of triangles.
+    Triangles(Vec<[usize; 3]>),
     /// Points of each polygon, in order.
     Polygons(Vec<Vec<usize>>),
 }
@@ -30,7 +33,7 @@ pub(super) enum Field {
 
 /// Points, cells and fields on them.
 pub(super) struct Grid {
-    pub(super) points: Vec<[f64; 2]>,
+    pub(super) points: Vec<[f64; 3]>,
     pub(super) cells: Cells,
     pub(super) on_points: Vec<Field>,
     pub(super) on_cells: Vec<Field>,
@@ -41,6 +44,7 @@ impl Cells {
         match self {
             Self::Points => points,
             Self::Lines(lines) => lines.len(),
+            Self::Triangles(triangles) => triangles.len(),
             Self::Polygons(polygons) => polygons.len(),
         }
     }
@@ -50,6 +54,7 @@ impl Cells {
         match self {
             Self::Points => (0..points).map(|point| vec![point]).collect(),
             Self::Lines(lines) => lines.iter().map(|line| line.to_vec()).collect(),
+            Self::Triangles(triangles) => triangles.iter().map(|triangle| triangle.to_vec()).collect(),
             Self::Polygons(polygons) => polygons.clone(),
         }
     }
@@ -59,6 +64,7 @@ impl Cells {
         match self {
             Self::Points => 1,
             Self::Lines(_) => 3,
+            Self::Triangles(_) => 5,
             Self::Polygons(_) => 7,
         }
     }
@@ -79,7 +85,7 @@ impl Grid {
         );
         push(&mut text, format_args!("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{count}\">\n", self.points.len()));
         text.push_str("<Points>\n");
-        vectors(&mut text, "points", &self.points);
+        array(&mut text, "Float64", "points", 3, self.points.iter().flatten());
         text.push_str("</Points>\n<Cells>\n");
         array(&mut text, "Int64", "connectivity", 1, corners.iter().flatten());
         array(&mut text, "Int64", "offsets", 1, &ends);
@@ -100,17 +106,18 @@ impl Field {
         match self {
             Self::Reals(name, values) => array(text, "Float64", name, 1, values),
             Self::Ints(name, values) => array(text, "Int64", name, 1, values),
-            Self::Vectors(name, values) => vectors(text, name, values),
+            Self::Vectors(name, values) => array(text, "Float64", name, 3, in_space(values).iter().flatten()),
         }
     }
 }
 
-fn vectors(text: &mut String, name: &str, values: &[[f64; 2]]) {
-    array(text, "Float64", name, 3, values.iter().flat_map(|[x, y]| [*x, *y, 0.0]));
+/// Points or vectors of the plane, as VTK has them.
+pub(super) fn in_space(plane: &[[f64; 2]]) -> Vec<[f64; 3]> {
+    plane.iter().map(|[x, y]| [*x, *y, 0.0]).collect()
 }
 
 fn array(text: &mut String, kind: &str, name: &str, parts: usize, values: impl IntoIterator<Item = impl Display>) {
-    // One component is VTK's default; told, some readers make a matrix of one column of it.
+    // One component is VTK's default; when it is stated, some readers make a matrix of one column of it.
     let parts_told = if parts > 1 { format!(" NumberOfComponents=\"{parts}\"") } else { String::new() };
     push(text, format_args!("<DataArray type=\"{kind}\" Name=\"{name}\"{parts_told} format=\"ascii\">\n"));
     for (i, value) in values.into_iter().enumerate() {

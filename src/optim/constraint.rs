@@ -68,6 +68,11 @@ impl Domain {
         &self.factors
     }
 
+    /// The linear constraints in the unit box: a normal of unit length, its bound, and the constraint as it is written.
+    pub fn walls(&self) -> impl Iterator<Item = (&[f64], f64, &str)> {
+        self.walls.iter().map(|(normal, bound, text)| (normal.as_slice(), *bound, text.as_str()))
+    }
+
     /// Whether only the box bounds the parameters.
     pub fn is_box(&self) -> bool {
         self.walls.is_empty()

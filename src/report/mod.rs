@@ -7,13 +7,15 @@
 //! * [`gather`](mod@gather): workflow and store → [`Paper`]
 //! * `page`: head, masthead, contents; `summary`, `provenance`: the first sections; `stage`: a section per stage
 //! * `table`, `figure`: what sections are made of; `svg` lets only harmless pictures in, `values` gives their numbers
+//! * `calibrator`: parameters to responses and back, for someone who has no `flow`; also a page of its own
 //! * `warning`, `symbol`, `time`: what raises a warning; symbols as HTML; times in words
-//! * `page.css`, `page.js`: the look and what moves; the page reads, links and prints without the script
+//! * `page.css`, `base.js`, `page.js`: the look and what moves; the page reads, links and prints without the script
 //!
 //! Nothing that comes from a workflow or a store becomes markup: texts are escaped by `maud`, pictures pass through
 //! `svg`, numbers for the script are JSON in which `<` cannot occur, and the page forbids itself every script, style,
 //! picture and address that is not its own.
 
+mod calibrator;
 mod dag;
 mod figure;
 mod gather;
@@ -30,7 +32,7 @@ mod values;
 mod warning;
 
 pub use gather::{Asked, gather};
-pub use page::page;
+pub use page::{calibrator_page, page};
 pub use paper::{Cost, Paper, Part, State, quoted};
 pub use time::{duration, moment};
 

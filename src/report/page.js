@@ -1,34 +1,5 @@
-"use strict";
 (() => {
-  const make = (tag, more = {}, ...inside) => {
-    const element = document.createElement(tag);
-    for (const [name, value] of Object.entries(more)) {
-      if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-      else if (value !== undefined) element.setAttribute(name, value);
-    }
-    element.append(...inside);
-    return element;
-  };
-  const all = (what, root = document) => [...root.querySelectorAll(what)];
-
-  // Theme: as the system has it, or as chosen.
-  const themes = ["auto", "light", "dark"];
-  const kept = { get: () => { try { return localStorage.getItem("theme"); } catch { return null; } },
-                 set: (value) => { try { localStorage.setItem("theme", value); } catch { /* a page without memory */ } } };
-  const theme = make("button", { type: "button" });
-  const choose = (name) => {
-    if (name === "auto") delete document.documentElement.dataset.theme;
-    else document.documentElement.dataset.theme = name;
-    theme.textContent = "Theme: " + name;
-    theme.dataset.name = name;
-  };
-  theme.addEventListener("click", () => {
-    const next = themes[(themes.indexOf(theme.dataset.name) + 1) % themes.length];
-    choose(next);
-    kept.set(next);
-  });
-  choose(themes.includes(kept.get()) ? kept.get() : "auto");
-  document.getElementById("tools").append(theme);
+  const { make, all, copy, copier } = Page;
 
   // Contents: open where there is room, with the place of the reader.
   const contents = document.getElementById("contents");
@@ -57,23 +28,6 @@
     waiting = true;
   }, { passive: true });
   here();
-
-  // Copying.
-  const copy = async (text) => {
-    try { await navigator.clipboard.writeText(text); return true; } catch { /* an older way below */ }
-    const area = make("textarea", { "aria-hidden": "true", tabindex: "-1" });
-    area.value = text;
-    document.body.append(area);
-    area.select();
-    const done = document.execCommand("copy");
-    area.remove();
-    return done;
-  };
-  const copier = (name, text, output) => make("button", { type: "button", onclick: async () => {
-    const done = await copy(text());
-    output.textContent = done ? "copied" : "copying is not allowed here";
-    setTimeout(() => { output.textContent = ""; }, 2500);
-  } }, name);
 
   // Tables: sort by a head, copy as TSV or CSV.
   const value = (cell) => cell.dataset.v ?? cell.textContent.trim().replaceAll("−", "-");

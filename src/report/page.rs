@@ -3,14 +3,17 @@
 use super::figure::{Glyphs, base64};
 use super::paper::{Cost, Paper, State};
 use super::time::moment;
-use super::{provenance, stage, summary};
+use super::{calibrator, provenance, stage, summary};
+use crate::stage::StageError;
 use figure::font::Face;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// The look.
 pub(super) const STYLE: &str = include_str!("page.css");
-/// What moves: themes, sorting, copying, zooming, values under the pointer.
-pub(super) const SCRIPT: &str = include_str!("page.js");
+/// What every page needs: elements, themes, copying.
+const BASE: &str = include_str!("base.js");
+/// What moves in a report: sorting, copying, zooming, values under the pointer.
+const SCRIPT: &str = include_str!("page.js");
 
 /// The page of a campaign.
 pub fn page(paper: &Paper) -> String {
@@ -21,7 +24,7 @@ pub fn page(paper: &Paper) -> String {
     let body = html! {
         a.skip href="#main" { "Skip to the results" }
         (glyphs.markup())
-        (masthead(paper))
+        (masthead(paper, "flow report"))
         div.frame {
             (contents(paper))
             main #main tabindex="-1" {
@@ -33,6 +36,30 @@ pub fn page(paper: &Paper) -> String {
         footer { p { (made(paper)) } }
         dialog #zoom aria-label="Figure, enlarged" {}
     };
+    document(paper, &paper.title, &body, &[BASE, SCRIPT, calibrator::SCRIPT])
+}
+
+/// The calibrator of a stage as a page of its own; none when it is no calibration on surfaces, or these have no result.
+///
+/// # Errors
+/// The surfaces cannot be read.
+pub fn calibrator_page(paper: &Paper, stage: &str) -> Result<Option<String>, StageError> {
+    let Some(part) = paper.parts.iter().find(|part| part.name == stage) else { return Ok(None) };
+    let Some(calibrator) = calibrator::calibrator(paper, part)? else { return Ok(None) };
+    let title = format!("Calibrator: {}", paper.title);
+    let body = html! {
+        a.skip href="#main" { "Skip to the calibrator" }
+        (masthead(paper, "flow calibrator"))
+        div.frame.alone {
+            main.alone #main tabindex="-1" { section { h2 { "Calibrator" } (calibrator) } }
+        }
+        footer { p { (made(paper)) } }
+    };
+    Ok(Some(document(paper, &title, &body, &[BASE, calibrator::SCRIPT])))
+}
+
+/// A page that is complete in itself.
+fn document(paper: &Paper, title: &str, body: &Markup, scripts: &[&str]) -> String {
     let nonce = nonce(paper);
     let page = html! {
         (DOCTYPE)
@@ -43,10 +70,10 @@ pub fn page(paper: &Paper) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 meta name="generator" content={ "flow " (env!("CARGO_PKG_VERSION")) };
-                title { (paper.title) }
-                style nonce=(nonce) { (PreEscaped(fonts())) (PreEscaped(STYLE)) }
+                title { (title) }
+                style nonce=(nonce) { (PreEscaped(fonts())) (PreEscaped(STYLE)) (PreEscaped(calibrator::STYLE)) }
             }
-            body { (body) script nonce=(nonce) { (PreEscaped(SCRIPT)) } }
+            body { (body) script nonce=(nonce) { @for script in scripts { (PreEscaped(script)) } } }
         }
     };
     page.into_string()
@@ -64,7 +91,17 @@ fn policy(nonce: &str) -> String {
 /// depends on all texts and results.
 fn nonce(paper: &Paper) -> String {
     let mut hash = blake3::Hasher::new_derive_key("flow report 1");
-    for text in [&paper.title, &paper.about, &paper.file, &paper.text, SCRIPT, STYLE] {
+    for text in [
+        &paper.title,
+        &paper.about,
+        &paper.file,
+        &paper.text,
+        BASE,
+        SCRIPT,
+        STYLE,
+        calibrator::SCRIPT,
+        calibrator::STYLE,
+    ] {
         hash.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
     }
     for part in &paper.parts {
@@ -94,12 +131,12 @@ fn homes(paper: &Paper) -> Vec<(usize, Vec<usize>)> {
     all.clone().filter(|&i| paper.home(i) == i).map(|i| (i, members(i))).collect()
 }
 
-fn masthead(paper: &Paper) -> Markup {
+fn masthead(paper: &Paper, mark: &str) -> Markup {
     let profile = paper.profile.as_ref().map(|profile| format!(", profile {profile}"));
     html! {
         header {
             div.bar-top {
-                p.mark { "flow report" }
+                p.mark { (mark) }
                 div #tools {}
             }
             h1 { (paper.title) }

@@ -1,5 +1,6 @@
 //! The section of a stage: what it is, what it cost, its tables and figures, and those that show it.
 
+use super::calibrator::calibrator;
 use super::figure::{Glyphs, figure};
 use super::paper::{Paper, Part, State, capital};
 use super::table::Sheet;
@@ -34,9 +35,18 @@ pub(super) fn section(paper: &Paper, index: usize, members: &[usize], glyphs: &m
                 ul.warnings aria-label="Warnings" { @for warning in &found { li { (warning) } } }
             }
             (own(paper, index, members))
+            (interactive(paper, part))
             div.members { @for &member_index in members { (member(paper, member_index, glyphs)) } }
             (settings(part))
         }
+    }
+}
+
+/// The calibrator of a calibration on surfaces.
+fn interactive(paper: &Paper, part: &Part) -> Markup {
+    match calibrator(paper, part) {
+        Ok(found) => found.unwrap_or_else(|| html! {}),
+        Err(fault) => html! { p.missing { "The calibrator cannot be shown: " (fault.message) } },
     }
 }
 

@@ -1,6 +1,7 @@
 //! Tasks that workers on other machines compute, as the run loop sees them: by key, whichever queue they are in.
 
 use crate::artifact::{ContentHash, Key};
+use crate::cluster::post::Reports;
 use crate::cluster::scheduler::{self, Alive};
 use crate::cluster::site::Needs;
 use crate::cluster::{Cause, Line, News, Post, Said, Scheduler, Site};
@@ -61,7 +62,7 @@ pub(super) struct Far<'a> {
     places: HashMap<Key, Place>,
     /// Tasks to be listed.
     fresh: Vec<(Needs, Key, Line, usize, usize)>,
-    asked: Option<Receiver<Vec<(usize, Result<Alive, String>)>>>,
+    asked: Option<Receiver<(usize, Result<Alive, String>)>>,
     asked_at: Instant,
     waiting: Option<String>,
     quiet: Duration,
@@ -202,7 +203,7 @@ impl<'a> Far<'a> {
     pub(super) fn hear(&mut self) -> Result<Vec<Heard>, StoreError> {
         let mut heard = Vec::new();
         for number in 0..self.posts.len() {
-            let (news, words) = self.posts[number].read()?;
+            let Reports { news, words } = self.posts[number].read()?;
             heard.extend(words.into_iter().map(Heard::Word));
             self.sort(number, news, &mut heard);
         }
@@ -230,7 +231,7 @@ impl<'a> Far<'a> {
                     heard.push(Heard::Done(key, seconds));
                 }
                 News::Said(Said::Failed { why, .. }) => heard.push(Heard::Failed(key, why)),
-                News::Said(Said::Stopped { cause, .. }) => self.stopped(number, task, key, cause, heard),
+                News::Said(Said::Stopped { cause, .. }) => self.stopped(key, cause, heard),
                 News::Said(Said::Elsewhere { .. }) => heard.push(Heard::Open(key)),
                 News::Said(Said::Lost { input, why, .. }) => match ContentHash::from_hex(&input) {
                     Some(input) => {
@@ -239,22 +240,18 @@ impl<'a> Far<'a> {
                     }
                     None => heard.push(Heard::Failed(key, why)),
                 },
-                News::Gone { machine, words } => self.lost(number, task, key, (&machine, &words), heard),
+                News::Gone { machine, words } => self.lost(key, (&machine, &words), heard),
                 News::Said(Said::Started { .. } | Said::Ended { .. }) => {}
             }
         }
     }
 
     /// A worker ended a task before its end.
-    fn stopped(&mut self, number: usize, task: usize, key: Key, cause: Cause, heard: &mut Vec<Heard>) {
+    fn stopped(&mut self, key: Key, cause: Cause, heard: &mut Vec<Heard>) {
         let Some(place) = self.places.get_mut(&key) else { return };
-        let post = &mut self.posts[number];
+        let post = &self.posts[place.post];
         match cause {
-            Cause::Time | Cause::Store => {
-                let entry = (post.needs.clone(), key, post.entries[task].line.clone(), place.gone, place.told_to_end);
-                post.over(task);
-                self.fresh.push(entry);
-            }
+            Cause::Time | Cause::Store => self.list_again(key, Needs::clone),
             Cause::WholeTime => {
                 let time = post.needs.time.map_or(0.0, |time| time.get());
                 heard.push(Heard::Failed(
@@ -267,10 +264,7 @@ impl<'a> Far<'a> {
             }
             Cause::Signal if place.told_to_end + 1 < MOST_TOLD => {
                 place.told_to_end += 1;
-                let needs = if post.needs.alone { post.needs.clone() } else { post.needs.again() };
-                let entry = (needs, key, post.entries[task].line.clone(), place.gone, place.told_to_end);
-                post.over(task);
-                self.fresh.push(entry);
+                self.list_again(key, |needs| if needs.alone { needs.clone() } else { needs.again() });
             }
             Cause::Signal => heard.push(Heard::Failed(
                 key,
@@ -280,9 +274,9 @@ impl<'a> Far<'a> {
     }
 
     /// The worker that had begun a task is gone: it is tried once more, alone.
-    fn lost(&mut self, number: usize, task: usize, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) {
+    fn lost(&mut self, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) {
         let Some(place) = self.places.get_mut(&key) else { return };
-        let post = &mut self.posts[number];
+        let post = &self.posts[place.post];
         place.gone += 1;
         if place.gone > 1 {
             let (machine, words) = at;
@@ -295,28 +289,27 @@ impl<'a> Far<'a> {
             ));
             return;
         }
-        let entry = (post.needs.again(), key, post.entries[task].line.clone(), place.gone, place.told_to_end);
-        post.over(task);
-        self.fresh.push(entry);
+        self.list_again(key, Needs::again);
+    }
+
+    /// Takes a task out of its queue, to be listed for workers with what `needs` makes of those that it had.
+    fn list_again(&mut self, key: Key, needs: impl Fn(&Needs) -> Needs) {
+        let Some(place) = self.places.get(&key) else { return };
+        let post = &mut self.posts[place.post];
+        let line = post.entries[place.task].line.clone();
+        self.fresh.push((needs(&post.needs), key, line, place.gone, place.told_to_end));
+        post.over(place.task);
     }
 
     /// Asks the scheduler which jobs are there, at most once a minute, and takes its answer when it comes.
     fn ask(&mut self, heard: &mut Vec<Heard>) {
         if let Some(inbox) = &self.asked {
             match inbox.try_recv() {
-                Ok(answers) => {
+                Ok((number, alive)) => {
                     self.asked = None;
-                    for (number, alive) in answers {
-                        let Ok(alive) = alive else { continue };
-                        let (news, words) = self.posts[number].apply(&alive);
-                        heard.extend(words.into_iter().map(Heard::Word));
-                        self.sort(number, news, heard);
-                        let waiting =
-                            alive.waiting.map(|(count, why)| format!("{count} workers wait for a place ({why})"));
-                        if waiting.is_some() && waiting != self.waiting {
-                            heard.extend(waiting.clone().map(Heard::Word));
-                            self.waiting = waiting;
-                        }
+                    // No answer says nothing about the jobs.
+                    if let Ok(alive) = alive {
+                        self.compare(number, alive, heard);
                     }
                 }
                 Err(TryRecvError::Disconnected) => self.asked = None,
@@ -337,9 +330,21 @@ impl<'a> Far<'a> {
         let (queue, jobs) = (post.queue.name().to_owned(), post.jobs());
         std::thread::spawn(move || {
             // Nobody waits for it when the run has ended.
-            let _ = answers.send(vec![(number, scheduler.alive(&queue, &jobs))]);
+            let _ = answers.send((number, scheduler.alive(&queue, &jobs)));
         });
         self.asked = Some(inbox);
+    }
+
+    /// Takes in which jobs of a queue are there.
+    fn compare(&mut self, number: usize, alive: Alive, heard: &mut Vec<Heard>) {
+        let Reports { news, words } = self.posts[number].apply(&alive);
+        heard.extend(words.into_iter().map(Heard::Word));
+        self.sort(number, news, heard);
+        let waiting = alive.waiting.map(|(count, why)| format!("{count} workers wait for a place ({why})"));
+        if waiting.is_some() && waiting != self.waiting {
+            heard.extend(waiting.clone().map(Heard::Word));
+            self.waiting = waiting;
+        }
     }
 
     /// Results that were reported and are not seen yet are asked for again, and computed again after a while.

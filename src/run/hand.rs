@@ -2,7 +2,7 @@
 
 use super::board::NodeId;
 use super::far::{Far, Heard, Leave};
-use super::{Answer, Cluster, Event, Loop, Past, Watch, task};
+use super::{Answer, Cluster, Event, Loop, Watch, task};
 use crate::artifact::{ContentHash, Key};
 use crate::cluster::Line;
 use crate::stage::{Failure, StageError, is_far};
@@ -61,10 +61,9 @@ impl Loop<'_, '_> {
             self.store.locate(content).map_err(|error| Box::new(task::Lost { content: *content, error }))
         };
         let inputs = contents.iter().map(locate).collect::<Result<Vec<_>, _>>()?;
-        let seconds = *self.most_seconds.entry(stage.clone()).or_insert_with(|| {
-            let past = Past::of(self.workflow, self.store).ok()?;
-            past.most_seconds(stage)
-        });
+        let past = self.past.as_ref();
+        let read = || past.and_then(|past| past.most_seconds(stage));
+        let seconds = *self.most_seconds.entry(stage.clone()).or_insert_with(read);
         let line = Line::new(self.board.task(node), &key, stage, &inputs, seconds);
         if let Some(far) = &mut self.far {
             far.put(stage, key, line);

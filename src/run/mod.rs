@@ -14,6 +14,7 @@ mod audit;
 mod board;
 mod commit;
 mod elsewhere;
+mod event;
 mod far;
 mod files;
 mod hand;
@@ -31,6 +32,7 @@ mod worker;
 pub use audit::{Audited, audit};
 pub use board::{TaskCount, TaskState};
 pub use commit::commit;
+pub use event::{Event, Silent, Watch};
 pub use memo::remembered;
 pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
@@ -80,69 +82,6 @@ pub struct Cluster {
     pub site: Site,
     /// Set before the run is stopped when its workers are to go on.
     pub leave: Arc<AtomicBool>,
-}
-
-/// What the person watching is told.
-pub enum Event<'a> {
-    /// A task of a stage was started.
-    Started {
-        /// The stage.
-        stage: &'a str,
-        /// Its row.
-        row: Option<usize>,
-    },
-    /// A running task says where it stands.
-    Said {
-        /// The stage.
-        stage: &'a str,
-        /// Its row.
-        row: Option<usize>,
-        /// Where it stands.
-        progress: &'a Progress,
-    },
-    /// A stage that decides by outcomes asked for more.
-    Asked {
-        /// The stage.
-        stage: &'a str,
-        /// Its counts.
-        count: TaskCount,
-        /// Where it stands.
-        note: &'a str,
-    },
-    /// A task ended, well or not.
-    Ended {
-        /// The stage.
-        stage: &'a str,
-        /// Its row.
-        row: Option<usize>,
-        /// The stage's counts after it.
-        count: TaskCount,
-        /// Why it failed.
-        failure: Option<&'a str>,
-    },
-    /// Something about the workers on other machines.
-    Word {
-        /// In words.
-        text: &'a str,
-    },
-    /// A stage ended.
-    Stage {
-        /// What became of it.
-        report: &'a StageReport,
-    },
-}
-
-/// Takes events; called from any thread.
-pub trait Watch: Sync {
-    /// One event.
-    fn event(&self, event: Event<'_>);
-}
-
-/// Says nothing.
-pub struct Silent;
-
-impl Watch for Silent {
-    fn event(&self, _: Event<'_>) {}
 }
 
 /// What became of a campaign.
@@ -211,6 +150,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             elsewhere: Elsewhere::default(),
             far,
             far_nodes: HashMap::new(),
+            past: cluster.and_then(|_| Past::of(workflow, store).ok()),
             most_seconds: HashMap::new(),
             refused,
             streamed: Streamed::default(),
@@ -278,6 +218,8 @@ struct Loop<'pool, 'env> {
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
     far_nodes: HashMap<Key, NodeId>,
+    /// Earlier runs, where tasks go to workers: a worker is told how long a task may take.
+    past: Option<Past<'env>>,
     /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.
     most_seconds: HashMap<String, Option<f64>>,
     /// Why the cluster cannot go on: nothing more is started.

@@ -17,7 +17,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What a worker is told when it starts.
+/// Settings with which a worker starts.
 pub struct Worker {
     /// Which submission of the queue it belongs to, from 1.
     pub round: usize,

@@ -15,6 +15,7 @@ mod given;
 mod read;
 
 pub use assemble::{Bonding, Need, measures};
+pub use dem::loading::material::BondKind;
 pub use dem::parameter::{Parameter as Microparameter, Quantity};
 pub use given::{GivenMaterial, given};
 pub use read::MaterialTable;
@@ -22,7 +23,6 @@ pub use read::MaterialTable;
 use super::Parameter;
 use crate::expression::{Expression, Measure};
 use dem::Distribution;
-use dem::loading::material::BondKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -32,6 +32,7 @@ mod fault;
 mod folder;
 mod hdf5;
 mod journal;
+mod located;
 mod lock;
 mod mark;
 mod memo;
@@ -48,6 +49,7 @@ pub use campaign::{Campaign, StageRun};
 pub use clean::{Amount, Swept, Usage};
 pub use error::{Damage, StoreError};
 pub use hdf5::Hdf5Error;
+pub use located::Located;
 pub use lock::{Guard, Holder, Waiting};
 pub use mark::Mark;
 pub use memo::Memo;
@@ -119,31 +121,6 @@ pub enum Claim {
     Theirs(Waiting),
     /// It is finished already.
     Done(Record),
-}
-
-/// An object with what its file must be: it needs no record to be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Located {
-    /// The object.
-    pub object: ObjectId,
-    seal: Seal,
-}
-
-impl Located {
-    /// Its key, content, digest and size as one text.
-    pub fn to_text(&self) -> String {
-        let digest = u128::from_be_bytes(self.seal.digest);
-        format!("{}:{}:{digest:032x}:{}", self.object.key, self.object.content, self.seal.size)
-    }
-
-    /// What such a text says; none when it is not one.
-    pub fn from_text(text: &str) -> Option<Self> {
-        let parts: Vec<&str> = text.split(':').collect();
-        let [key, content, digest, size] = parts[..] else { return None };
-        let object = ObjectId { content: ContentHash::from_hex(content)?, key: Key::from_hex(key)? };
-        let digest = u128::from_str_radix(digest, 16).ok()?.to_be_bytes();
-        Some(Self { object, seal: Seal { digest, size: size.parse().ok()? } })
-    }
 }
 
 /// An open store. All methods take `&self` and may be called from many threads.
@@ -422,44 +399,6 @@ impl Store {
                 Ok(found.map_or(Claim::Mine(guard), Claim::Done))
             }
         }
-    }
-
-    /// As [`Store::claim`], without a look at the journals: for a worker, whose list says that the task is not finished.
-    /// None when somebody else computes it.
-    ///
-    /// # Errors
-    /// The lock cannot be made.
-    pub fn claim_unseen(&self, key: &Key) -> Result<Option<Guard>, StoreError> {
-        match lock::take(&self.disk, &key.to_string(), &self.machine)? {
-            lock::Taken::Mine(guard) => Ok(Some(guard)),
-            lock::Taken::Theirs(_) => Ok(None),
-        }
-    }
-
-    /// Where the artifact with this content lies and what its file is, for a process that reads no journal.
-    ///
-    /// # Errors
-    /// As [`Store::get`].
-    pub fn locate(&self, content: &ContentHash) -> Result<Located, StoreError> {
-        for record in locked(self.index()?).with_content(content).into_iter().filter(|record| record.own) {
-            if self.has(&record.object())? {
-                return Ok(Located { object: record.object(), seal: record.seal });
-            }
-        }
-        Err(StoreError::Missing { content: *content })
-    }
-
-    /// The artifact that [`Store::locate`] found, its size and digest compared before a byte is decoded.
-    ///
-    /// # Errors
-    /// As [`Store::get`].
-    pub fn get_located(&self, located: &Located) -> Result<Arc<Artifact>, StoreError> {
-        let content = located.object.content;
-        if let Some(artifact) = locked(&self.cache).get(&content) {
-            return Ok(artifact);
-        }
-        let proven = self.noted(&located.object, prove::object(&self.disk, &located.object, Some(&located.seal)))?;
-        Ok(self.cached(content, proven.artifact))
     }
 
     /// The memo of a stage that this user's own flow made. Its objects may be gone: ask [`Store::has_all`].

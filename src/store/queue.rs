@@ -117,7 +117,7 @@ pub struct Queue {
 }
 
 /// A lock that says that somebody looks after a queue.
-pub struct LookedAfter(#[allow(dead_code)] Held);
+pub struct LookedAfter(#[expect(dead_code, reason = "it is held, and let go when it is dropped")] Held);
 
 impl Queue {
     /// Its name.

@@ -96,10 +96,16 @@ pub(super) fn adopt(disk: &Disk) -> Result<(), StoreError> {
 /// What lies in the root besides notes and files that are being written.
 fn other_names(disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> {
     let mut names = Vec::new();
-    let listed = folder.list(|name, _| names.extend((!is_note(name) && !is_temporary(name)).then(|| name.to_owned())));
+    let passing = |name: &str| is_note(name) || is_temporary(name) || is_unlinked(name);
+    let listed = folder.list(|name, _| names.extend((!passing(name)).then(|| name.to_owned())));
     listed.map_err(|error| disk.fail("list", &disk.root, error))?;
     names.sort_unstable();
     Ok(names)
+}
+
+/// Whether a file system shared over a network left this in place of a file that was removed while somebody read it.
+fn is_unlinked(name: &str) -> bool {
+    [".nfs", ".fuse_hidden"].iter().any(|prefix| name.starts_with(prefix))
 }
 
 /// Whether flow makes something of this name in the root of a store.

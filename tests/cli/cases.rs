@@ -219,3 +219,20 @@ fn a_file_that_is_no_plain_file_is_refused_and_not_waited_for() {
     assert!(made.success());
     assert!(refused(&space, "pipe.toml").contains("is a pipe"));
 }
+
+/// A formula that scatters by 10 % about 12: the interval has a width, and holds the truth.
+#[test]
+fn a_noisy_simulator_gives_an_interval_with_a_width() {
+    let space = case("zero-width-interval");
+    let output = space.flow(&["run", "w.toml"]);
+    assert!(output.status.success(), "{}", told(&output));
+    let rows = table(&space, "one", "prediction");
+    let at = |name: &str| {
+        let place = rows[0].iter().position(|own| own == name).unwrap_or_else(|| panic!("no `{name}`: {rows:?}"));
+        number(&rows[1][place])
+    };
+    // The scatter of a run is 1.2; of the mean of many it is less.
+    assert!(at("high") - at("low") > 0.05, "{rows:?}");
+    assert!(at("low") < 12.0 && 12.0 < at("high"), "{rows:?}");
+    assert!((at("scatter") - 1.2).abs() < 0.2, "{rows:?}");
+}

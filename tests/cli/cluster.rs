@@ -268,7 +268,7 @@ fn what_would_be_submitted_is_shown_as_text() {
     cluster.0.stdout(&["run", "w.toml", "grid", "--quiet"]);
     let output = cluster.run(&["--dry-run"]);
     let said = told(&output);
-    assert!(said.contains("6 tasks are ready for 4 workers"), "{said}");
+    assert!(said.contains("ready: 6 tasks for 4 workers"), "{said}");
     assert!(said.contains("#SBATCH --array=0-3") && said.contains("#SBATCH --mem=2862M"), "{said}");
     assert_eq!(cluster.calls("sbatch"), 0);
     assert!(!Path::new(&cluster.0.path("store/queue")).exists());

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod calibrate;
+mod calibrator;
 mod cases;
 mod cluster;
 mod columns;

@@ -65,7 +65,7 @@ node() {
   run >out &
   sleep 8
   for p in /proc/[0-9]*; do
-    if tr '\0' '\n' <"$p/environ" 2>/dev/null | grep -qx SLURMD_NODENAME=n2; then kill -KILL "${p#/proc/}" 2>/dev/null; fi
+    if tr "\0" "\n" 2>/dev/null <"$p/environ" | grep -qx SLURMD_NODENAME=n2; then kill -KILL "${p#/proc/}" 2>/dev/null; fi
   done
   wait
   echo "node: the workers of a node killed at 8 s: $(field out 'd["seconds"]') s, computed $(done_of) of 400"

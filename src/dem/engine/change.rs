@@ -9,6 +9,7 @@ use crate::boundary::{Motion, Wall};
 use crate::error::Faults;
 use crate::interaction::ContactTable;
 use crate::law::unbond;
+use crate::measure::kinetic;
 use crate::simd::{Same, Width};
 use crate::space::{Space, Spin, Tuple, Vector};
 
@@ -42,6 +43,35 @@ impl<S: Space> Engine<S> {
             None => {
                 let x = self.position_of(p);
                 set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, velocity, spin);
+            }
+        }
+        Ok(())
+    }
+
+    /// Multiplies the velocity and spin of every body, those that are held among them, and the velocity of every wall but a
+    /// servo's, which sets its own. The books take what that adds to the kinetic energy as given from outside.
+    ///
+    /// # Errors
+    /// A factor that is negative or not finite.
+    pub fn scale_motion(&mut self, factor: f64) -> Result<(), Faults> {
+        super::validate::check_factor(factor)?;
+        if self.books.is_some() {
+            let given = (factor * factor - 1.0) * kinetic(self);
+            self.books.iter_mut().for_each(|books| books.bodies[1] += given);
+        }
+        for p in (0..self.caller.len()).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
+            let (x, v) = (self.position_of(p), crate::body::velocity::<S>(&self.records, p));
+            let (v, w) = (v.times(factor), crate::body::spin::<S>(&self.records, p).times(factor));
+            set_kinematics::<S>(&mut self.records[p * S::RECORD..(p + 1) * S::RECORD], x, v, w);
+        }
+        for clump in &mut self.clumps {
+            clump.set_motion(clump.velocity.times(factor), clump.spin.times(factor));
+            clump.place(&mut Same(&mut self.records));
+        }
+        for wall in &mut self.walls {
+            if let Motion::Velocity(v) = &mut wall.motion {
+                *v = v.times(factor);
+                wall.face.velocity = *v;
             }
         }
         Ok(())

@@ -222,6 +222,13 @@ pub(super) fn check_damping(alpha: f64) -> Result<(), Faults> {
     ok(damping_fault(alpha).into_iter().collect())
 }
 
+/// Checks a factor on all velocities.
+pub(super) fn check_factor(factor: f64) -> Result<(), Faults> {
+    let good = factor >= 0.0 && factor.is_finite();
+    let fault = Fault::Setting { quantity: "factor on velocities", value: factor, wanted: "0 or more" };
+    ok((!good).then_some(fault).into_iter().collect())
+}
+
 fn damping_fault(alpha: f64) -> Option<Fault> {
     let good = (0.0..1.0).contains(&alpha);
     (!good).then_some(Fault::Setting { quantity: "damping", value: alpha, wanted: "in [0, 1)" })

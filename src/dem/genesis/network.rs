@@ -206,7 +206,7 @@ mod tests {
         let wide = Network { intensity: 20.0, ..network() };
         for (dimension, length) in [
             // coth κ − 1/κ; I₁(κ)/I₀(κ) from tables (Abramowitz & Stegun 9.8: e^(−12) I₀(12) = 0.11642622, I₁ 0.11146430).
-            (3, 1.0 / (12.0_f64).tanh() - 1.0 / 12.0),
+            (3, 1.0 / math::elementary::tanh(12.0) - 1.0 / 12.0),
             (2, 0.111_464_30 / 0.116_426_22),
         ] {
             let all = wide.scattered([1.0, 1.0, 0.3], dimension, &mut Stream::new(5, "network", 0));

@@ -34,6 +34,9 @@ pub struct Sample {
     pub stress: f64,
     /// Cracks so far.
     pub cracks: usize,
+    /// Speed of each platen or grip at which it was reached (m/s).
+    #[serde(default)]
+    pub speed: f64,
 }
 
 /// Macroscopic quantities of a compression or tension test; those that the record does not support are NaN.
@@ -82,6 +85,7 @@ pub fn first_reach(samples: &[Sample], level: f64) -> Option<Sample> {
         lateral: mix(before.lateral, after.lateral),
         stress: level,
         cracks: after.cracks,
+        speed: after.speed,
     })
 }
 
@@ -161,6 +165,7 @@ fn at_strain(samples: &[Sample], axial: f64) -> Sample {
         lateral: mix(before.lateral, after.lateral),
         stress: mix(before.stress, after.stress),
         cracks: if share < 1.0 { before.cracks } else { after.cracks },
+        speed: after.speed,
     }
 }
 
@@ -175,7 +180,13 @@ mod tests {
             .map(|k| {
                 let e = peak_strain * f64::from(k) / 1000.0;
                 let cracks = (k as usize).saturating_sub(300);
-                Sample { axial: e, lateral: 0.2 * e, stress: modulus * e * (1.0 - 0.5 * e / peak_strain), cracks }
+                Sample {
+                    axial: e,
+                    lateral: 0.2 * e,
+                    stress: modulus * e * (1.0 - 0.5 * e / peak_strain),
+                    cracks,
+                    speed: 0.02,
+                }
             })
             .collect()
     }
@@ -203,8 +214,9 @@ mod tests {
     #[test]
     fn first_reach_is_the_first_and_interpolated() {
         let stresses = [1.0, 3.0, 2.0, 5.0];
-        let samples: Vec<Sample> =
-            (0..4).map(|k| Sample { axial: k as f64 + 1.0, lateral: 0.0, stress: stresses[k], cracks: 0 }).collect();
+        let samples: Vec<Sample> = (0..4)
+            .map(|k| Sample { axial: k as f64 + 1.0, lateral: 0.0, stress: stresses[k], cracks: 0, speed: 0.02 })
+            .collect();
         assert_eq!(first_reach(&samples, 2.5).unwrap().axial, 1.75);
         assert_eq!(first_reach(&samples, 4.0).unwrap().axial, 3.0 + 2.0 / 3.0);
         assert_eq!(first_reach(&samples, 6.0), None);

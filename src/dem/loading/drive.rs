@@ -9,6 +9,7 @@
 
 use super::crack::{CrackEvent, note_cracks};
 use super::curve::{Sample, peak};
+use super::pace::Governor;
 use super::settings::{Rule, Schedule};
 use super::snapshot::{Ladder, Snapshot, State};
 use crate::measure::{Energy, energy, links};
@@ -129,6 +130,7 @@ struct Drive<'a, S: Space> {
     rule: &'a Rule,
     schedule: &'a Schedule,
     run: Run<S>,
+    governor: Option<Governor>,
     ladder: Ladder<S>,
     largest: f64,
     /// Strain at which the stress fell below the stop fraction, if it is below.
@@ -147,7 +149,7 @@ pub fn drive<S: Space>(
     watch: &mut dyn FnMut(&Sample) -> Watch,
 ) -> Run<S> {
     let run = Run {
-        samples: vec![Sample::default()],
+        samples: vec![Sample { speed: schedule.speed, ..Sample::default() }],
         cracks: Vec::new(),
         snapshots: Vec::new(),
         energies: Vec::new(),
@@ -159,7 +161,8 @@ pub fn drive<S: Space>(
     };
     let last_step = engine.steps().saturating_add(rule.max_steps);
     let (ladder, slice) = (Ladder::default(), slice(engine));
-    let mut drive = Drive { rule, schedule, run, ladder, largest: 0.0, fell: None, slice, last_step };
+    let governor = Governor::new(engine, schedule);
+    let mut drive = Drive { rule, schedule, run, governor, ladder, largest: 0.0, fell: None, slice, last_step };
     engine.keep_books();
     while drive.sample(engine, bench, watch) {}
     drive.finish(engine)
@@ -178,7 +181,8 @@ impl<S: Space> Drive<'_, S> {
         let outcome = self.advance(engine, &last, watch);
         let reading = bench.read(engine);
         let Reading { axial, lateral, stress, .. } = reading;
-        let sample = Sample { axial, lateral, stress, cracks: engine.cracks().len() };
+        let speed = self.schedule.speed * self.factor();
+        let sample = Sample { axial, lateral, stress, cracks: engine.cracks().len(), speed };
         note_cracks(engine, &mut self.run.cracks, before, sample.axial);
         if let Err(failure) = outcome {
             self.run.failure = Some(failure.into());
@@ -200,8 +204,16 @@ impl<S: Space> Drive<'_, S> {
         if self.fallen(&sample) || bench.done(&self.run.cracks, stress / self.largest) {
             return false;
         }
+        let share = if self.largest > 0.0 { stress / self.largest } else { 1.0 };
+        let paced = self.governor.as_mut().map_or(Ok(()), |governor| governor.look(engine, axial, share));
+        debug_assert!(paced.is_ok(), "a governor asks for factors and dampings that an engine takes: {paced:?}");
         self.run.failure = self.given_up(engine, axial);
         self.run.failure.is_none()
+    }
+
+    /// Speed now over that of the schedule.
+    fn factor(&self) -> f64 {
+        self.governor.as_ref().map_or(1.0, Governor::factor)
     }
 
     /// Makes the steps of a sample, in slices between which the watcher is asked.
@@ -211,7 +223,8 @@ impl<S: Space> Drive<'_, S> {
         last: &Sample,
         watch: &mut dyn FnMut(&Sample) -> Watch,
     ) -> Result<(), Failure> {
-        let every = (self.schedule.sample_strain / (self.schedule.rate * engine.time_step())).max(1.0) as u64;
+        let rate = self.schedule.rate * self.factor();
+        let every = (self.schedule.sample_strain / (rate * engine.time_step())).max(1.0) as u64;
         let mut left = every.min(self.last_step - engine.steps());
         while left > 0 {
             let now = left.min(self.slice);

@@ -160,6 +160,11 @@ impl TestKind {
         }
     }
 
+    /// Whether one crack through one section ends the test; damage is spread over the piece otherwise.
+    pub fn localised(self) -> bool {
+        matches!(self, Self::Brazilian | Self::Tension | Self::Bending)
+    }
+
     /// The responses of the test, the strength first.
     pub fn responses(self) -> &'static [Response] {
         match self {

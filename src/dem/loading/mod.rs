@@ -2,6 +2,7 @@
 //!
 //! * [`piece`]: what a test needs to know of a specimen; [`material`]: microparameters by contact group; [`rig`]: the
 //!   piece mounted with bonds in, free of force; [`platens`]: between two platens or jaws
+//! * [`pace`]: a speed that adapts to the cracks
 //! * [`kind`]: the tests and the responses that each declares; [`settings`], [`speed`]: how fast, when to sample and stop,
 //!   in numbers of their own or relative to the piece
 //! * [`drive`]: the loop all tests share; [`crack`], [`snapshot`]: what is noted on the way; [`gauge`]: lateral strain
@@ -44,6 +45,7 @@ pub mod gauge;
 pub mod judgement;
 pub mod kind;
 pub mod material;
+pub mod pace;
 pub mod piece;
 pub mod platens;
 pub mod record;

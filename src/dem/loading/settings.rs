@@ -1,6 +1,7 @@
 //! Settings of a loading test, and the numbers that they come to on one piece.
 
 use super::kind::TestKind;
+use super::pace::Pace;
 use super::rig::{Machine, Platens, Scales};
 use super::speed::{Speed, Threshold};
 use crate::{Fault, Faults};
@@ -13,6 +14,9 @@ pub struct Loading {
     pub kind: TestKind,
     /// How fast.
     pub speed: Speed,
+    /// Whether that speed is the only one, or the slow one of a test that adapts.
+    #[serde(default, skip_serializing_if = "is_fixed")]
+    pub pace: Pace,
     /// The platens.
     pub platens: Platens,
     /// What the kind of test needs besides.
@@ -81,6 +85,10 @@ pub struct Rule {
     pub forces: bool,
 }
 
+fn is_fixed(pace: &Pace) -> bool {
+    *pace == Pace::Fixed
+}
+
 fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }
@@ -117,8 +125,16 @@ impl Rule {
 /// The numbers of a test on one piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
-    /// Speed of each platen or grip (m/s).
+    /// Speed of each platen or grip (m/s); the slow one where it adapts.
     pub speed: f64,
+    /// Whether it adapts.
+    pub pace: Pace,
+    /// Whether one crack through one section ends the test, or damage that is spread.
+    pub localised: bool,
+    /// Time that a wave takes through the height (s).
+    pub transit: f64,
+    /// Wave transits within the reference strain at that speed.
+    pub transits: f64,
     /// Strain rate at the start (1/s).
     pub rate: f64,
     /// Strain between two samples.
@@ -171,6 +187,7 @@ impl Loading {
         Self {
             kind,
             speed: Speed::Each(0.02),
+            pace: Pace::Fixed,
             platens: Platens::default(),
             particulars: Particulars::default(),
             machine: Machine::default(),
@@ -256,6 +273,10 @@ impl Loading {
         let rate = ends * speed / length;
         let schedule = Schedule {
             speed,
+            pace: self.pace,
+            localised: self.kind.localised(),
+            transit: height / scales.wave_speed(),
+            transits: 0.5 * scales.strain() * scales.wave_speed() / speed,
             rate,
             sample_strain: rule.sample_strain.of(scales.strain()),
             seating: rule.seating.of(scales.stress()),

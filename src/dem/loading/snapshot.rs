@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn states_lie_near_the_wanted_shares() {
         let mut ladder = Ladder::<D2>::default();
-        let sample = |stress: f64, strain: f64| Sample { axial: strain, lateral: 0.0, stress, cracks: 0 };
+        let sample = |stress: f64, strain: f64| Sample { axial: strain, lateral: 0.0, stress, cracks: 0, speed: 0.0 };
         let climb: Vec<f64> = (1..=1000).map(f64::from).chain((500..1000).rev().map(f64::from)).collect();
         for (k, &stress) in climb.iter().enumerate() {
             ladder.offer(&sample(stress, k as f64), || State { centres: vec![[stress, 0.0]], forces: vec![] });

@@ -3,6 +3,7 @@
 use super::drive::TestFailure;
 use super::kind::TestKind;
 use super::material::{Contact, Material};
+use super::pace::Pace;
 use super::piece::Piece;
 use super::platens::{balance, between_platens};
 use super::record::TestRecord;
@@ -210,4 +211,35 @@ fn a_disc_splits_along_the_loaded_diameter() {
     assert_eq!(record.run.failure, None);
     assert!((3e6..30e6).contains(&record.values.strength), "{:?}", record.values);
     assert_eq!(record.validity(), "");
+}
+
+/// Few discs make each run a draw; what is asked for here is that nothing but the number of steps changes by much.
+#[test]
+fn a_test_that_adapts_takes_fewer_steps_to_the_same_answer() {
+    let (specimen, material) = (small(), material(20e9, 2.0, 20e6));
+    for kind in [TestKind::Uniaxial, TestKind::Tension] {
+        let fixed = run(&Loading { speed: Speed::Transits(80.0), ..Loading::new(kind) }, &specimen, &material);
+        let test = Loading { speed: Speed::Transits(80.0), pace: Pace::Adaptive, ..Loading::new(kind) };
+        let adaptive = run(&test, &specimen, &material);
+        assert!(
+            (adaptive.run.steps as f64) < 0.6 * fixed.run.steps as f64,
+            "{kind:?}: {} {}",
+            adaptive.run.steps,
+            fixed.run.steps
+        );
+        for (a, b, bound) in [
+            (adaptive.values.strength, fixed.values.strength, 0.05),
+            (adaptive.values.modulus_secant, fixed.values.modulus_secant, 0.005),
+            (adaptive.values.poisson_secant, fixed.values.poisson_secant, 0.02),
+        ] {
+            assert!((a / b - 1.0).abs() < bound, "{kind:?}: {a} {b}");
+        }
+        let speeds: Vec<f64> = adaptive.run.samples.iter().map(|sample| sample.speed).collect();
+        let slow = fixed.judgement.speed;
+        let [least, most] = [f64::min, f64::max].map(|pick| speeds.iter().map(|v| v / slow).reduce(pick).unwrap());
+        assert!(least > 0.999 && most > 5.0, "{kind:?}: {least} {most}");
+        assert!(adaptive.run.energies.iter().all(|(_, energy)| energy.imbalance().abs() < 0.02), "{kind:?}");
+        let again = run(&test, &specimen, &material);
+        assert_eq!(again.run.samples, adaptive.run.samples, "{kind:?}");
+    }
 }

@@ -149,7 +149,12 @@ impl std::fmt::Display for Check {
         };
         let [value, bound] = [self.value, self.bound].map(short);
         let name = reason.name();
-        write!(f, "{name}: {value}{space}{unit} is {side} {bound}{space}{unit}")?;
+        // What ended a test has no bound that it should have met.
+        if !self.bound.is_finite() || (!self.met && self.value == self.bound) {
+            write!(f, "{name}: {value}{space}{unit}")?;
+        } else {
+            write!(f, "{name}: {value}{space}{unit} is {side} {bound}{space}{unit}")?;
+        }
         if self.met { Ok(()) } else { write!(f, " ({}); {}", reason.about(), reason.remedy()) }
     }
 }
@@ -174,6 +179,11 @@ mod tests {
         assert_eq!(
             Check::at_least(Reason::CrackPath, 0.95, 0.9).to_string(),
             "crack path between the platens: 0.95 is within 0.9"
+        );
+        let no_peak = Check { reason: Reason::NoPeak, value: 0.0, bound: f64::INFINITY, met: false };
+        assert_eq!(
+            no_peak.to_string(),
+            "no peak: 0 Pa (largest stress up to the strain limit); raise strain_limit, or check the strengths of the bonds"
         );
         assert!(!Check::at_least(Reason::CrackPath, f64::NAN, 0.9).met);
     }

@@ -3,6 +3,7 @@
 //! (velocities live half a step from positions).
 
 use crate::engine::Engine;
+use crate::particle::Clump;
 use crate::space::{Space, Tuple};
 
 /// Energies of a run, J (per metre of thickness in the plane).
@@ -55,8 +56,7 @@ pub(crate) fn stored<S: Space>(engine: &Engine<S>) -> Energy {
     let gravity = engine.settings().gravity;
     let mut energy = Energy::default();
     for particle in (0..engine.particle_count()).filter(|&p| engine.clump_of(p).is_none()) {
-        let ([mass, inertia], v, w) = (engine.moving_mass(particle), engine.velocity(particle), engine.spin(particle));
-        energy.kinetic += 0.5 * (mass * v.dot(v) + inertia * w.dot(w));
+        energy.kinetic += kinetic_of_ball(engine, particle);
         energy.potential -= engine.mass(particle) * gravity.dot(engine.position(particle));
     }
     for particle in 0..engine.particle_count() {
@@ -64,7 +64,7 @@ pub(crate) fn stored<S: Space>(engine: &Engine<S>) -> Energy {
     }
     for clump in 0..engine.clump_count() {
         let c = engine.clump(clump);
-        energy.kinetic += 0.5 * (c.mass * c.velocity.dot(c.velocity) + S::momentum_of(&c.inertia, c.spin).dot(c.spin));
+        energy.kinetic += kinetic_of_clump(&c);
         energy.potential -= c.mass * gravity.dot(c.centre);
     }
     for contact in engine.contacts() {
@@ -73,4 +73,20 @@ pub(crate) fn stored<S: Space>(engine: &Engine<S>) -> Energy {
         energy.bond += bond;
     }
     energy
+}
+
+/// Kinetic energy of all bodies, with the masses that move them.
+pub(crate) fn kinetic<S: Space>(engine: &Engine<S>) -> f64 {
+    let balls = (0..engine.particle_count()).filter(|&p| engine.clump_of(p).is_none());
+    let clumps = (0..engine.clump_count()).map(|clump| kinetic_of_clump(&engine.clump(clump)));
+    balls.map(|particle| kinetic_of_ball(engine, particle)).chain(clumps).sum()
+}
+
+fn kinetic_of_ball<S: Space>(engine: &Engine<S>, particle: usize) -> f64 {
+    let ([mass, inertia], v, w) = (engine.moving_mass(particle), engine.velocity(particle), engine.spin(particle));
+    0.5 * (mass * v.dot(v) + inertia * w.dot(w))
+}
+
+fn kinetic_of_clump<S: Space>(c: &Clump<S>) -> f64 {
+    0.5 * (c.mass * c.velocity.dot(c.velocity) + S::momentum_of(&c.inertia, c.spin).dot(c.spin))
 }

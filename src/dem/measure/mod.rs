@@ -9,8 +9,8 @@ mod stress;
 
 pub use balance::unbalanced_ratio;
 pub use cracks::{Crack, Mode};
-pub(crate) use energy::stored;
 pub use energy::{Energy, energy};
+pub(crate) use energy::{kinetic, stored};
 pub use fabric::{Coordination, Link, coordination, fabric, links};
 pub(crate) use fabric::{Dyads, mean_dyad};
 pub use strain::{displacement_gradient, velocity_gradient};

@@ -142,8 +142,8 @@ pub(super) fn prediction(params: &Params, solved: &[Solved]) -> Table {
 }
 
 /// Part of its range over which a determined parameter lies at most, and a free one at least.
-const DETERMINED: f64 = 0.25;
-const FREE: f64 = 0.9;
+pub(super) const DETERMINED: f64 = 0.25;
+pub(super) const FREE: f64 = 0.9;
 
 /// What the targets say of one parameter.
 struct Determined<'a> {
@@ -195,7 +195,7 @@ pub(super) fn parameters(params: &Params, solved: &[Solved]) -> Table {
         .texts_column("known", "what the targets say of it", texts(|row| row.word.to_owned()))
 }
 
-/// What to look at before the numbers are used; `learned` is what is said of the runs that the search learned from.
+/// What to look at before the numbers are used; `learned` are the sentences on the runs that the search learned from.
 pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> Table {
     let mut notes = Notes::default();
     learned.iter().for_each(|said| notes.add("", format!("learned from: {said}")));

@@ -139,7 +139,7 @@ pub(super) struct Params {
 }
 
 impl Params {
-    fn domain(&self) -> Result<Domain, Vec<Error>> {
+    pub(super) fn domain(&self) -> Result<Domain, Vec<Error>> {
         let scale = |log| if log { Scale::Log } else { Scale::Linear };
         let factor = |f: &FactorParam| Factor { name: f.name.clone(), low: f.low, high: f.high, scale: scale(f.log) };
         let linear = |c: &Constraint| Linear { terms: c.terms.clone(), at_most: c.at_most };

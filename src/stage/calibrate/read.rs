@@ -73,7 +73,7 @@ pub(super) fn outlook(
 }
 
 /// Coverage of the intervals.
-const COVERAGE: f64 = 0.95;
+pub(super) const COVERAGE: f64 = 0.95;
 
 /// The surface of every target.
 fn chosen(

@@ -10,7 +10,7 @@ use crate::stage::notes::short;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The tables of a calibration; `learned` is what is said of the runs that it learned from.
+/// The tables of a calibration; `learned` are the sentences on the runs that it learned from.
 pub(super) fn artifact(params: &Params, solved: &[Solved], learned: &[String]) -> Artifact {
     let root = Group::new()
         .with("solution", Node::Table(solution(params, solved)))

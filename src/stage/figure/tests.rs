@@ -65,6 +65,7 @@ fn run() -> Artifact {
         volumetric_strain: axial_strain.iter().zip(&lateral_strain).map(|(a, l)| a - l).collect(),
         cracks: vec![0; 40],
         axial_strain,
+        speed: None,
         lateral_strain,
     };
     let cracks = Cracks {

@@ -19,7 +19,8 @@ impl Simulate {
         let absolute = |value: Option<f64>, default: Threshold| value.map_or(default, Threshold::Absolute);
         Loading {
             kind: self.test,
-            speed: self.platen_speed.0,
+            speed: self.platen_speed.speed,
+            pace: self.platen_speed.pace,
             platens: Platens { friction: self.platen_friction, modulus: self.platen_modulus.map(|m| m.get()) },
             particulars: Particulars {
                 jaw_angle: self.jaw_angle.map(|angle| angle.get()),
@@ -51,7 +52,7 @@ impl Simulate {
         let (lasting, modulus) = (self.lasting.unwrap_or(0.0), self.platen_modulus.map_or(1.0, |m| m.get()));
         let steps = self.max_steps as f64;
         let rules = [
-            (speed, "platen_speed", self.platen_speed.0.value(), speed_wanted),
+            (speed, "platen_speed", self.platen_speed.speed.value(), speed_wanted),
             (self.platen_friction >= 0.0, "platen_friction", self.platen_friction, "at least 0"),
             (positive(modulus), "platen_modulus", modulus, "a positive modulus"),
             (share(self.stop_fraction), "stop_fraction", self.stop_fraction, "between 0 and 1"),
@@ -75,7 +76,7 @@ impl Simulate {
 
     fn speed_rule(&self) -> (bool, &'static str) {
         let positive = |x: f64| x > 0.0 && x.is_finite();
-        match self.platen_speed.0 {
+        match self.platen_speed.speed {
             Speed::Each(v) => (v > 0.0 && v <= FASTEST, "above 0 and at most 1 m/s; 0.02 m/s is quasi-static"),
             Speed::StrainRate(rate) => (positive(rate), "a strain rate above 0"),
             Speed::Transits(n) => (positive(n), "above 0; from about 60 on a test is quasi-static"),

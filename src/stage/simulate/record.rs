@@ -6,6 +6,7 @@ use dem::loading::crack::CrackEvent;
 use dem::loading::curve::thinned;
 use dem::loading::kind::TestKind;
 use dem::loading::material::Material;
+use dem::loading::pace::Pace;
 use dem::loading::record::TestRecord;
 use dem::loading::settings::Loading;
 use dem::loading::snapshot::Snapshot;
@@ -27,7 +28,7 @@ pub(super) fn artifact<S: Space>(record: &TestRecord<S>, test: &Loading, materia
         responses: Responses::of(&responses(record, test.kind)),
         judgement: Some(judgement(record)),
         checks: Some(checks(record)),
-        curve: Some(curve(record)),
+        curve: Some(curve(record, test.pace)),
         energies: Some(energies(&record.run.energies)),
         cracks: Some(cracks(&record.run.cracks, material)),
         states: Some(states(snapshots)),
@@ -84,7 +85,7 @@ fn judgement<S: Space>(record: &TestRecord<S>) -> Quantities {
     ])
 }
 
-fn curve<S: Space>(record: &TestRecord<S>) -> Curve {
+fn curve<S: Space>(record: &TestRecord<S>, pace: Pace) -> Curve {
     let samples = thinned(&record.run.samples, CURVE_POINTS);
     Curve {
         axial_strain: each(&samples, |s| s.axial),
@@ -92,6 +93,7 @@ fn curve<S: Space>(record: &TestRecord<S>) -> Curve {
         lateral_strain: each(&samples, |s| s.lateral),
         volumetric_strain: each(&samples, |s| s.axial - s.lateral),
         cracks: each(&samples, |s| s.cracks),
+        speed: (pace == Pace::Adaptive).then(|| each(&samples, |s| s.speed)),
     }
 }
 

@@ -1,6 +1,7 @@
-//! `platen_speed`: how fast a test is driven, in one of three spellings.
+//! `platen_speed`: how fast a test is driven, and whether it adapts.
 
 use crate::unit::{Rate, Velocity};
+use dem::loading::pace::Pace;
 use dem::loading::speed::Speed;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Serialize;
@@ -8,12 +9,30 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess};
 use std::borrow::Cow;
 use std::fmt;
 
-/// How fast a test is driven: `"0.02 m/s"`, `{ strain_rate = "0.1 s^-1" }` or `{ transits = 100 }`.
+/// How fast a test is driven: `"0.02 m/s"`, `{ strain_rate = "0.1 s^-1" }`, `{ transits = 100 }`, each of these with
+/// `adaptive = true`, or `"adaptive"`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PlatenSpeed(pub Speed);
+pub struct PlatenSpeed {
+    /// The speed; the slow one where it adapts.
+    pub speed: Speed,
+    /// Whether it adapts.
+    #[serde(default)]
+    pub pace: Pace,
+}
 
+/// The slow speed of `"adaptive"`: that of a strong quasi-static test.
+const ADAPTIVE: Speed = Speed::Transits(80.0);
+/// The word for it.
+const WORD: &str = "adaptive";
 /// The keys of its table.
-const KEYS: [&str; 2] = ["strain_rate", "transits"];
+const KEYS: [&str; 4] = ["speed", "strain_rate", "transits", WORD];
+
+impl PlatenSpeed {
+    /// One speed from start to end.
+    pub const fn fixed(speed: Speed) -> Self {
+        Self { speed, pace: Pace::Fixed }
+    }
+}
 
 impl<'de> Deserialize<'de> for PlatenSpeed {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -28,32 +47,39 @@ impl<'de> de::Visitor<'de> for Visitor {
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(
-            "a velocity with its unit, such as \"0.02 m/s\", or { strain_rate = \"0.1 s^-1\" }, or { transits = 100 }",
+            "a velocity with its unit, such as \"0.02 m/s\", \"adaptive\", or a table with one of `speed`, `strain_rate` and `transits`, such as { transits = 100 } or { speed = \"0.02 m/s\", adaptive = true }",
         )
     }
 
     fn visit_str<E: de::Error>(self, text: &str) -> Result<PlatenSpeed, E> {
-        Velocity::parse(text).map(|speed| PlatenSpeed(Speed::Each(speed.get()))).map_err(E::custom)
+        if text == WORD {
+            return Ok(PlatenSpeed { speed: ADAPTIVE, pace: Pace::Adaptive });
+        }
+        Velocity::parse(text).map(|speed| PlatenSpeed::fixed(Speed::Each(speed.get()))).map_err(E::custom)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<PlatenSpeed, A::Error> {
-        let one = || de::Error::custom("give one of `strain_rate` and `transits`");
-        let Some(key) = map.next_key::<Cow<'_, str>>()? else { return Err(one()) };
-        let speed = match key.as_ref() {
-            "strain_rate" => Speed::StrainRate(map.next_value::<Rate>()?.get()),
-            "transits" => Speed::Transits(map.next_value()?),
-            other => return Err(de::Error::unknown_field(other, &KEYS)),
-        };
-        match map.next_key::<Cow<'_, str>>()? {
-            None => Ok(PlatenSpeed(speed)),
-            Some(other) if KEYS.contains(&other.as_ref()) => Err(one()),
-            Some(other) => Err(de::Error::unknown_field(&other, &KEYS)),
+        let (mut speeds, mut adaptive) = (Vec::new(), false);
+        while let Some(key) = map.next_key::<Cow<'_, str>>()? {
+            match key.as_ref() {
+                "speed" => speeds.push(Speed::Each(map.next_value::<Velocity>()?.get())),
+                "strain_rate" => speeds.push(Speed::StrainRate(map.next_value::<Rate>()?.get())),
+                "transits" => speeds.push(Speed::Transits(map.next_value()?)),
+                WORD => adaptive = map.next_value()?,
+                other => return Err(de::Error::unknown_field(other, &KEYS)),
+            }
+        }
+        let pace = if adaptive { Pace::Adaptive } else { Pace::Fixed };
+        match speeds[..] {
+            [speed] => Ok(PlatenSpeed { speed, pace }),
+            [] if adaptive => Ok(PlatenSpeed { speed: ADAPTIVE, pace }),
+            _ => Err(de::Error::custom("give one of `speed`, `strain_rate` and `transits`")),
         }
     }
 
     /// A hole: the value was faulty and that was reported already.
     fn visit_unit<E: de::Error>(self) -> Result<PlatenSpeed, E> {
-        Ok(PlatenSpeed(Speed::Each(0.02)))
+        Ok(PlatenSpeed::fixed(Speed::Each(0.02)))
     }
 }
 
@@ -64,12 +90,16 @@ impl JsonSchema for PlatenSpeed {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let (velocity, rate) = (generator.subschema_for::<Velocity>(), generator.subschema_for::<Rate>());
+        let adaptive = json_schema!({ "type": "boolean", "description": "Whether this is the slow speed of a test that goes faster while nothing breaks." });
+        let one = |key: &str, of: &Schema| json_schema!({ "type": "object", "properties": { key: of, WORD: adaptive }, "required": [key], "additionalProperties": false });
+        let transits = json_schema!({ "type": "number", "exclusiveMinimum": 0 });
         json_schema!({
-            "description": "Speed of each platen or grip, the strain rate of the specimen, or how many times a wave runs through its height before the bonds can be expected to fail.",
+            "description": "Speed of each platen or grip, the strain rate of the specimen, or how many times a wave runs through its height before the bonds can be expected to fail; with `adaptive` the slow speed, from which the test goes faster while nothing breaks.",
             "anyOf": [
                 velocity,
-                { "type": "object", "properties": { "strain_rate": rate }, "required": ["strain_rate"], "additionalProperties": false },
-                { "type": "object", "properties": { "transits": { "type": "number", "exclusiveMinimum": 0 } }, "required": ["transits"], "additionalProperties": false },
+                { "const": WORD },
+                one("speed", &velocity), one("strain_rate", &rate), one("transits", &transits),
+                { "type": "object", "properties": { WORD: { "const": true } }, "required": [WORD], "additionalProperties": false },
             ],
         })
     }
@@ -84,17 +114,31 @@ mod tests {
         platen_speed: PlatenSpeed,
     }
 
-    fn read(text: &str) -> Result<Speed, String> {
+    fn read(text: &str) -> Result<PlatenSpeed, String> {
         let file: Result<File, _> = toml::from_str(text);
-        file.map(|file| file.platen_speed.0).map_err(|e| e.message().to_owned())
+        file.map(|file| file.platen_speed).map_err(|e| e.message().to_owned())
     }
 
     #[test]
-    fn three_spellings_and_no_other() {
-        assert_eq!(read("platen_speed = \"20 mm/s\""), Ok(Speed::Each(0.02)));
-        assert_eq!(read("platen_speed = { strain_rate = \"0.2 s^-1\" }"), Ok(Speed::StrainRate(0.2)));
-        assert_eq!(read("platen_speed = { transits = 100 }"), Ok(Speed::Transits(100.0)));
-        for bad in ["0.02", "\"0.02\"", "{ transit = 100 }", "{}", "{ transits = 100, strain_rate = \"1 s^-1\" }"] {
+    fn spellings_of_a_speed_and_no_other() {
+        let fixed = |speed| Ok(PlatenSpeed::fixed(speed));
+        let adaptive = |speed| Ok(PlatenSpeed { speed, pace: Pace::Adaptive });
+        assert_eq!(read("platen_speed = \"20 mm/s\""), fixed(Speed::Each(0.02)));
+        assert_eq!(read("platen_speed = { speed = \"20 mm/s\" }"), fixed(Speed::Each(0.02)));
+        assert_eq!(read("platen_speed = { strain_rate = \"0.2 s^-1\" }"), fixed(Speed::StrainRate(0.2)));
+        assert_eq!(read("platen_speed = { transits = 100, adaptive = false }"), fixed(Speed::Transits(100.0)));
+        assert_eq!(read("platen_speed = \"adaptive\""), adaptive(Speed::Transits(80.0)));
+        assert_eq!(read("platen_speed = { adaptive = true }"), adaptive(Speed::Transits(80.0)));
+        assert_eq!(read("platen_speed = { adaptive = true, speed = \"20 mm/s\" }"), adaptive(Speed::Each(0.02)));
+        let bad = [
+            "0.02",
+            "\"0.02\"",
+            "\"adapt\"",
+            "{ transit = 100 }",
+            "{}",
+            "{ transits = 100, strain_rate = \"1 s^-1\" }",
+        ];
+        for bad in bad {
             assert!(read(&format!("platen_speed = {bad}")).is_err(), "{bad}");
         }
     }

@@ -130,7 +130,7 @@ fn a_flipped_byte_a_torn_push_and_a_forged_record_are_refused() {
     assert!(pull("d").refused[0].contains("is not what its name says"));
     // A record that gives another task the object, in a segment with a right name.
     std::fs::remove_file(&segment).unwrap();
-    let mut forged = segment::read(&blake3::hash(&whole).to_hex().to_string(), &whole).unwrap();
+    let mut forged = segment::read(blake3::hash(&whole).to_hex().as_ref(), &whole).unwrap();
     forged[0].key = Key::of("another task");
     let bytes = segment::write(forged);
     std::fs::write(segment.with_file_name(format!("{}.segment", blake3::hash(&bytes).to_hex())), &bytes).unwrap();

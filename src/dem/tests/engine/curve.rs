@@ -38,7 +38,7 @@ fn record(stress: impl Fn(f64) -> f64, end: f64) -> Macro {
         let x = k as f64 / COUNT;
         let share = ((x - ONSET) / (1.0 - ONSET)).max(0.0);
         let cracks = (COUNT * share * share) as usize;
-        Sample { axial: PEAK * x, lateral: PEAK * (a * x + b * x * x * x), stress: stress(x), cracks }
+        Sample { axial: PEAK * x, lateral: PEAK * (a * x + b * x * x * x), stress: stress(x), cracks, speed: 0.02 }
     };
     evaluate(&(0..=(end * COUNT) as usize).map(sample).collect::<Vec<Sample>>())
 }

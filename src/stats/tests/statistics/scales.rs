@@ -1,5 +1,6 @@
 //! Factors that a model takes by their logarithms.
 
+use math::elementary::ln;
 use stats::canonical::canonical;
 use stats::regression::{Regression, Settings, regress};
 use stats::sample::{Factor, Response, Sample, Scale};
@@ -27,8 +28,8 @@ fn estimate(list: &[stats::regression::Coefficient], term: &str) -> f64 {
 /// y = 3 + 2 ln a - 0.5 b + 0.25 ln a b: closed form. In coded units ln a = ln 100 u and b = 2 + 2 v.
 #[test]
 fn a_truth_linear_in_the_logarithm_is_met_exactly() {
-    let found = fitted(Scale::Log, |a, b| 3.0 + 2.0 * a.ln() - 0.5 * b + 0.25 * a.ln() * b);
-    let decade = 100.0_f64.ln();
+    let found = fitted(Scale::Log, |a, b| 3.0 + 2.0 * ln(a) - 0.5 * b + 0.25 * ln(a) * b);
+    let decade = ln(100.0);
     let near = |x: f64, y: f64| assert!((x - y).abs() < 1e-11 * y.abs().max(1.0), "{x} is not {y}");
     for (term, natural, coded) in [
         ("const", 3.0, 2.0),
@@ -41,10 +42,10 @@ fn a_truth_linear_in_the_logarithm_is_met_exactly() {
         near(estimate(&found.coded, term), coded);
     }
     // Between the rows, where a model in `a` itself is far off.
-    let truth = 3.0 + 2.0 * 10.0_f64.ln() - 0.5 + 0.25 * 10.0_f64.ln();
+    let truth = 3.0 + 2.0 * ln(10.0) - 0.5 + 0.25 * ln(10.0);
     near(found.model.value(&[10.0, 1.0]), truth);
     assert!(
-        (fitted(Scale::Linear, |a, b| 3.0 + 2.0 * a.ln() - 0.5 * b + 0.25 * a.ln() * b).model.value(&[10.0, 1.0])
+        (fitted(Scale::Linear, |a, b| 3.0 + 2.0 * ln(a) - 0.5 * b + 0.25 * ln(a) * b).model.value(&[10.0, 1.0])
             - truth)
             .abs()
             > 1.0
@@ -59,7 +60,7 @@ fn a_truth_linear_in_the_logarithm_is_met_exactly() {
 /// y = (ln a - ln 10)² + (b - 1)²: its minimum is at a = 10, b = 1.
 #[test]
 fn the_stationary_point_is_told_in_natural_units() {
-    let found = fitted(Scale::Log, |a, b| (a / 10.0).ln().powi(2) + (b - 1.0).powi(2));
+    let found = fitted(Scale::Log, |a, b| ln(a / 10.0).powi(2) + (b - 1.0).powi(2));
     let place = canonical(&found.model).unwrap();
     assert!((place.natural[0] - 10.0).abs() < 1e-9 && (place.natural[1] - 1.0).abs() < 1e-9, "{place:?}");
     assert!((place.coded[0] - 0.5).abs() < 1e-11 && place.inside);

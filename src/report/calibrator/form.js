@@ -1,0 +1,203 @@
+// The form: fields and sliders, what they say, and what follows from a change.
+const Calibrator = (() => {
+  const { make, all, copier } = Page;
+  const shown = Charts.shown;
+  const withUnit = (text, unit) => unit ? text + " " + unit : text;
+
+  const start = (root) => {
+    const model = JSON.parse(root.querySelector(".instrument").textContent);
+    const find = (what) => root.querySelector(what);
+    const knobs = all(".knob", root), aimRows = all(".aim", root), cards = all(".card", root);
+    const state = { point: [], held: [], found: null, other: -1, reaches: [] };
+    const { parameters, responses } = model;
+    const heads = { parameter: (i) => knobs[i].querySelector(".head"), response: (k) => aimRows[k].querySelector(".head") };
+    const label = (head, unit) => {
+      const all = make("span", {}, ...[...head.childNodes].map((node) => node.cloneNode(true)));
+      if (unit) all.append(" (" + unit + ")");
+      return all;
+    };
+    const labels = { parameter: (i) => label(heads.parameter(i), parameters[i].unit), response: (k) => label(heads.response(k), responses[k].unit) };
+    const symbol = (head) => head.querySelector(".symbol").cloneNode(true);
+
+    // Targets.
+    const readAim = (row, response) => {
+      const mode = row.querySelector(".mode").value;
+      const number = (input) => input.value.trim() === "" ? NaN : Number(input.value);
+      const low = number(row.querySelector(".low")), high = number(row.querySelector(".high"));
+      const tolerance = state.tolerances?.[response] ?? null;
+      if (mode === "between") return Number.isFinite(low) || Number.isFinite(high) ? { response, low: Number.isFinite(low) ? low : -Infinity, high: Number.isFinite(high) ? high : Infinity, tolerance } : null;
+      if (!Number.isFinite(low)) return null;
+      return { response, low: mode === "at-most" ? -Infinity : low, high: mode === "at-least" ? Infinity : low, tolerance };
+    };
+    const aims = () => aimRows.map(readAim).filter(Boolean);
+    const faultOf = (list) => {
+      if (!list.length) return "Give at least one target.";
+      const empty = list.find(({ low, high }) => low > high);
+      if (empty) return responses[empty.response].name + ": the band is empty, its lower end is above its upper one.";
+      const zero = list.find(({ low, high }) => model.denominator !== "largest" && (low === 0 || high === 0));
+      return zero ? responses[zero.response].name + ": a target of 0 has no relative deviation." : "";
+    };
+    const writeSet = (set) => {
+      state.tolerances = {};
+      aimRows.forEach((row, response) => {
+        const aim = set.targets.find((own) => own.response === response);
+        const mode = !aim || aim.low === aim.high ? "exactly" : aim.high === null ? "at-least" : aim.low === null ? "at-most" : "between";
+        row.querySelector(".mode").value = mode;
+        row.querySelector(".low").value = aim ? Texts.plain(mode === "at-most" ? aim.high : aim.low) : "";
+        row.querySelector(".high").value = mode === "between" ? Texts.plain(aim.high) : "";
+        if (aim) state.tolerances[response] = aim.tolerance;
+        fitMode(row);
+      });
+      parameters.forEach((parameter, i) => { if (set.held[parameter.name] !== undefined) { state.point[i] = set.held[parameter.name]; state.held[i] = true; } });
+    };
+    const fitMode = (row) => { row.querySelector(".high").hidden = row.querySelector(".mode").value !== "between"; };
+
+    // Parameters.
+    const showKnobs = () => knobs.forEach((knob, i) => {
+      const { unit, name } = parameters[i], slide = knob.querySelector(".slide"), field = knob.querySelector(".value");
+      slide.value = Box.unit(parameters[i], state.point[i]);
+      slide.setAttribute("aria-valuetext", withUnit(shown(state.point[i]), unit) + ", " + name);
+      if (document.activeElement !== field) field.value = Number(state.point[i].toPrecision(6));
+      knob.querySelector(".hold input").checked = state.held[i];
+    });
+    const enforce = (i, x) => {
+      const { low, high, name, unit } = parameters[i];
+      const fit = Math.min(Math.max(x, low), high);
+      find(".said").textContent = fit === x ? "" : `${name} ends at ${withUnit(shown(fit), unit)}: beyond it nothing was run.`;
+      return fit;
+    };
+
+    // What is predicted.
+    const showCards = () => cards.forEach((card, k) => {
+      const { value, interval, run, outside, far } = Surface.predict(responses[k], state.point);
+      const range = ([low, high]) => shown(low) + " … " + shown(high);
+      card.querySelector(".value").textContent = shown(value);
+      card.querySelector(".interval").textContent = Number.isFinite(interval[0]) ? "mean within " + range(interval) + " (95 %)" : "interval unknown: the fit has no residual";
+      card.querySelector(".run").textContent = Number.isFinite(run[0]) ? "a single run within " + range(run) : "";
+      const beyond = outside.length ? "extrapolated: " + outside.map((i) => parameters[i].name).join(", ") + " outside what was run" : far ? "extrapolated: farther out than any run" : "";
+      card.querySelector(".mark").textContent = beyond;
+      card.classList.toggle("beyond", beyond !== "");
+    });
+    const words = () => responses.map((surface) => surface.name + " = " + withUnit(shown(Surface.value(surface, state.point)), surface.unit)).join(", ");
+    const showTexts = () => {
+      find(".toml").textContent = Texts.toml(model, state.point, words());
+      find(".pfc").textContent = Texts.pfc(model, state.point, words());
+    };
+    const readout = make("output", { class: "readout", "data-hint": "Values: point at a curve." });
+    const say = (response, parameter, u) => {
+      if (response === null) { readout.textContent = ""; return; }
+      const x = state.point.slice();
+      x[parameter] = Box.natural(parameters[parameter], u);
+      const { value, interval } = Surface.predict(responses[response], x), { name, unit } = parameters[parameter];
+      const about = Number.isFinite(interval[0]) ? ` (${shown(interval[0])} … ${shown(interval[1])})` : "";
+      readout.textContent = `${responses[response].name} = ${withUnit(shown(value), responses[response].unit)}${about} at ${name} = ${withUnit(shown(x[parameter]), unit)}`;
+    };
+    const charts = Charts.charts(model, find(".charts"), labels, (i, u) => move(i, Box.natural(parameters[i], u)), say);
+    find(".charts").prepend(readout);
+    const showPoint = () => { showKnobs(); showCards(); charts.update(state.point, aims()); showTexts(); };
+    const forget = () => { state.found = null; find(".extents").replaceChildren(); find(".verdict").replaceChildren(); find(".other").disabled = true; };
+    const move = (i, x) => { state.point[i] = enforce(i, x); showPoint(); };
+
+    // What the targets come to.
+    const showReaches = () => aimRows.forEach((row, k) => { row.querySelector(".reach").textContent = "can be " + shown(state.reaches[k][0]) + " … " + shown(state.reaches[k][1]); });
+    const reachAnew = () => { state.reaches = Solve.reaches(model, state.point, state.held); showReaches(); };
+    const verdict = (found) => {
+      const lines = [];
+      const out = found.aims.filter(({ response, low, high }) => { const [least, most] = state.reaches[response]; return least > high || most < low; });
+      for (const { response, high } of out) {
+        const [least, most] = state.reaches[response], { name, unit } = responses[response];
+        lines.push(`The target of ${name} is out of reach: ${least > high ? "at least " + withUnit(shown(least), unit) : "at most " + withUnit(shown(most), unit)} can be had by itself.`);
+      }
+      const missed = found.aims.filter((aim, k) => !Solve.within(model, aim, found.values[k]));
+      if (found.isMet) lines.push("All targets are met.");
+      else if (!missed.length) lines.push("All targets are met within their tolerance, not exactly.");
+      else {
+        if (!out.length) lines.push("Each target can be met by itself, all together cannot.");
+        const nearest = found.aims.map(({ response }, k) => `${responses[response].name} = ${withUnit(shown(found.values[k]), responses[response].unit)}${Math.abs(found.deviations[k]) > 5e-4 ? " (" + shown(100 * found.deviations[k], 3) + " %)" : ""}`);
+        lines.push("The nearest that can: " + nearest.join(", ") + ".");
+      }
+      if (found.free > 0) lines.push(`Not unique: ${found.free} direction${found.free > 1 ? "s" : ""} stay${found.free > 1 ? "" : "s"} free; this is the solution nearest the ${parameters.some((p) => p.preferred !== null) ? "preferred point" : "middle of the ranges"}.`);
+      lines.push("Misfit " + (found.misfit < 1e-12 ? "0" : found.misfit.toExponential(1)) + ".");
+      return lines;
+    };
+    const extent = (i, known) => {
+      const parameter = parameters[i], low = Box.unit(parameter, known.low), high = Box.unit(parameter, known.high), at = Box.unit(parameter, found().point[i]);
+      const by = known.by.map((k) => responses[k].name).join(" and ");
+      const text = known.word === "held" ? "held" : known.word + (by ? " by " + by : known.word === "free" || known.word === "unknown" ? "" : " by all targets together");
+      const svg = "http://www.w3.org/2000/svg", bar = document.createElementNS(svg, "svg");
+      bar.setAttribute("viewBox", "0 0 200 14");
+      bar.setAttribute("preserveAspectRatio", "none");
+      bar.setAttribute("aria-hidden", "true");
+      const rect = (x, width, name, y, height) => { const r = document.createElementNS(svg, "rect"); for (const [k, v] of Object.entries({ x, y, width, height, class: name })) r.setAttribute(k, v); bar.append(r); };
+      rect(0, 200, "all", 5, 4);
+      rect(200 * low, Math.max(200 * (high - low), 1), known.word === "free" ? "loose" : "tied", 2, 10);
+      rect(200 * at - 1, 2, "here", 0, 14);
+      const ends = known.word === "held" ? shown(found().point[i]) : shown(known.low) + " … " + shown(known.high);
+      return make("div", { class: "extent", role: "listitem" }, make("span", { class: "head" }, symbol(heads.parameter(i))), bar, make("span", { class: "range" }, withUnit(ends, parameter.unit)), make("span", { class: "word" }, text));
+    };
+    const found = () => state.found;
+    const showFound = () => {
+      find(".verdict").replaceChildren(...verdict(state.found).map((line) => make("p", {}, line)));
+      find(".verdict").classList.toggle("unmet", !state.found.isMet);
+      find(".other").disabled = !state.found.others.length;
+    };
+    // The extents take longer than the solution: they come when that is on the screen.
+    const determineLater = () => {
+      const mine = state.found, list = find(".extents");
+      const next = (i) => {
+        if (state.found !== mine || i === parameters.length) return;
+        list.append(extent(i, Solve.determine(model, mine, i)));
+        setTimeout(next, 0, i + 1);
+      };
+      setTimeout(next, 30, 0);
+    };
+    const seek = () => {
+      const list = aims(), fault = faultOf(list);
+      forget();
+      if (fault) { find(".verdict").replaceChildren(make("p", {}, fault)); find(".verdict").classList.add("unmet"); charts.update(state.point, []); return; }
+      const broken = Box.domain(model, state.point, state.held).broken;
+      if (broken.length) { find(".verdict").replaceChildren(make("p", {}, "What is held breaks " + broken.map(({ text }) => text).join(", ") + ".")); return; }
+      state.found = Solve.solve(model, list, state.point, state.held);
+      state.other = -1;
+      state.point = state.found.point.slice();
+      showPoint();
+      showFound();
+      determineLater();
+    };
+
+    // What a person does.
+    knobs.forEach((knob, i) => {
+      knob.querySelector(".slide").addEventListener("input", (event) => move(i, Box.natural(parameters[i], Number(event.target.value))));
+      const field = knob.querySelector(".value");
+      const typed = () => { const x = Number(field.value); if (field.value.trim() !== "" && Number.isFinite(x)) move(i, x); };
+      field.addEventListener("input", () => { const x = Number(field.value); if (field.value.trim() !== "" && x >= parameters[i].low && x <= parameters[i].high) typed(); });
+      field.addEventListener("change", () => { typed(); field.value = Number(state.point[i].toPrecision(6)); });
+      knob.querySelector(".hold input").addEventListener("change", (event) => { state.held[i] = event.target.checked; reachAnew(); });
+    });
+    const set = find(".set");
+    aimRows.forEach((row) => {
+      for (const field of all("input, .mode", row)) field.addEventListener("change", () => { fitMode(row); if (set) set.value = ""; seek(); });
+      row.addEventListener("keydown", (event) => { if (event.key === "Enter") seek(); });
+    });
+    if (set) set.addEventListener("change", () => { if (set.value !== "") { writeSet(model.sets[Number(set.value)]); reachAnew(); seek(); } });
+    find(".solve").addEventListener("click", seek);
+    find(".other").addEventListener("click", () => {
+      state.other = (state.other + 1) % (state.found.others.length + 1);
+      state.point = (state.found.others[state.other] ?? state.found.point).slice();
+      showPoint();
+    });
+    for (const name of ["toml", "pfc"]) {
+      const output = make("output");
+      find("." + name).after(make("div", { class: "tools" }, copier("Copy", () => find("." + name).textContent, output), output));
+    }
+
+    state.point = parameters.map((parameter) => parameter.preferred ?? Box.natural(parameter, 0.5));
+    state.held = parameters.map((parameter) => parameter.held);
+    if (model.sets.length) writeSet(model.sets[0]);
+    reachAnew();
+    seek();
+    return { model, state };
+  };
+
+  return { all: all(".calibrator").map(start) };
+})();

@@ -1,0 +1,67 @@
+//! Events of a run, for the person who watches it.
+
+use super::{StageReport, TaskCount};
+use crate::stage::Progress;
+
+/// An event of a run.
+pub enum Event<'a> {
+    /// A task of a stage was started.
+    Started {
+        /// The stage.
+        stage: &'a str,
+        /// Its row.
+        row: Option<usize>,
+    },
+    /// A running task says where it stands.
+    Said {
+        /// The stage.
+        stage: &'a str,
+        /// Its row.
+        row: Option<usize>,
+        /// Where it stands.
+        progress: &'a Progress,
+    },
+    /// A stage that decides by outcomes asked for more.
+    Asked {
+        /// The stage.
+        stage: &'a str,
+        /// Its counts.
+        count: TaskCount,
+        /// Where it stands.
+        note: &'a str,
+    },
+    /// A task ended, well or not.
+    Ended {
+        /// The stage.
+        stage: &'a str,
+        /// Its row.
+        row: Option<usize>,
+        /// The stage's counts after it.
+        count: TaskCount,
+        /// Why it failed.
+        failure: Option<&'a str>,
+    },
+    /// Something about the workers on other machines.
+    Word {
+        /// In words.
+        text: &'a str,
+    },
+    /// A stage ended.
+    Stage {
+        /// What became of it.
+        report: &'a StageReport,
+    },
+}
+
+/// Takes events; called from any thread.
+pub trait Watch: Sync {
+    /// One event.
+    fn event(&self, event: Event<'_>);
+}
+
+/// Says nothing.
+pub struct Silent;
+
+impl Watch for Silent {
+    fn event(&self, _: Event<'_>) {}
+}
