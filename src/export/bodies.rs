@@ -1,6 +1,6 @@
 //! A specimen and a run on it as other programs want them: discs, groups, contacts.
 
-use dem::genesis::heap::Heap;
+use dem::genesis::heap::{Heap, Still};
 use dem::genesis::specimen::Specimen;
 
 /// A contact of the packing as it stands, free of force.
@@ -16,7 +16,12 @@ pub(super) struct Contact {
 /// The contacts of the discs that are nearer than `margin` (m) and not of one clump, in the order of their ends.
 pub(super) fn contacts(specimen: &Specimen, margin: f64) -> Vec<Contact> {
     let (centres, radii) = (&specimen.centres, &specimen.radii);
-    let heap = Heap::<dem::D2> { region: specimen.region, centres: centres.clone(), radii: radii.clone(), fixed: 0 };
+    let heap = Heap::<dem::D2> {
+        region: specimen.region,
+        centres: centres.clone(),
+        radii: radii.clone(),
+        still: Still::default(),
+    };
     let clump = specimen.clump_of_balls();
     let contact = |(i, j): (usize, usize)| {
         let [dx, dy] = [0, 1].map(|k| centres[j][k] - centres[i][k]);

@@ -1,11 +1,6 @@
 //! A mix: stones ([`super::stones`]) and the mortar of balls that fills the room between them.
 //!
-//! The stones stand still while the mortar is packed: its balls are counted for the room Ω' = Ω − V_stones at the ball porosity n
-//! (or are as many as stated), scattered at half size beside the stones, grown to full size at once, and relaxed to rest
-//! without friction; balls that are caught between two stones, or a stone and a wall, with an overlap above 0.35 of a radius are
-//! taken out (at most 2 % of them). The radii give way by one factor so that Σ V(R) = (1 − n) Ω' ([`super::cloud`]).
-//!
-//! A **coarse twin** has the same stones and mortar of radii `coarsen` times larger, `coarsen`³ times fewer.
+//! The stones stand still while the mortar is packed to its porosity ([`super::mortar`]).
 //!
 //! With a bulk density ρ of the whole specimen the density of the mortar's balls follows from what the stones weigh:
 //!
@@ -16,15 +11,13 @@
 //! The **wall effect** is the stones' share of the layer along the walls, a tenth of the narrowest extent thick, over
 //! their share of the rest; 1 where stones lie as densely at the walls as inside.
 
-use super::cloud::{scale_to_porosity, scatter_where};
 use super::clump::Clump;
-use super::fabric::Fabric;
 use super::groups::assign;
 use super::heap::Heap;
-use super::packing::{AT_REST, Packed, Packing, PackingError, REST, renumbered};
+use super::mortar::Mortar;
+use super::packing::Packing;
 use super::quality::{Circles, Quality};
 use super::region::Region;
-use super::sizes::Sizes;
 use super::specimen::{Recipe, Specimen, SpecimenError};
 use super::stones::{Stone, StoneFault, Stones, Template};
 use crate::particle::Group;
@@ -97,22 +90,22 @@ impl Mix {
     ) -> Result<(Specimen<D3>, Quality, MixReport), Vec<SpecimenError>> {
         let mut faults = recipe.faults();
         faults.extend(self.faults(recipe).into_iter().map(SpecimenError::from));
-        let Packing::Porosity { sizes, porosity, .. } = &recipe.packing else { return Err(faults) };
+        let Packing::Porosity { sizes, porosity, floaters } = &recipe.packing else { return Err(faults) };
         if !faults.is_empty() {
             return Err(faults);
         }
         let region = recipe.region;
         let stream = &mut Stream::new(seed, "stones", 0);
         let stones = self.stones.place(shapes, &region, stream).map_err(|fault| vec![fault.into()])?;
-        let room = region.volume() - stones.iter().map(|stone| stone.volume).sum::<f64>();
         let stream = &mut Stream::new(seed, "packing", 0);
-        let packed = self.mortar(sizes, *porosity, room, &stones, &region, stream, watch);
-        let packed = packed.map_err(|fault| vec![fault.into()])?;
+        let Self { balls, coarsen, .. } = *self;
+        let mortar = Mortar { sizes, porosity: *porosity, floaters: *floaters, balls, coarsen };
+        let packed = mortar.pack(&stones, &region, stream, watch).map_err(|fault| vec![fault.into()])?;
         let clumps = self.clumps(&stones);
-        let pebbles = packed.heap.fixed;
+        let pebbles = packed.heap.still.pebbles;
         let mut groups = vec![Group(recipe.groups.len() as u8); pebbles];
         groups.extend(assign::<D3>(&recipe.groups, &packed.heap.radii[pebbles..], &mut Stream::new(seed, "groups", 0)));
-        let report = self.report(recipe, &stones, &packed.heap, room);
+        let report = self.report(recipe, &stones, &packed.heap);
         let quality = Quality::of(&packed, &[], &clumps, &Circles::default());
         let names = recipe.groups.iter().map(|group| &group.name).chain([&self.stones.group]);
         let specimen = Specimen {
@@ -128,59 +121,6 @@ impl Mix {
         Ok((specimen, Quality { porosity: report.porosity, ..quality }, report))
     }
 
-    /// The mortar at rest around the stones, whose pebbles come first.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "each is one quantity of the packing, and they belong to no common thing"
-    )]
-    fn mortar(
-        &self,
-        sizes: &Sizes,
-        porosity: f64,
-        room: f64,
-        stones: &[Stone],
-        region: &Region,
-        stream: &mut Stream,
-        watch: &dyn Fn() -> Watch,
-    ) -> Result<Packed<D3>, PackingError> {
-        let cube = self.coarsen * self.coarsen * self.coarsen;
-        let stated = self.balls.map_or_else(|| sizes.count::<D3>(room, porosity), |balls| balls as f64);
-        let mut radii = sizes.draw::<D3>((stated / cube).round().max(1.0) as usize, stream);
-        radii.iter_mut().for_each(|radius| *radius *= self.coarsen);
-        let radius_factor = scale_to_porosity::<D3>(&mut radii, room, porosity);
-        // At full size beside the stones: a ball that grows in a crevice between two of them is caught there.
-        let free = |place, half: f64| stones.iter().all(|stone| stone.clear_of_ball(place, 2.0 * half));
-        let places = scatter_where::<D3>(&radii, region, &free, stream);
-        let mut centres: Vec<[f64; 3]> = stones.iter().flat_map(|stone| stone.centres.iter().copied()).collect();
-        let mut all: Vec<f64> = stones.iter().flat_map(|stone| stone.radii.iter().copied()).collect();
-        let fixed = all.len();
-        centres.extend(places);
-        all.extend(radii);
-        let mut heap = renumbered(&Heap::<D3> { region: *region, centres, radii: all, fixed });
-        let (mut iterations, mut deleted) = (0, 0);
-        let unbalanced = loop {
-            let rest = heap.relax(AT_REST, watch);
-            iterations += rest.iterations;
-            if watch() == Watch::Stop {
-                return Err(PackingError::Stopped);
-            }
-            if rest.unbalanced >= REST {
-                return Err(PackingError::Restless { iterations, unbalanced: rest.unbalanced });
-            }
-            let squeezed = squeezed(&heap);
-            if squeezed.is_empty() {
-                break rest.unbalanced;
-            }
-            deleted += squeezed.len();
-            if deleted as f64 > MOST_SQUEEZED * (heap.radii.len() - fixed) as f64 {
-                return Err(PackingError::Dense { porosity, overlap: Fabric::of(&heap).largest_overlap });
-            }
-            let stay: Vec<usize> = (0..heap.radii.len()).filter(|i| squeezed.binary_search(i).is_err()).collect();
-            heap = heap.chosen(&stay);
-        };
-        Ok(Packed { deleted, radius_factor, iterations, unbalanced, ..Packed::of(heap) })
-    }
-
     /// The stones as clumps; their pebbles are the first balls, stone by stone.
     fn clumps(&self, stones: &[Stone]) -> Vec<Clump<D3>> {
         let mut first = 0;
@@ -194,9 +134,9 @@ impl Mix {
         stones.iter().map(clump).collect()
     }
 
-    fn report(&self, recipe: &Recipe, stones: &[Stone], heap: &Heap<D3>, room: f64) -> MixReport {
+    fn report(&self, recipe: &Recipe, stones: &[Stone], heap: &Heap<D3>) -> MixReport {
         let volume = recipe.region.volume();
-        let (filled, mortar) = (volume - room, heap.ball_volume());
+        let (room, filled, mortar) = (heap.room(), heap.still.volume, heap.ball_volume());
         let mass = self.stones.density * filled;
         let ball_density = self.bulk_density.map_or(recipe.density, |bulk| (bulk * volume - mass) / mortar);
         let class = |(index, class): (usize, &super::stones::StoneClass)| {
@@ -205,8 +145,8 @@ impl Mix {
         };
         MixReport {
             classes: self.stones.classes.iter().enumerate().map(class).collect(),
-            pebbles: heap.fixed,
-            balls: heap.radii.len() - heap.fixed,
+            pebbles: heap.still.pebbles,
+            balls: heap.free().len(),
             stones: filled / volume,
             mortar_porosity: 1.0 - mortar / room,
             porosity: 1.0 - (filled + mortar) / volume,
@@ -215,28 +155,6 @@ impl Mix {
             wall_effect: wall_effect(&recipe.region, stones),
         }
     }
-}
-
-/// Overlap over the smaller radius beyond which a mortar ball is caught in a place too small for it, between two stones or a
-/// stone and a wall, and largest share of the balls that may be taken out for it.
-const SQUEEZED: f64 = 0.35;
-const MOST_SQUEEZED: f64 = 0.02;
-
-/// Mortar balls that are caught in places too small for them or outside the vessel, in order.
-fn squeezed(heap: &Heap<D3>) -> Vec<usize> {
-    let mut caught: Vec<usize> =
-        (heap.fixed..heap.radii.len()).filter(|&i| heap.region.depth::<D3>(heap.centres[i]) < 0.0).collect();
-    heap.overlaps(|overlap| {
-        let [first, second] = heap.ends(&overlap);
-        let beside = |i: usize| i < heap.fixed;
-        let at_stone = beside(overlap.first) || overlap.second.is_none_or(beside);
-        if at_stone && overlap.depth > SQUEEZED * first.min(second) {
-            caught.push(if beside(overlap.first) { overlap.second.unwrap_or(overlap.first) } else { overlap.first });
-        }
-    });
-    caught.sort_unstable();
-    caught.dedup();
-    caught
 }
 
 /// Points along each edge of the grid that finds the wall effect.
