@@ -226,6 +226,33 @@ mod tests {
         assert!(report.wall_effect > 0.05 && report.wall_effect < 0.6, "{}", report.wall_effect);
     }
 
+    /// A cylinder with as many balls as stated and mortar as coarse as the stones: all inside, none in a stone, no overlap deep.
+    #[test]
+    fn coarse_mortar_in_a_cylinder_stays_outside_the_stones() {
+        let region = Region::Cylinder { diameter: 30.0, height: 40.0 };
+        let recipe = Recipe { region, ..recipe() };
+        let classes = vec![
+            StoneClass { from: 2.0, to: 4.0, number: HowMany::Count(60) },
+            StoneClass { from: 6.0, to: 10.0, number: HowMany::Count(14) },
+        ];
+        let coarse = Mix { stones: tests::stones(classes), balls: Some(8000), ..mix(2.0) };
+        let (made, quality, report) = coarse.make(&recipe, &[tests::dumbbell()], 5, &|| Watch::Continue).unwrap();
+        assert_eq!((made.clumps.len(), report.pebbles, report.balls), (74, 148, 1000));
+        let [stones, balls] = [&made.centres[..148], &made.centres[148..]];
+        for (ball, r) in balls.iter().zip(&made.radii[148..]) {
+            assert!(region.depth::<D3>(*ball) > 0.5 * r);
+            for (pebble, own) in stones.iter().zip(&made.radii) {
+                let apart: f64 = (0..3).map(|k| (ball[k] - pebble[k]).powi(2)).sum::<f64>().sqrt();
+                assert!(r + own - apart < 0.35 * r + 1e-9, "{apart} {r} {own}");
+            }
+        }
+        assert!(quality.fabric.largest_overlap <= 0.35 && quality.fabric.coordination > 4.0, "{:?}", quality.fabric);
+        // The balance of volumes is that of the balls themselves.
+        let balls = super::super::heap::ball_volume::<D3>(&made.radii[148..]);
+        assert!((report.porosity - (1.0 - (report.stones + balls / region.volume()))).abs() < 1e-12);
+        assert!((balls / (region.volume() * (1.0 - report.stones)) - (1.0 - report.mortar_porosity)).abs() < 1e-12);
+    }
+
     #[test]
     fn a_mix_needs_a_porosity_and_sound_numbers() {
         let odd = Mix { coarsen: 0.5, balls: Some(0), bulk_density: Some(-1.0), ..mix(1.0) };

@@ -4,9 +4,9 @@
 //!    half size, beside the stones and one another ([`super::cloud`]): none starts inside a stone.
 //! 2. They grow to full size in steps, at rest after each ([`super::relax`]), so that none is pushed through a stone. A stone
 //!    is rigid however small its pebbles are. The radii give way by one factor so that Σ V(R) = (1 − n) Ω'.
-//! 3. A ball that is caught between two stones, or a stone and a wall, with an overlap above [`CAUGHT`] of its radius is put
-//!    elsewhere, where it grows in steps again; after some rounds the last ones are taken out, at most [`MOST_TAKEN`] of all.
-//! 4. Floaters are treated as in any packing to a porosity.
+//! 3. A ball that is caught between stones, balls and walls, with an overlap above [`CAUGHT`] of its radius, is put elsewhere, where
+//!    it grows in steps again; after some rounds the last ones are taken out, at most [`MOST_TAKEN`] of all.
+//! 4. Floaters are treated as in any packing to a porosity; then 3 again.
 //!
 //! A **coarse twin** has mortar of radii `coarsen` times larger, `coarsen`³ times fewer.
 
@@ -70,9 +70,7 @@ impl Mortar<'_> {
         let mut packed = Packed { radius_factor, iterations, ..Packed::of(heap) };
         self.settle(&mut packed, stones, stream, watch)?;
         hold_floaters(&mut packed, self.porosity, self.floaters, self.sizes.gives_way, watch);
-        if watch() == Watch::Stop {
-            return Err(PackingError::Stopped);
-        }
+        self.settle(&mut packed, stones, stream, watch)?;
         judge(&packed, self.porosity)?;
         let overlap = Fabric::of(&packed.heap).largest_overlap;
         if overlap > 0.5 {
@@ -157,11 +155,9 @@ fn caught(heap: &Heap<D3>) -> Vec<usize> {
     let mut caught: Vec<usize> = (still..heap.radii.len()).filter(outside).collect();
     heap.overlaps(|overlap| {
         if heap.relative(&overlap) > CAUGHT {
-            match overlap.second {
-                Some(ball) if overlap.first < still => caught.push(ball),
-                None => caught.push(overlap.first),
-                Some(_) => {}
-            }
+            // Of two balls the smaller finds a place more easily.
+            let smaller = |&ball: &usize| overlap.first < still || heap.radii[ball] < heap.radii[overlap.first];
+            caught.push(overlap.second.filter(smaller).unwrap_or(overlap.first));
         }
     });
     caught.sort_unstable();
