@@ -7,8 +7,8 @@
 //! that level's very bits, so that a row of one design equals the same row of another.
 
 use super::error::Fault;
-use math::elementary::{exp, ln};
 use math::occurrence::occurrences;
+use math::scale::Scale;
 use serde::{Deserialize, Serialize};
 
 /// Relative distance below which a computed value is taken for a declared level or a whole coded number.
@@ -27,38 +27,6 @@ pub enum Domain {
         /// Coded +1.
         high: f64,
     },
-}
-
-/// How a range is divided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scale {
-    /// By equal differences.
-    #[default]
-    Linear,
-    /// By equal ratios.
-    Log,
-}
-
-impl Scale {
-    /// The coordinate in which the range is divided evenly.
-    fn of(self, natural: f64) -> f64 {
-        match self {
-            Self::Linear => natural,
-            Self::Log => ln(natural),
-        }
-    }
-
-    fn natural(self, coordinate: f64) -> f64 {
-        match self {
-            Self::Linear => coordinate,
-            Self::Log => exp(coordinate),
-        }
-    }
-
-    fn is_linear(&self) -> bool {
-        *self == Self::Linear
-    }
 }
 
 /// A factor of a design.

@@ -20,7 +20,7 @@ pub mod report;
 pub mod sobol;
 pub mod table;
 
-pub use coding::{Domain, Factor, Scale};
+pub use coding::{Domain, Factor};
 pub use error::{DesignError, Fault};
 pub use report::{Report, report};
 pub use table::{DesignTable, Layout, Order, Place, PointType, Points};

@@ -4,8 +4,10 @@
 //! * [`elementary`]: `exp`, `sin`, `pow` … with one implementation everywhere, so that results keep their bits
 //! * [`distribution`]: tails and quantiles of F, t and the normal distribution
 //! * [`occurrence`]: which of equal rows each row is
+//! * [`scale`]: whether a range is divided by differences or by ratios
 
 pub mod distribution;
 pub mod elementary;
 pub mod occurrence;
 pub mod random;
+pub mod scale;

@@ -6,10 +6,11 @@
 //! the nearest allowed one by [`least_distance`].
 
 use super::Error;
-pub use super::factor::{Factor, Scale};
+pub use super::factor::Factor;
 use super::least_distance::least_distance;
 use math::elementary::ln;
 use math::random::Stream;
+use math::scale::Scale;
 use std::collections::BTreeMap;
 
 /// How far outside a bound, in the unit box, still counts as on it.

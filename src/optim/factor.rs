@@ -7,16 +7,7 @@
 
 use super::Error;
 use math::elementary::{exp, ln};
-
-/// How a range is divided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scale {
-    /// By equal differences.
-    #[default]
-    Linear,
-    /// By equal ratios.
-    Log,
-}
+use math::scale::Scale;
 
 /// A calibrated parameter and its range, in the unit the model takes.
 #[derive(Clone, Debug, PartialEq)]

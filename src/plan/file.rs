@@ -1,6 +1,7 @@
 //! The tables of a workflow file that are not stages.
 
-use crate::stage::{Factor, Response, Scale};
+use crate::stage::{Factor, Response};
+use math::scale::Scale;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, de};

@@ -5,8 +5,9 @@ use super::fault::Fault;
 use super::node::{Node, Table};
 use crate::stage::material::{self, Microparameter, Value};
 use crate::stage::vary::with_values;
-use crate::stage::{Context, Factor, Scale};
+use crate::stage::{Context, Factor};
 use crate::unit::{Dimension, Unit};
+use math::scale::Scale;
 use std::collections::BTreeSet;
 
 /// Levels of a factor that are tried in the settings of a stage.

@@ -2,11 +2,12 @@
 
 use super::derived::Derived;
 use super::invalid::Invalid;
-use super::{Complaint, Context, Scale, StageError};
+use super::{Complaint, Context, StageError};
 use crate::artifact::groups::Groups;
 use crate::artifact::results::Results;
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Artifact, Table, Values};
+use math::scale::Scale;
 use serde::{Deserialize, Serialize};
 use stats::error::Faults;
 use stats::sample::{Factor, Response, Sample};
@@ -188,7 +189,7 @@ impl Columns {
                 return named(table, own);
             }
             let values = table.numbers(&own.name, &own.unit)?;
-            let scale = if own.log { stats::sample::Scale::Log } else { stats::sample::Scale::Linear };
+            let scale = if own.log { Scale::Log } else { Scale::Linear };
             Ok(Factor { levels: own.levels.clone(), coding: own.coding, scale, ..Factor::new(&own.name, values) })
         };
         let derived = |own: &Derived| {

@@ -8,6 +8,7 @@ use super::{Memory, StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
 use crate::expression::Measure;
 use crate::unit::{Dimension, Unit};
+use math::scale::Scale;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -91,17 +92,6 @@ pub struct Factor {
     pub names: Vec<String>,
     /// Low and high end, in `unit`; from the levels when not given.
     pub range: Option<[f64; 2]>,
-}
-
-/// How a range is divided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scale {
-    /// By equal differences.
-    #[default]
-    Linear,
-    /// By equal ratios.
-    Log,
 }
 
 impl Factor {

@@ -74,8 +74,7 @@ pub mod vary;
 pub mod verify;
 
 pub use context::{
-    Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Scale, Sketch,
-    Varier,
+    Context, Factor, Input, Known, Library, Outcome, Outline, Parameter, Point, Response, Sampler, Sketch, Varier,
 };
 pub use memory::Memory;
 pub use packed::Packed;

@@ -3,9 +3,9 @@
 use super::diagnostics::Residual;
 use super::fit::Solution;
 use super::number::Real;
-use super::sample::Scale;
 use super::terms::Term;
 use math::distribution::t_for_coverage;
+use math::scale::Scale;
 use serde::{Deserialize, Serialize};
 
 /// One factor of a model.

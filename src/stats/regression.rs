@@ -23,9 +23,10 @@ use super::error::{Fault, Faults};
 use super::fit::{Estimate, Fit, PureError, Solution, is_small, squares_about_mean};
 use super::model::{Axis, Model};
 use super::number::{Real, Twofold};
-use super::sample::{Sample, Scale, Usable};
+use super::sample::{Sample, Usable};
 use super::selection::{Selection, Step, select};
 use super::terms::Term;
+use math::scale::Scale;
 use serde::{Deserialize, Serialize};
 
 /// What a regression is told beside its terms.

@@ -1,37 +1,7 @@
 //! The table that is analysed: factors, responses, weights, and which rows are missing.
 
 use super::error::{Fault, Faults};
-use math::elementary::{exp, ln};
-use serde::{Deserialize, Serialize};
-
-/// How a model takes the values of a factor.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scale {
-    /// As they are.
-    #[default]
-    Linear,
-    /// By their natural logarithms: equal ratios are equal steps.
-    Log,
-}
-
-impl Scale {
-    /// The number that a model computes with: the value, or its logarithm.
-    pub fn of(self, natural: f64) -> f64 {
-        match self {
-            Self::Linear => natural,
-            Self::Log => ln(natural),
-        }
-    }
-
-    /// The value of such a number.
-    pub fn natural(self, coordinate: f64) -> f64 {
-        match self {
-            Self::Linear => coordinate,
-            Self::Log => exp(coordinate),
-        }
-    }
-}
+use math::scale::Scale;
 
 /// A column that was set by the experimenter.
 #[derive(Clone, Debug, PartialEq)]

@@ -25,10 +25,12 @@
 
 mod cache;
 mod campaign;
+mod claim;
 mod clean;
 mod disk;
 mod error;
 mod fault;
+mod finish;
 mod folder;
 mod hdf5;
 mod journal;
@@ -41,11 +43,13 @@ mod origin;
 mod presence;
 mod prove;
 mod queue;
+mod record;
 mod remote;
 mod root;
 mod verify;
 
 pub use campaign::{Campaign, StageRun};
+pub use claim::Claim;
 pub use clean::{Amount, Swept, Usage};
 pub use error::{Damage, StoreError};
 pub use hdf5::Hdf5Error;
@@ -56,6 +60,7 @@ pub use memo::Memo;
 pub use object::ObjectId;
 pub use origin::Origin;
 pub use queue::{LookedAfter, Queue, ReportFile};
+pub use record::{Record, Timing};
 pub use remote::{Mirrored, Pulled, Pushed, RemoteError, Signing, Trust, mirror};
 pub use verify::Verdict;
 
@@ -63,65 +68,13 @@ use crate::artifact::{Artifact, ContentHash, Key};
 use cache::Cache;
 use disk::Disk;
 use journal::{Index, Segments};
-use object::Seal;
 use presence::Presence;
 use prove::Proven;
+use record::{milliseconds, moment};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
-
-/// What the journal says about a finished task.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Record {
-    /// The task.
-    pub key: Key,
-    /// Its result.
-    pub content: ContentHash,
-    /// Start of the task, milliseconds since 1970 UTC.
-    pub started: i64,
-    /// Duration of the task, seconds.
-    pub seconds: f64,
-    /// Where and by what it was computed.
-    pub origin: Arc<Origin>,
-    seal: Seal,
-    /// The mark of the user who wrote it.
-    mark: [u8; mark::SHORT],
-    /// Whether that is this user.
-    own: bool,
-}
-
-impl Record {
-    /// The object that holds the result.
-    pub fn object(&self) -> ObjectId {
-        ObjectId { content: self.content, key: self.key }
-    }
-
-    /// Size of the object's file, bytes.
-    pub fn bytes(&self) -> u64 {
-        self.seal.size
-    }
-}
-
-/// When a task ran.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Timing {
-    /// Its start.
-    pub started: SystemTime,
-    /// Its duration, seconds.
-    pub seconds: f64,
-}
-
-/// The answer to [`Store::claim`].
-#[derive(Debug)]
-pub enum Claim {
-    /// The task is the caller's to compute: hand the guard to [`Store::finish`], or drop it to give the task up.
-    Mine(Guard),
-    /// Another process, or another thread of this one, computes it.
-    Theirs(Waiting),
-    /// It is finished already.
-    Done(Record),
-}
 
 /// An open store. All methods take `&self` and may be called from many threads.
 pub struct Store {
@@ -295,112 +248,6 @@ impl Store {
         Ok(self.read(record)?.text)
     }
 
-    /// Stores the result of a claimed task and releases it. When the function returns, the result can be found.
-    ///
-    /// # Errors
-    /// The result cannot be held by a file, or the disk refuses it.
-    pub fn finish(
-        &self,
-        mut claim: Guard,
-        task_text: impl Into<String>,
-        artifact: Artifact,
-        timing: &Timing,
-    ) -> Result<(Record, Arc<Artifact>), StoreError> {
-        self.store(Some(&mut claim), task_text.into(), artifact, timing)
-    }
-
-    /// Stores the result of a task that was not claimed.
-    ///
-    /// # Errors
-    /// As [`Store::finish`].
-    pub fn put(
-        &self,
-        task_text: &str,
-        artifact: Artifact,
-        timing: &Timing,
-    ) -> Result<(Record, Arc<Artifact>), StoreError> {
-        self.store(None, task_text.to_owned(), artifact, timing)
-    }
-
-    fn store(
-        &self,
-        claim: Option<&mut Guard>,
-        task_text: String,
-        artifact: Artifact,
-        timing: &Timing,
-    ) -> Result<(Record, Arc<Artifact>), StoreError> {
-        let artifact = Arc::new(artifact.canonical());
-        let id = ObjectId { content: artifact.content_hash(), key: Key::of(&task_text) };
-        let image = hdf5::encode(&artifact, task_text).map_err(StoreError::Unstorable)?;
-        let durable = timing.seconds >= object::SYNC_FROM;
-        let seal = object::write(&self.disk, &id, &image, durable, claim)?;
-        let record = self.marked(&id, seal, timing, Arc::clone(&self.origin));
-        locked(&self.segments).append(&self.disk, &record, durable)?;
-        if let Some(index) = self.index.get() {
-            locked(index).add(&record);
-            self.settle(&record)?;
-        }
-        locked(&self.presence).add(&id);
-        locked(&self.cache).put(id.content, artifact.clone());
-        Ok((record, artifact))
-    }
-
-    /// Moves other results of a task that was computed again out of the way: that they differ is why it was.
-    fn settle(&self, record: &Record) -> Result<(), StoreError> {
-        let others = self.index.get().map(|index| locked(index).of_task(&record.key)).unwrap_or_default();
-        for other in others.iter().filter(|other| other.content != record.content) {
-            let id = other.object();
-            if object::is_there(&self.disk, &id) {
-                self.set_aside(&id, "its task was computed again and gave another result")?;
-            }
-        }
-        locked(&self.contradictions).remove(&record.key);
-        Ok(())
-    }
-
-    fn set_aside(&self, id: &ObjectId, why: &str) -> Result<(), StoreError> {
-        locked(&self.presence).remove(id);
-        let fault = object::set_aside(&self.disk, &id.folder(), &id.file_name(), why)?;
-        locked(&self.damages).push(fault);
-        Ok(())
-    }
-
-    /// A record of this user's own.
-    fn marked(&self, id: &ObjectId, seal: Seal, timing: &Timing, origin: Arc<Origin>) -> Record {
-        let ObjectId { key, content } = *id;
-        let (started, seconds) = (milliseconds(timing.started), timing.seconds);
-        let record = Record { key, content, started, seconds, origin, seal, mark: Default::default(), own: true };
-        journal::seal(&self.mark, record)
-    }
-
-    /// Claims a task: the caller's to compute, somebody else's, or finished by somebody else in the meantime.
-    ///
-    /// # Errors
-    /// The lock cannot be made or the journals cannot be read.
-    pub fn claim(&self, key: &Key) -> Result<Claim, StoreError> {
-        self.claimed(key, false)
-    }
-
-    /// Claims a task although it may be finished: its new result counts from then on.
-    ///
-    /// # Errors
-    /// As [`Store::claim`].
-    pub fn claim_again(&self, key: &Key) -> Result<Claim, StoreError> {
-        self.claimed(key, true)
-    }
-
-    fn claimed(&self, key: &Key, again: bool) -> Result<Claim, StoreError> {
-        match lock::take(&self.disk, &key.to_string(), &self.machine)? {
-            lock::Taken::Theirs(waiting) => Ok(Claim::Theirs(waiting)),
-            lock::Taken::Mine(guard) => {
-                // Its last holder recorded the result before it let go.
-                self.refresh()?;
-                let found = if again { None } else { self.find(key)? };
-                Ok(found.map_or(Claim::Mine(guard), Claim::Done))
-            }
-        }
-    }
-
     /// The memo of a stage that this user's own flow made. Its objects may be gone: ask [`Store::has_all`].
     ///
     /// # Errors
@@ -539,14 +386,6 @@ impl Store {
 /// Locks; a thread that panicked while it held the lock has left the value as it was before or after one change.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn milliseconds(time: SystemTime) -> i64 {
-    time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis() as i64)
-}
-
-fn moment(milliseconds: i64) -> SystemTime {
-    UNIX_EPOCH + std::time::Duration::from_millis(u64::try_from(milliseconds).unwrap_or(0))
 }
 
 fn now_ms() -> i64 {

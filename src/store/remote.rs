@@ -23,7 +23,8 @@ pub use sign::{Signing, Trust};
 
 use super::object::{self, Seal};
 use super::prove;
-use super::{ObjectId, Record, Store, StoreError, Timing, locked, moment};
+use super::record::moment;
+use super::{ObjectId, Record, Store, StoreError, Timing, locked};
 use crate::artifact::Key;
 use place::Place;
 use std::collections::{BTreeMap, HashMap, HashSet};

@@ -2,11 +2,12 @@
 
 use super::Trend;
 use super::gaussian::Gaussian;
-use crate::constraint::{Factor, Scale as FactorScale};
+use crate::constraint::Factor;
 use crate::solution_set::descend;
 use crate::{Interval, Problem, Recommendation, Trial};
 use math::elementary::{exp, ln};
 use math::random::Stream;
+use math::scale::Scale as FactorScale;
 
 /// Distance over which a failed run warns, in half ranges and per root of the number of factors.
 const WARNING: f64 = 0.35;

@@ -12,7 +12,8 @@ use design::orthogonal::Orthogonal;
 use design::plackett_burman::PlackettBurman;
 use design::report::power::Question;
 use design::sobol::Sobol;
-use design::{Domain, Factor, Layout, Method, Order, Scale};
+use design::{Domain, Factor, Layout, Method, Order};
+use math::scale::Scale;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -307,11 +308,7 @@ impl Design {
                     Name::Given => range.unwrap_or_else(levels),
                     _ => range.unwrap_or_else(ends),
                 };
-                let scale = match factor.scale {
-                    crate::stage::Scale::Linear => Scale::Linear,
-                    crate::stage::Scale::Log => Scale::Log,
-                };
-                Factor { name: name.clone(), unit: factor.unit.clone(), domain, scale }
+                Factor { name: name.clone(), unit: factor.unit.clone(), domain, scale: factor.scale }
             })
             .collect()
     }

@@ -16,7 +16,7 @@ use figure::residuals::Residuals;
 use figure::surface::Surface;
 use math::distribution::normal_quantile;
 use math::elementary::ln;
-use stats::sample::Scale;
+use math::scale::Scale;
 use stats::terms::Term;
 
 fn one_response(params: &Params) -> Result<&Label, StageError> {

@@ -4,9 +4,9 @@ use super::super::StageError;
 use super::unreadable;
 use crate::artifact::Artifact;
 use crate::artifact::statistics::{CodedFactors, CodedTerms, FittedModel, Surfaces, TakenAs};
+use math::scale::Scale;
 use ndarray::Array2;
 use stats::model::{Axis, Model};
-use stats::sample::Scale;
 use stats::terms::Term;
 
 /// A model as it is stored.

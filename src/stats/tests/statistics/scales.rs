@@ -1,9 +1,10 @@
 //! Factors that a model takes by their logarithms.
 
 use math::elementary::ln;
+use math::scale::Scale;
 use stats::canonical::canonical;
 use stats::regression::{Regression, Settings, regress};
-use stats::sample::{Factor, Response, Sample, Scale};
+use stats::sample::{Factor, Response, Sample};
 use stats::terms::Term;
 
 /// Rows of a 3 × 3 grid, even in the logarithm of `a` (0.01 … 100) and even in `b` (0 … 4).
