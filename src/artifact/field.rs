@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 
 /// Why a value could not be read as what was declared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{place}: wanted {wanted}, found {found}")]
+#[error("{path}: wanted {wanted}, found {found}")]
 pub struct Wanted {
     /// Where: `curve.strain`.
-    pub place: String,
+    pub path: String,
     /// The type that was wanted.
     pub wanted: String,
     /// What stands there, or `nothing`.
@@ -20,13 +20,13 @@ pub struct Wanted {
 impl Wanted {
     /// A value that is not what was wanted.
     pub fn new(name: &str, wanted: impl Into<String>, found: impl Into<String>) -> Self {
-        Self { place: name.to_owned(), wanted: wanted.into(), found: found.into() }
+        Self { path: name.to_owned(), wanted: wanted.into(), found: found.into() }
     }
 
-    /// Names what the place lies in.
+    /// Names what the path lies in.
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
-        self.place = format!("{outer}.{}", self.place);
+        self.path = format!("{outer}.{}", self.path);
         self
     }
 }

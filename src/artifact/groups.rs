@@ -1,7 +1,7 @@
 //! Fits by groups of rows as they are stored.
 
 use super::field::table_of;
-use super::statistics::Remarks;
+use super::statistics::NoteTable;
 use super::validity::NotValid;
 use super::{Artifact, ArtifactKind, Field, Table, Wanted};
 
@@ -14,7 +14,7 @@ crate::artifact! {
         /// residuals: [`GroupResiduals`] with the columns of the groups
         pub residuals: Table, "";
         /// what should be looked at before the numbers are trusted
-        pub notes: Remarks, "";
+        pub notes: NoteTable, "";
         /// runs that are not valid, and what became of them
         pub not_valid: Option<NotValid>, "";
     }

@@ -1,6 +1,6 @@
 //! A range analysis as it is stored.
 
-use super::statistics::Remarks;
+use super::statistics::NoteTable;
 use super::validity::NotValid;
 use super::{ArtifactKind, Cells, Numbered, Table, Unread, Values};
 
@@ -12,7 +12,7 @@ crate::artifact! {
         /// values of the levels
         pub levels: LevelValues, "";
         /// what should be looked at before the numbers are trusted
-        pub notes: Remarks, "";
+        pub notes: NoteTable, "";
         /// runs that are not valid, and what became of them
         pub not_valid: Option<NotValid>, "";
     }

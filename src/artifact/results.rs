@@ -1,7 +1,7 @@
 //! Runs or measurements as they are stored: what simulators, external programs, formulas and data files give alike.
 
 use super::field::table_of;
-use super::statistics::Remarks;
+use super::statistics::NoteTable;
 use super::{Artifact, ArtifactKind, Table, Values, Wanted};
 
 crate::artifact! {
@@ -11,7 +11,7 @@ crate::artifact! {
         /// one row per run
         pub runs: Table, "";
         /// how a file was read, where that was detected and is not the plain way
-        pub notes: Option<Remarks>, "";
+        pub notes: Option<NoteTable>, "";
     }
 }
 

@@ -14,7 +14,7 @@ crate::artifact! {
         /// quality of the models
         pub fit: Fits, "";
         /// what should be looked at before the numbers are trusted
-        pub notes: Remarks, "";
+        pub notes: NoteTable, "";
         /// every row seen by every model
         pub residuals: Residuals, "";
         /// runs that are not valid, and what became of them
@@ -32,7 +32,7 @@ crate::artifact! {
         /// quality of the models
         pub fit: Fits, "";
         /// what should be looked at before the numbers are trusted
-        pub notes: Remarks, "";
+        pub notes: NoteTable, "";
         /// every row seen by every model
         pub residuals: Residuals, "";
         /// runs that are not valid, and what became of them
@@ -62,7 +62,7 @@ crate::artifact! {
         /// steps of the selection of terms
         pub selection: Selections, "";
         /// what should be looked at before the numbers are trusted
-        pub notes: Remarks, "";
+        pub notes: NoteTable, "";
         /// what prediction needs of each model
         pub models: BTreeMap<String, FittedModel>, "";
         /// the same terms with a constant, for fits through the origin
@@ -154,7 +154,7 @@ impl Cells for Published {
 
 crate::table! {
     /// what to look at before trusting the numbers
-    pub struct Remarks {
+    pub struct NoteTable {
         /// the response it is about
         pub response: Vec<String>, "";
         /// the remark

@@ -146,8 +146,8 @@ impl NotValid {
         found
     }
 
-    /// The sentences, those that are equal said once with all their responses in front.
-    pub fn said(&self) -> Vec<String> {
+    /// The sentences. Equal ones are one, with all their responses in front.
+    pub fn grouped_sentences(&self) -> Vec<String> {
         let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
         for (response, said) in self.sentences() {
             match groups.iter_mut().find(|(_, known)| *known == said) {
@@ -160,7 +160,7 @@ impl NotValid {
 }
 
 /// What must be said of the runs that an artifact holds or was made from, wherever its numbers are read.
-pub fn said(artifact: &Artifact) -> Vec<String> {
+pub fn sentences(artifact: &Artifact) -> Vec<String> {
     let mut found = faults(artifact);
     if artifact.is(ArtifactKind::RUN) && found.is_empty() {
         let outcome = Run::outcome(artifact).ok().filter(|outcome| !outcome.cautions.is_empty());
@@ -184,7 +184,7 @@ pub fn faults(artifact: &Artifact) -> Vec<String> {
     // A list of another version says nothing here; whoever shows the tables tells.
     let list = <Option<NotValid> as Field>::take(&artifact.root, NOT_VALID, "").ok().flatten();
     let failed = runs.and_then(|runs| failures(runs).sentence(Verdict::NoResult));
-    failed.into_iter().chain(list.iter().flat_map(NotValid::said)).collect()
+    failed.into_iter().chain(list.iter().flat_map(NotValid::grouped_sentences)).collect()
 }
 
 /// Name of the list of runs that are not valid in artifacts that were made from runs.
@@ -253,7 +253,7 @@ mod tests {
         let runs = Table::default().reals_column("UCS", "MPa", "", vec![1.0, f64::NAN, 2.0, 3.0]);
         let artifact = Results::of(runs, verdicts).to_artifact();
         assert_eq!(
-            said(&artifact),
+            sentences(&artifact),
             [
                 "1 of 4 runs gave no result: no peak (1)",
                 "1 of 4 runs is not valid: rotation (1)",
@@ -266,7 +266,7 @@ mod tests {
     fn a_single_run_says_what_many_say() {
         let run = |failure: &str, validity: &str| {
             let validity = Some(validity.to_owned());
-            said(&Run { validity, ..Run::plain(failure, Responses::default()) }.to_artifact())
+            sentences(&Run { validity, ..Run::plain(failure, Responses::default()) }.to_artifact())
         };
         assert_eq!(run("no peak", "no peak: 1"), ["the run gave no result: no peak"]);
         assert_eq!(run("", "rotation: 1 is above 0"), ["the run is not valid: rotation: 1 is above 0"]);
@@ -283,7 +283,7 @@ mod tests {
             treated: vec![Treated::LeftOut; 3],
         };
         assert_eq!(
-            list.said(),
+            list.grouped_sentences(),
             [
                 "E: 1 of 4 runs is not valid and was left out: a (1)",
                 "UCS: 2 of 4 runs are not valid and were left out: a (1); b (1)"
@@ -297,6 +297,6 @@ mod tests {
             reason: words(&["a", "a"]),
             treated: vec![Treated::Kept; 2],
         };
-        assert_eq!(both.said(), ["E, UCS: 1 of 4 runs is not valid and was kept: a (1)"]);
+        assert_eq!(both.grouped_sentences(), ["E, UCS: 1 of 4 runs is not valid and was kept: a (1)"]);
     }
 }

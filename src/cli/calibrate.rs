@@ -1,7 +1,8 @@
 //! `flow calibrate`: parameters for other targets, at once, from the surfaces of a finished campaign.
 //!
 //! It is the workflow's own calibration with `targets` laid over it as `--set` would: the same code, keys and cache, so
-//! that asking twice computes nothing. What the surfaces rest on must be in the store; it is never run from here. With
+//! that the same question twice computes nothing. The surfaces and all that they rest on must be in the store; this command
+//! never runs them. With
 //! `--verify` the solution is run on fresh specimens as the workflow's own verification says, and nothing else is run.
 
 mod answer;
@@ -30,7 +31,7 @@ use std::sync::atomic::AtomicBool;
 pub(super) struct Calibrate {
     #[command(flatten)]
     campaign: Campaign,
-    /// A wanted response: `UCS="30 MPa"`, `nu=0.2`. May be given more than once.
+    /// A target for a response: `UCS="30 MPa"`, `nu=0.2`. May be given more than once.
     #[arg(long = "target", value_name = "RESPONSE=VALUE", required_unless_present = "page")]
     targets: Vec<String>,
     /// The calibration whose surfaces and settings are used; needed when several search on surfaces.
@@ -92,7 +93,7 @@ impl Calibrate {
         Ok(exit)
     }
 
-    /// Lays the targets over the calibration; every fault of the command line is told.
+    /// Sets the targets of the calibration; reports every fault of the command line.
     fn asked(&self) -> Result<Asked, Exit> {
         let plain = self.campaign.load(self.stage.as_slice())?;
         let stage = self.calibration(&plain);
@@ -121,7 +122,7 @@ impl Calibrate {
         Ok(Asked { workflow, store: self.campaign.open()?, stage, checks })
     }
 
-    /// The calibration that is meant: the named one, or the only one that searches on surfaces alone.
+    /// The calibration to use: the named one, or the only one that searches on surfaces alone.
     fn calibration(&self, workflow: &Workflow) -> Result<String, String> {
         let takes = |index: usize, key: &str| workflow.stages[index].inputs.iter().any(|(port, _)| *port == key);
         let at_once = |&index: &usize| takes(index, "surfaces") && !takes(index, "simulator");
@@ -263,7 +264,7 @@ fn wanted(workflow: &Workflow, targets: &[String]) -> Result<String, Vec<String>
                 .push(format!("--target {option}: unknown response `{name}`{meant}\n  known are {}", known.join(", ")));
             continue;
         };
-        // Quotes that a shell has not taken away mean the same.
+        // Quotes that the shell has left in place are removed.
         let value = value.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(value);
         let value = match value.parse::<f64>() {
             Ok(number) => Wanted::Number(number),

@@ -20,12 +20,12 @@ pub(super) struct Check {
 impl Check {
     pub(super) fn go(self) -> Exit {
         let (workflow, faults) = self.faults();
-        let remarks = workflow.as_ref().map_or(&[][..], |workflow| &workflow.remarks);
+        let warnings = workflow.as_ref().map_or(&[][..], |workflow| &workflow.warnings);
         if !self.json && !self.campaign.common.quiet {
-            message::remarks(remarks, self.campaign.common.color);
+            message::warnings(warnings, self.campaign.common.color);
         }
         if self.json {
-            out!("{}", document(&self.campaign.workflow.display().to_string(), &faults, remarks));
+            out!("{}", document(&self.campaign.workflow.display().to_string(), &faults, warnings));
         } else if let (Some(workflow), []) = (&workflow, &faults[..]) {
             if !self.campaign.common.quiet {
                 out!("{}", summary(workflow));
@@ -68,15 +68,15 @@ fn summary(workflow: &Workflow) -> String {
     format!("{}: {}: no fault", workflow.path.display(), parts.join(", "))
 }
 
-fn document(name: &str, faults: &[Fault], remarks: &[Fault]) -> Value {
+fn document(name: &str, faults: &[Fault], warnings: &[Fault]) -> Value {
     let one = |fault: &Fault| {
-        let place = fault.place.as_ref();
-        let (line, column) = place.map(|place| place.line_column()).unzip();
+        let location = fault.location.as_ref();
+        let (line, column) = location.map(|location| location.line_column()).unzip();
         json!({
-            "file": place.map(|place| place.source.name.as_str()), "line": line, "column": column,
+            "file": location.map(|location| location.source.name.as_str()), "line": line, "column": column,
             "message": fault.message, "label": fault.label, "hint": fault.hint,
         })
     };
     let all = |list: &[Fault]| list.iter().map(one).collect::<Vec<Value>>();
-    json!({ "workflow": name, "faults": all(faults), "remarks": all(remarks) })
+    json!({ "workflow": name, "faults": all(faults), "warnings": all(warnings) })
 }

@@ -25,16 +25,16 @@ pub(super) struct Campaign {
     pub(super) common: Common,
 }
 
-/// What every command is told that opens a store.
+/// Options of every command that opens a store.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Common {
-    /// The folder that keeps results.
+    /// The folder of stored results.
     #[arg(long, value_name = "FOLDER", default_value = "store", global = true)]
     pub(super) store: PathBuf,
     /// Colours of messages; by default on a terminal, unless NO_COLOR is set.
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = Color::Auto, global = true)]
     pub(super) color: Color,
-    /// Print results and errors only: no progress, no summary, no remarks.
+    /// Print results and errors only: no progress, no summary, no notes.
     #[arg(long, global = true)]
     pub(super) quiet: bool,
 }
@@ -74,7 +74,7 @@ impl Campaign {
         Ok(workflow)
     }
 
-    /// Whether all these stages are in the workflow; says which are not.
+    /// Whether all these stages are in the workflow; prints those that are not.
     pub(super) fn known(&self, workflow: &Workflow, stages: &[String]) -> Result<(), Exit> {
         let known: Vec<&str> = workflow.stages.iter().map(|stage| stage.name.as_str()).collect();
         let unknown: Vec<&String> = stages.iter().filter(|name| !known.contains(&name.as_str())).collect();
@@ -95,7 +95,7 @@ impl Campaign {
             return Err(Exit::BadInput);
         }
         if !self.common.quiet {
-            message::remarks(&workflow.remarks, self.common.color);
+            message::warnings(&workflow.warnings, self.common.color);
         }
         Ok(workflow)
     }
@@ -118,7 +118,7 @@ impl Campaign {
         parts.into_iter().map(quoted).collect::<Vec<_>>().join(" ")
     }
 
-    /// The store; what is computed into it is said to come from the commit of the workflow's folder.
+    /// The store; new results are recorded with the git commit of the workflow's folder.
     pub(super) fn open(&self) -> Result<Store, Exit> {
         let folder = self.workflow.parent().unwrap_or(Path::new("")).to_owned();
         Ok(self.common.open()?.with_origin(move || Origin { commit: commit(&folder), ..Origin::here() }))
@@ -131,8 +131,8 @@ impl Common {
         Store::open(&self.store).map_err(|e| system(&e))
     }
 
-    /// Prints a remark, which is no result.
-    pub(super) fn remark(&self, text: &str) {
+    /// Prints a note, which is no result.
+    pub(super) fn note(&self, text: &str) {
         if !self.quiet {
             err!("{text}");
         }

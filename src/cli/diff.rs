@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Compare two campaigns: what was set otherwise, what came out otherwise.
+/// Compare two campaigns: settings that differ, results that differ.
 #[derive(Args)]
 pub(super) struct Diff {
     /// A workflow file, `FILE@PROFILE`, or a recorded run `#N`.
@@ -123,8 +123,7 @@ impl Diff {
         let store::Campaign { workflow, profile, set, started, seconds, origin, .. } = &campaign;
         let profile = if profile.is_empty() { String::new() } else { format!("@{profile}") };
         let sets: String = set.iter().map(|set| format!(" --set {}", quoted(set))).collect();
-        self.common
-            .remark(&format!("#{number}: {workflow}{profile}{sets}, {}", provenance(*started, *seconds, origin)));
+        self.common.note(&format!("#{number}: {workflow}{profile}{sets}, {}", provenance(*started, *seconds, origin)));
         let side = |stage: crate::store::StageRun| {
             let object = stage.object.as_deref().and_then(ContentHash::from_hex);
             (stage.name, Side { settings: flat(&stage.kind, &stage.settings), object })

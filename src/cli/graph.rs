@@ -1,4 +1,4 @@
-//! `flow graph`: the stages of a workflow, what they take from one another, and what is done of them.
+//! `flow graph`: the stages of a workflow, their inputs, and their progress.
 
 use super::Exit;
 use super::common::Campaign;
@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use figure::dag::{Dag, Stage};
 use figure::{DOUBLE, Figure, Style, svg::svg};
 
-/// Show the stages of a workflow, what they take from one another, and what is done of them.
+/// Show the stages of a workflow, their inputs, and their progress.
 #[derive(Args)]
 pub(super) struct Graph {
     #[command(flatten)]
@@ -30,7 +30,7 @@ enum Form {
     Dot,
 }
 
-/// What is done of a stage.
+/// Progress of a stage.
 #[derive(Clone, Copy, PartialEq)]
 enum State {
     Done,
@@ -65,7 +65,7 @@ impl Graph {
 
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
-        // Whoever only looks makes no store.
+        // A command that only reads makes no store.
         let reports = match self.campaign.common.store.exists() {
             true => {
                 let store = self.campaign.open()?;
@@ -93,7 +93,7 @@ impl Graph {
     }
 }
 
-/// Arrows by place, each once: from the stage that gives to the one that takes.
+/// Arrows by index of stage, each once: from the stage that gives to the one that takes.
 fn arrows(workflow: &Workflow) -> Vec<(usize, usize)> {
     let stages = workflow.stages.iter().enumerate();
     let mut arrows: Vec<_> = stages.flat_map(|(i, stage)| stage.inputs.iter().map(move |input| (input.1, i))).collect();

@@ -1,20 +1,20 @@
-//! Faults as a person reads them: the line, a caret under the place, what is known, what to do.
+//! Faults as a person reads them: the line, a caret under the location, what is known, what to do.
 
 use super::common::Color;
-use crate::plan::{Fault, Place};
+use crate::plan::{Fault, Location};
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
 
 /// Prints all faults on standard error.
 pub(super) fn print(found: &[Fault], color: Color) {
-    super::output::said(&faults(found, color.on()));
+    super::output::print_err(&faults(found, color.on()));
 }
 
-/// Prints what is no fault and must be known, on standard error.
-pub(super) fn remarks(found: &[Fault], color: Color) {
+/// Prints warnings on standard error.
+pub(super) fn warnings(found: &[Fault], color: Color) {
     let renderer = renderer(color.on());
     for fault in found {
-        super::output::said(&format!("{}\n\n", renderer.render(&[group(fault, Level::WARNING)])));
+        super::output::print_err(&format!("{}\n\n", renderer.render(&[group(fault, Level::WARNING)])));
     }
 }
 
@@ -40,9 +40,11 @@ fn faults(faults: &[Fault], colour: bool) -> String {
 
 fn group<'f>(fault: &'f Fault, level: Level<'f>) -> Group<'f> {
     let mut group = Group::with_title(level.primary_title(fault.message.as_str()));
-    if let Some(place) = &fault.place {
-        let mut shown = vec![(place, AnnotationKind::Primary, fault.label.as_deref())];
-        shown.extend(fault.also.iter().map(|(place, words)| (place, AnnotationKind::Context, Some(words.as_str()))));
+    if let Some(location) = &fault.location {
+        let mut shown = vec![(location, AnnotationKind::Primary, fault.label.as_deref())];
+        shown.extend(
+            fault.also.iter().map(|(location, words)| (location, AnnotationKind::Context, Some(words.as_str()))),
+        );
         while !shown.is_empty() {
             group = group.element(snippet(&mut shown));
         }
@@ -53,22 +55,23 @@ fn group<'f>(fault: &'f Fault, level: Level<'f>) -> Group<'f> {
     }
 }
 
-type Shown<'f> = (&'f Place, AnnotationKind, Option<&'f str>);
+type Shown<'f> = (&'f Location, AnnotationKind, Option<&'f str>);
 
-/// Takes the first place and those near it out of the list.
+/// Takes the first location and those near it out of the list.
 fn snippet<'f>(shown: &mut Vec<Shown<'f>>) -> Snippet<'f, Annotation<'f>> {
     const NEAR: usize = 2000;
     let first = shown[0].0;
-    let near = |place: &Place| place.source == first.source && place.span.start.abs_diff(first.span.start) < NEAR;
-    let mut taken: Vec<Shown<'f>> = shown.extract_if(.., |(place, ..)| near(place)).collect();
-    taken.sort_by_key(|(place, ..)| place.span.start);
+    let near =
+        |location: &Location| location.source == first.source && location.span.start.abs_diff(first.span.start) < NEAR;
+    let mut taken: Vec<Shown<'f>> = shown.extract_if(.., |(location, ..)| near(location)).collect();
+    taken.sort_by_key(|(location, ..)| location.span.start);
     let text = first.source.text.as_str();
     let (top, bottom) = (taken[0].0, taken[taken.len() - 1].0);
     let begin = text[..top.span.start].rfind('\n').map_or(0, |at| at + 1);
     let end = text[bottom.span.start..].find('\n').map_or(text.len(), |at| bottom.span.start + at);
     let (line, _) = top.line_column();
-    let annotations = taken.into_iter().map(|(place, kind, label)| {
-        let span = first_line(text, place.span.clone());
+    let annotations = taken.into_iter().map(|(location, kind, label)| {
+        let span = first_line(text, location.span.clone());
         kind.span(span.start - begin..span.end - begin).label(label)
     });
     Snippet::source(&text[begin..end]).line_start(line).path(first.source.name.as_str()).annotations(annotations)

@@ -14,9 +14,9 @@ mod export;
 mod graph;
 mod message;
 mod new;
+mod notes;
 mod plan;
 mod progress;
-mod remarks;
 mod report;
 mod run;
 mod schema;
@@ -39,7 +39,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Run what is missing of a campaign.
+    /// Compute the missing results of a campaign.
     Run(run::Run),
     /// Show what `run` would do, and why, without doing it.
     Plan(plan::Plan),
@@ -49,15 +49,15 @@ enum Command {
     Calibrate(calibrate::Calibrate),
     /// Find every fault of a workflow without running anything.
     Check(check::Check),
-    /// Show the stages, what they take from one another, and what is done of them.
+    /// Show the stages, their inputs, and their progress.
     Graph(graph::Graph),
     /// Write a page with every table and figure of a campaign.
     Report(report::Report),
     /// Write results as files: pictures, printed tables, CSV.
     Export(export::Export),
-    /// Compare two campaigns: what was set otherwise, what came out otherwise.
+    /// Compare two campaigns: settings that differ, results that differ.
     Diff(diff::Diff),
-    /// Look after the store: list, verify, sizes, remove what nothing reaches.
+    /// Manage the store: list, verify, sizes, remove unused results.
     Store(store::StoreCommand),
     /// Describe a cluster for `flow run --executor slurm`.
     Site(site::SiteCommand),
@@ -75,7 +75,7 @@ enum Command {
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// All well.
+    /// Success.
     Done = 0,
     /// A task failed.
     Failed = 1,
@@ -87,12 +87,12 @@ pub enum Exit {
     Interrupted = 130,
 }
 
-/// Reads the command line and does what it says.
+/// Reads the command line and executes it.
 pub fn main() -> ExitCode {
     ExitCode::from(execute(std::env::args_os()) as u8)
 }
 
-/// Does what a command line says; its first word is the program.
+/// Executes a command line; its first word is the program.
 fn execute<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Exit {
     match Arguments::parse_from(arguments).command {
         Command::Run(run) => run.go(),

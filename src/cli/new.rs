@@ -94,9 +94,9 @@ impl New {
         let schema = format!("{:#}\n", schema::schema());
         let beside = shipped.files.iter().copied().chain([(schema::FILE_NAME, schema.as_str())]);
         for (name, text) in beside {
-            let place = path.with_file_name(name);
-            place.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-            match std::fs::File::create_new(&place) {
+            let target = path.with_file_name(name);
+            target.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+            match std::fs::File::create_new(&target) {
                 Ok(mut file) => file.write_all(text.as_bytes())?,
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
                 Err(e) => return Err(e),
@@ -110,7 +110,7 @@ impl New {
 mod tests {
     use super::*;
 
-    /// What `--from` gives can be read and checked where it lies, with all the files it names.
+    /// Every workflow that `--from` gives passes `flow check`, with all the files that it names.
     #[test]
     fn every_shipped_workflow_is_complete() {
         for shipped in SHIPPED {

@@ -1,8 +1,8 @@
-//! Where words go: results to standard output and files, everything else to standard error.
+//! Output: results to standard output and files, everything else to standard error.
 //!
-//! A write may fail: the reader has gone (`| head`), the disk is full, the terminal is closed. Words on standard error
-//! are then lost, and the campaign goes on, because its results matter more than what is said of it. A result that cannot
-//! be written ends the command, without a word when nobody reads any more.
+//! A write may fail: the reader has gone (`| head`), the disk is full, the terminal is closed. Messages on standard error
+//! are then lost, and the campaign goes on, because its results matter more than its messages. A result that cannot be
+//! written ends the command, silently when the reader has gone.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
@@ -15,13 +15,13 @@ macro_rules! out {
 
 /// Prints one line on standard error: `eprintln!` that does not mind when nobody can read it.
 macro_rules! err {
-    ($($text:tt)*) => { $crate::cli::output::said(&format!("{}\n", format_args!($($text)*))) };
+    ($($text:tt)*) => { $crate::cli::output::print_err(&format!("{}\n", format_args!($($text)*))) };
 }
 
 /// Writes to standard error, if it can be written to.
-pub(in crate::cli) fn said(text: &str) {
+pub(in crate::cli) fn print_err(text: &str) {
     let mut err = std::io::stderr().lock();
-    // There is nowhere left to tell of a failure.
+    // A failure cannot be reported anywhere.
     let _ = err.write_all(text.as_bytes()).and_then(|()| err.flush());
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Plan {
     json: bool,
 }
 
-/// So many reasons are shown for a stage.
+/// Most reasons that are shown of a stage.
 const MOST_REASONS: usize = 4;
 
 struct Line {
@@ -42,8 +42,8 @@ impl Plan {
         let past = Past::of(&workflow, &store).map_err(|e| super::common::system(&e))?;
         let open: Vec<TaskReport> = report.tasks().filter(|task| task.state == TaskState::Open).collect();
         let of = |stage: &StageReport| -> Vec<&TaskReport> {
-            let place = workflow.position(&stage.name);
-            open.iter().filter(|task| Some(task.stage) == place).collect()
+            let index = workflow.position(&stage.name);
+            open.iter().filter(|task| Some(task.stage) == index).collect()
         };
         let lines: Vec<Line> = report.stages.iter().map(|stage| line(stage, of(stage), &past)).collect();
         if self.json {

@@ -8,10 +8,10 @@ use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Between two plain lines of one stage.
+/// Shortest time between two plain lines of one stage.
 const PAUSE: Duration = Duration::from_secs(5);
 
-/// Tells failures at once, stages when they end, and now and then how far each is.
+/// Reports failures at once, stages when they end, and the progress of each now and then.
 pub(super) struct Progress<'a> {
     screen: Option<MultiProgress>,
     stages: Mutex<HashMap<String, Live>>,
@@ -24,14 +24,14 @@ pub(super) struct Progress<'a> {
 /// A stage at work.
 struct Live {
     started: Instant,
-    told: Instant,
+    reported: Instant,
     /// Tasks that ended since, other than from the store.
     ended: usize,
-    /// Tasks that failed; why was told of each.
+    /// Tasks that failed; each failure was reported with its reason.
     failed: usize,
-    /// Where the stage itself says it stands; empty for stages that do not decide by outcomes.
+    /// Progress in the words of the stage; empty for stages that do not decide by outcomes.
     note: String,
-    /// What was warned of, without its numbers, and the rows that were.
+    /// Warnings without their numbers, with the rows that gave them.
     warned: BTreeMap<String, BTreeSet<Option<usize>>>,
     bar: Option<ProgressBar>,
 }
@@ -71,7 +71,8 @@ impl<'a> Progress<'a> {
         if !stages.contains_key(stage) {
             let now = Instant::now();
             let (note, warned, bar) = (String::new(), BTreeMap::new(), self.bar(stage));
-            stages.insert(stage.to_owned(), Live { started: now, told: now, ended: 0, failed: 0, note, warned, bar });
+            stages
+                .insert(stage.to_owned(), Live { started: now, reported: now, ended: 0, failed: 0, note, warned, bar });
         }
     }
 
@@ -85,7 +86,7 @@ impl<'a> Progress<'a> {
             first
         });
         if first {
-            self.say(&format!("warning: {}: {words}", place(stage, row)));
+            self.say(&format!("warning: {}: {words}", task_name(stage, row)));
         }
     }
 
@@ -118,8 +119,8 @@ impl<'a> Progress<'a> {
             bar.set_length(count.total as u64);
             bar.set_position(count.ended() as u64);
             bar.set_message(message);
-        } else if live.told.elapsed() >= PAUSE && left > 0 {
-            live.told = Instant::now();
+        } else if live.reported.elapsed() >= PAUSE && left > 0 {
+            live.reported = Instant::now();
             err!("{stage:16} {:>5}/{:<5} {message}", count.ended(), count.total);
         }
     }
@@ -132,8 +133,8 @@ impl<'a> Progress<'a> {
         let name = &report.name;
         for (kind, rows) in live.iter().flat_map(|live| &live.warned).filter(|(_, rows)| rows.len() > 1) {
             let more = rows.len() - 1;
-            let rows = if more == 1 { "row is" } else { "rows are" };
-            self.say(&format!("warning: {name}: {more} more {rows} warned of alike: {kind}"));
+            let rows = if more == 1 { "row" } else { "rows" };
+            self.say(&format!("warning: {name}: {more} more {rows} with this warning: {kind}"));
         }
         match &report.status {
             StageStatus::Failed(why) => match live.map_or(0, |live| live.failed) {
@@ -157,8 +158,8 @@ impl Watch for Progress<'_> {
     fn event(&self, event: Event<'_>) {
         match event {
             Event::Started { stage, .. } => self.started(stage),
-            Event::Said { stage, row, progress } if progress.warning => self.warn(stage, row, &progress.note),
-            Event::Said { stage, row, progress } => {
+            Event::Progress { stage, row, progress } if progress.warning => self.warn(stage, row, &progress.note),
+            Event::Progress { stage, row, progress } => {
                 if let Some(bar) = self.stages().get(stage).and_then(|live| live.bar.as_ref()) {
                     let row = row.map_or_else(String::new, |row| format!("[{}] ", row + 1));
                     let part = progress.fraction.map_or_else(String::new, |part| format!("{:.0} % ", 100.0 * part));
@@ -168,7 +169,7 @@ impl Watch for Progress<'_> {
             Event::Asked { stage, count, note } => self.asked(stage, count, note),
             Event::Ended { stage, row, count, failure } => {
                 if let Some(why) = failure {
-                    self.say(&format!("error: {}: {why}", place(stage, row)));
+                    self.say(&format!("error: {}: {why}", task_name(stage, row)));
                 }
                 self.ended(stage, count);
             }
@@ -185,14 +186,14 @@ fn kind_of(words: &str) -> String {
 }
 
 /// A stage or one row of it, as `flow show` takes it.
-pub(super) fn place(stage: &str, row: Option<usize>) -> String {
+pub(super) fn task_name(stage: &str, row: Option<usize>) -> String {
     row.map_or_else(|| stage.to_owned(), |row| format!("{stage}[{}]", row + 1))
 }
 
 /// Rate, elapsed time and expected rest.
 fn pace(ended: usize, left: usize, elapsed: f64, expected: Option<f64>) -> String {
     let measured = elapsed / ended as f64;
-    // A few tasks tell less than an earlier campaign.
+    // An earlier campaign gives a better estimate than a few tasks.
     let each = expected.filter(|_| ended < 5).unwrap_or(measured);
     let rate = if measured < 1.0 { format!("{:.0}/s", 1.0 / measured) } else { format!("{} each", duration(measured)) };
     format!("{rate}, {} elapsed, {} left", duration(elapsed), duration(each * left as f64))

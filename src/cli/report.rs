@@ -49,12 +49,12 @@ impl Report {
                 out!("{}  {}", self.output.display(), bytes(html.len() as u64));
             }
         }
-        Ok(told(&paper))
+        Ok(lacks(&paper))
     }
 }
 
-/// Says what the page lacks.
-fn told(paper: &Paper) -> Exit {
+/// Prints what the page lacks.
+fn lacks(paper: &Paper) -> Exit {
     let missing = paper.missing();
     if missing.is_empty() {
         return Exit::Done;

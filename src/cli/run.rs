@@ -2,8 +2,8 @@
 
 use super::Exit;
 use super::common::{Campaign, system, workers};
-use super::progress::{Progress, place};
-use super::remarks::remarks;
+use super::notes::notes;
+use super::progress::{Progress, task_name};
 use super::site;
 use crate::cluster::Site;
 use crate::exec::cores;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
-/// Run what is missing of a campaign.
+/// Compute the missing results of a campaign.
 #[derive(Args)]
 pub(super) struct Run {
     #[command(flatten)]
@@ -31,7 +31,7 @@ pub(super) struct Run {
     /// Tasks at once; the number of cores when not given.
     #[arg(long, short, value_name = "N", value_parser = workers)]
     jobs: Option<usize>,
-    /// What runs the tasks.
+    /// Where tasks run.
     #[arg(long, value_enum, value_name = "NAME", default_value = "threads")]
     executor: Executor,
     /// The cluster: the name of a site file (see `flow site`), or a path to one. The site `default` when not given.
@@ -40,10 +40,10 @@ pub(super) struct Run {
     /// Show what would be submitted to the cluster, and submit nothing.
     #[arg(long)]
     dry_run: bool,
-    /// Go on with what does not depend on a failed task.
+    /// After a failure, continue with tasks that do not depend on it.
     #[arg(long)]
     keep_going: bool,
-    /// Compute this stage again though its results are stored: a program or file that is in no key has changed. May be
+    /// Compute this stage again although its results are stored, because a program or file outside its key has changed. May be
     /// given more than once.
     #[arg(long, value_name = "STAGE")]
     again: Vec<String>,
@@ -57,7 +57,7 @@ pub(super) struct Run {
 enum Executor {
     /// Threads of this process.
     Threads,
-    /// Workers that a scheduler starts on other machines; by its site file it may be another one than Slurm.
+    /// Workers that a scheduler starts on other machines: Slurm, or the scheduler of the site file.
     #[value(alias = "cluster")]
     Slurm,
 }
@@ -109,14 +109,14 @@ impl Run {
         }
         self.failures(&workflow, &report);
         if !self.campaign.common.quiet {
-            remarks(&self.campaign, &report, &store).iter().for_each(|line| err!("{line}"));
+            notes(&self.campaign, &report, &store).iter().for_each(|line| err!("{line}"));
         }
         missed.iter().for_each(|(stage, why)| eprintln!("unmet: {stage}: {why}"));
         let exit = match exit(&report) {
             Exit::Done if !missed.is_empty() => Exit::Failed,
             exit => exit,
         };
-        // The process ends now, and the system takes all of its memory back faster than it is given back piece by piece.
+        // The process ends now; the system frees its memory faster than this process can piece by piece.
         std::mem::forget((workflow, store, report));
         Ok(exit)
     }
@@ -146,11 +146,11 @@ impl Run {
         for task in report.tasks() {
             if let TaskState::Failed(why) = &task.state {
                 let name = workflow.stages[task.stage].name.as_str();
-                by_stage[task.stage].push(format!("failed: {}: {why}", place(name, task.row)));
+                by_stage[task.stage].push(format!("failed: {}: {why}", task_name(name, task.row)));
             }
         }
         for stage in &report.stages {
-            let Some(lines) = workflow.position(&stage.name).map(|place| &mut by_stage[place]) else { continue };
+            let Some(lines) = workflow.position(&stage.name).map(|index| &mut by_stage[index]) else { continue };
             if let (StageStatus::Failed(why), true) = (&stage.status, lines.is_empty()) {
                 lines.push(format!("failed: {}: {why}", stage.name));
             }
@@ -178,10 +178,10 @@ pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
                 if flag.swap(true, Ordering::Relaxed) {
                     at_once();
                 }
-                err!("stopping: what is finished is kept; once more to stop at once");
+                err!("stopping: finished tasks are stored; press Ctrl-C again to stop at once");
                 std::thread::spawn(move || {
                     std::thread::sleep(patience);
-                    err!("interrupted: a second run goes on; what ran did not end by itself and begins anew then");
+                    err!("interrupted; run again to continue: the tasks that ran were ended and will start again");
                     at_once();
                 });
             }
@@ -227,7 +227,7 @@ fn summary(report: &Report, seconds: f64, number: Option<u64>) -> String {
         }
     }
     if report.interrupted {
-        parts.push("interrupted: a second run goes on".to_owned());
+        parts.push("interrupted; run again to continue".to_owned());
     }
     let recorded = number.map_or_else(String::new, |number| format!("; run #{number}"));
     let tasks = if count.total == 1 { "task" } else { "tasks" };

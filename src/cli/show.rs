@@ -2,7 +2,7 @@
 
 use super::Exit;
 use super::common::{Campaign, provenance, system};
-use crate::artifact::validity::said;
+use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::export::{cells, csv_text, head};
 use crate::plan::Workflow;
@@ -99,9 +99,9 @@ impl Show {
 
     /// Why there is nothing to show.
     fn missing(&self, what: &str, workflow: &Workflow, report: &Report, (stage, row): (&str, Option<usize>)) -> String {
-        let place = workflow.position(stage);
+        let index = workflow.position(stage);
         let rows: Vec<Option<usize>> =
-            report.tasks().filter(|task| Some(task.stage) == place).map(|task| task.row).collect();
+            report.tasks().filter(|task| Some(task.stage) == index).map(|task| task.row).collect();
         match (row, rows.iter().flatten().max()) {
             (Some(_), None) if !rows.is_empty() => {
                 let whole = self.campaign.command("show", &[stage]);
@@ -120,7 +120,7 @@ impl Show {
         let artifact = presented(&stored, &workflow.context);
         let tables = self.chosen(what, &artifact)?;
         // Beside its numbers, in whatever form they are shown.
-        for said in said(&artifact) {
+        for said in sentences(&artifact) {
             err!("warning: {what}: {}", on_screen(&said));
         }
         if self.json {
@@ -138,7 +138,7 @@ impl Show {
             print_others(&artifact, self.table.is_some());
             if let Some(record) = store.find(&object.key).map_err(|e| system(&e))? {
                 let made = provenance(record.started, record.seconds, &record.origin);
-                self.campaign.common.remark(&format!("computed {made}"));
+                self.campaign.common.note(&format!("computed {made}"));
             }
         }
         Ok(Exit::Done)
@@ -180,8 +180,8 @@ pub(super) fn parts(what: &str) -> Result<(String, Option<usize>), Exit> {
 /// The object of a stage's result (that of the last task with its content), or of one of its rows.
 pub(super) fn object(workflow: &Workflow, report: &Report, stage: &str, row: Option<usize>) -> Option<ObjectId> {
     if row.is_some() {
-        let place = workflow.position(stage);
-        return report.tasks().find(|task| Some(task.stage) == place && task.row == row)?.object;
+        let index = workflow.position(stage);
+        return report.tasks().find(|task| Some(task.stage) == index && task.row == row)?.object;
     }
     let status = report.stages.iter().find(|s| s.name == stage).map(|s| &s.status)?;
     let StageStatus::Done(content) = status else { return None };
@@ -250,8 +250,8 @@ pub(super) fn text(table: &Table) -> String {
     for row in 0..table.rows().min(MOST_ROWS) {
         shown.add_row(columns.iter().map(|column| on_screen(&column[row])));
     }
-    for (place, column) in seen.iter().enumerate() {
-        if let (Some(shown), Values::Reals(_) | Values::Ints(_)) = (shown.column_mut(place), &column.values) {
+    for (index, column) in seen.iter().enumerate() {
+        if let (Some(shown), Values::Reals(_) | Values::Ints(_)) = (shown.column_mut(index), &column.values) {
             shown.set_cell_alignment(comfy_table::CellAlignment::Right);
         }
     }

@@ -31,7 +31,7 @@ enum What {
     Verify,
     /// Sizes.
     Du,
-    /// Remove results that none of the named workflows can reach; says what would go, unless told --yes.
+    /// Remove results that none of the named workflows can reach; without --yes it only lists them.
     Gc(Gc),
     /// Copy all results to a remote, a folder that others can read, and sign the list of them.
     Push(share::Push),
@@ -45,7 +45,7 @@ enum What {
 
 #[derive(Args)]
 struct Gc {
-    /// Workflows whose results stay. `FILE` alone keeps those of the file as it stands and of all its profiles.
+    /// Workflows whose results stay. `FILE` alone means the file as it stands and all its profiles.
     #[arg(required = true)]
     workflows: Vec<PathBuf>,
     /// Really remove.
@@ -166,7 +166,7 @@ impl StoreCommand {
         let (removed, rubbish) = (swept.removed, swept.rubbish);
         out!("{verb} {} results ({}) that no named workflow reaches", removed.files, bytes(removed.bytes));
         out!("{verb} {} damaged or left-over files ({})", rubbish.files, bytes(rubbish.bytes));
-        out!("kept {} results ({})", swept.kept.files, bytes(swept.kept.bytes));
+        out!("{} results remain ({})", swept.kept.files, bytes(swept.kept.bytes));
         if !gc.yes {
             out!("nothing was removed; say --yes to do it");
         }

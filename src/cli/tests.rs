@@ -34,12 +34,12 @@ of = "endings"
 fn flow(folder: &Path, arguments: &[&str]) -> Exit {
     let file = folder.join("new.toml").display().to_string();
     let store = folder.join("store").display().to_string();
-    let place = |argument: &&str| match *argument {
+    let filled = |argument: &&str| match *argument {
         "W" => file.clone(),
         "S" => store.clone(),
         other => other.replace("F/", &format!("{}/", folder.display())),
     };
-    execute(std::iter::once("flow".to_owned()).chain(arguments.iter().map(place)))
+    execute(std::iter::once("flow".to_owned()).chain(arguments.iter().map(filled)))
 }
 
 #[test]

@@ -1,7 +1,7 @@
-//! One task on its way to a worker: a line of JSON that holds all that decides its result, and where its inputs lie.
+//! A task as a line of JSON for a worker: all that decides its result, and where its inputs are.
 //!
-//! The text of the task alone would not do: it has no paths of files, no time limits, and names inputs by content only.
-//! Parameters travel as the digits of their bytes, so that no number is rounded.
+//! The task text alone is not enough: it has no paths of files and no time limits, and names inputs by content only.
+//! Parameters are written as the digits of their bytes, so that no number is rounded.
 
 use crate::artifact::Key;
 use crate::plan::key::task_text;
@@ -39,7 +39,7 @@ pub struct Line {
 pub struct Errand {
     /// The task; its inputs are contents.
     pub task: Task,
-    /// Where its inputs lie.
+    /// Where its inputs are.
     pub inputs: Vec<(String, Located)>,
     /// Its text.
     pub text: String,
@@ -48,7 +48,7 @@ pub struct Errand {
 }
 
 impl Line {
-    /// The line of a task whose inputs lie there.
+    /// The line of a task whose inputs are at these locations.
     pub fn new(task: &Task, key: &Key, stage: &str, inputs: &[Located], seconds: Option<f64>) -> Self {
         let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
         let hex = |digest: &[u8; 32]| blake3::Hash::from_bytes(*digest).to_hex().to_string();
@@ -66,7 +66,7 @@ impl Line {
         }
     }
 
-    /// The line as it stands in a list.
+    /// The text of the line in a list.
     pub fn to_text(&self) -> String {
         serde_json::to_string(self).unwrap_or_else(|error| panic!("BUG: a task that is no JSON: {error}"))
     }
@@ -74,7 +74,7 @@ impl Line {
     /// The task of this line.
     ///
     /// # Errors
-    /// It is not one that this program understands as the submitter did: the two are different programs.
+    /// The program of the submitter is another one: it gives this task another key.
     pub fn errand(&self) -> Result<Errand, String> {
         let unread = |what: &str| format!("the task's {what} cannot be read; {OTHER}");
         let known = work(&self.work).ok_or_else(|| format!("there is no work `{}`; {OTHER}", self.work))?;
@@ -94,7 +94,8 @@ impl Line {
             files: self.files.iter().map(file).collect::<Option<_>>().ok_or_else(|| unread("files"))?,
             row: self.row,
             time_limit: self.limit,
-            kept: None,
+            at_once: None,
+            cached: None,
         };
         let contents: Vec<_> = inputs.iter().map(|(_, at)| at.object.content).collect();
         let text = task_text(&task, &contents);

@@ -1,36 +1,36 @@
-//! Workers on other machines: what goes to them, what comes back, and how a scheduler is asked for them.
+//! Workers on other machines: the tasks that they get, the messages that they send, and the scheduler that starts them.
 //!
 //! # How a campaign runs on a cluster
-//! `flow run … --executor slurm` is the submitter. It decides what is to be computed as ever, writes the tasks whose inputs
-//! are known into a list in the store ([`line`], [`Queue`](crate::store::Queue)), and asks the scheduler for an array of
+//! `flow run … --executor slurm` is the submitter. It decides what is to be computed as every run does, writes the tasks whose
+//! inputs are known into a list in the store ([`line`], [`Queue`](crate::store::Queue)), and asks the scheduler for an array of
 //! equal jobs ([`script`], [`scheduler`]), each of which is a worker: `flow work`. A worker takes tasks until none is
-//! left ([`slices`]), stores each result as any other flow does, and writes down what it does ([`said`]). There is no
-//! server and no port; the store is the truth, and it is all that submitter and workers share.
+//! left ([`slices`]), stores each result as any other flow does, and reports what it does ([`message`]). There is no
+//! server and no port: the store is all that submitter and workers share.
 //!
 //! # Decisions, and why
 //! * **Workers pull.** One job per task costs a second of the scheduler each; a fixed chunk per job waits for the slowest.
 //! * **The lists of a queue grow, and workers linger.** A calibration asks for twenty runs, sees them, and asks for twenty
-//!   more: workers that wait for the next list for a moment spare each of its generations the wait for a place.
-//! * **A task is begun once.** Its marker in the queue can be made once, also where locks do not reach other nodes, and
-//!   nobody reads what others did before beginning. Tasks that a lost worker had begun are not taken over by the other
+//!   more: workers that wait a moment for the next list spare each generation the wait in the scheduler's queue.
+//! * **A task is begun once.** Its marker in the queue can be made only once, even where locks do not reach other nodes, and
+//!   no worker reads the reports of others before it begins a task. Tasks that a lost worker had begun are not taken over by the other
 //!   workers: what has used up the memory of one would use up theirs. The submitter sends each of them again, alone, once,
 //!   with twice the memory; what then fails is named with its row.
-//! * **The state that the scheduler tells is a poor witness**: a memory kill and a dead node look alike, and a database of
-//!   ended jobs may not be there. So it is asked for one thing only, which jobs are still there, and at most once a minute.
-//!   That a worker is gone shows sooner where locks reach all nodes: the lock of its report is free.
-//! * **No clock of another machine is compared.** Workers count the time that they are given from their own start.
-//! * **Nothing of the site is in a key.** Where a task ran changes nothing in its result.
+//! * **The job states of a scheduler are poor evidence**: a memory kill and a dead node look alike, and there may be no
+//!   database of ended jobs. So flow asks one thing only, which jobs exist, and at most once a minute. Where locks reach all
+//!   nodes, a lost worker is noticed sooner, because the lock of its report is free.
+//! * **Clocks of two machines are never compared.** Workers count their time from their own start.
+//! * **Nothing of the site is in a key.** A result does not depend on where its task ran.
 
 pub mod line;
+pub mod message;
 pub mod post;
-pub mod said;
 pub mod scheduler;
 pub mod script;
 pub mod site;
 pub mod slices;
 
 pub use line::Line;
+pub use message::{Cause, Message};
 pub use post::{News, Post};
-pub use said::{Cause, Said};
 pub use scheduler::Scheduler;
 pub use site::Site;

@@ -1,7 +1,7 @@
-//! One queue as its submitter sees it: what was listed, which workers are there, and what they have reported.
+//! One queue as its submitter sees it: the tasks in its lists, its workers, and their reports.
 
 use super::line::Line;
-use super::said::Said;
+use super::message::Message;
 use super::scheduler::{Alive, Scheduler};
 use super::script::{self, Order, script};
 use super::site::{Needs, Site};
@@ -21,12 +21,12 @@ pub struct Entry {
     open: bool,
 }
 
-/// What became of a task.
+/// News of a task.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
-    /// What a worker said of it.
-    Said(Said),
-    /// The worker that had begun it is gone; what it printed last.
+    /// A message of a worker.
+    Message(Message),
+    /// The worker that had begun it is gone.
     Gone {
         /// Its machine.
         machine: String,
@@ -35,12 +35,12 @@ pub enum News {
     },
 }
 
-/// What is new of a queue.
+/// News of a queue.
 #[derive(Default)]
 pub struct Reports {
     /// News of tasks, by their numbers.
     pub news: Vec<(usize, News)>,
-    /// Words on workers.
+    /// Messages about workers.
     pub words: Vec<String>,
 }
 
@@ -51,7 +51,7 @@ struct Round {
     workers: usize,
     #[serde(skip)]
     started: BTreeSet<usize>,
-    /// Workers of it that are there no more, whether they had started or not.
+    /// Workers of it that no longer exist, whether or not they had started.
     #[serde(skip)]
     gone: BTreeSet<usize>,
     #[serde(skip, default = "Instant::now")]
@@ -66,16 +66,16 @@ struct Seen {
     machine: String,
     begun: BTreeSet<usize>,
     ended: bool,
-    /// Whether its end shows by its lock: that has been seen, or those of its machine are.
+    /// Whether a free lock proves that it has ended: its lock was seen held, or locks of its machine are visible here.
     locked: bool,
     heard: Instant,
 }
 
-/// A queue that this process looks after.
+/// A queue that this process serves.
 pub struct Post {
     /// The queue.
     pub queue: Queue,
-    /// What its workers are given.
+    /// The needs of its tasks.
     pub needs: Needs,
     /// Its tasks.
     pub entries: Vec<Entry>,
@@ -87,18 +87,18 @@ pub struct Post {
     machine: String,
     /// Whether a lock that another machine holds has been seen.
     reach: bool,
-    /// When a submission was refused last.
+    /// When the scheduler last refused a submission.
     refused: Option<Instant>,
-    /// Submissions that ended without any task done since one was.
+    /// Submissions in a row that ended without a finished task.
     idle_rounds: usize,
     counted: usize,
-    /// What was wrong with the last worker that ended with a fault, or without a word.
+    /// The fault of the last worker that ended with one, or that was lost.
     pub fault: Option<String>,
 }
 
-/// How the names of queues end whose workers take one task each.
+/// Ending of the names of queues whose workers take one task each.
 const ALONE: &str = "-alone";
-/// Jobs submitted so lately may not be listed yet.
+/// Jobs submitted more recently than this may not be listed yet.
 const LISTED_AFTER: Duration = Duration::from_secs(10);
 /// Pause after a refusal, while some workers are there.
 const REFUSED: Duration = Duration::from_secs(60);
@@ -134,7 +134,7 @@ impl Post {
         }
     }
 
-    /// Takes over a queue that its submitter has left, when some of its jobs are still there; none otherwise.
+    /// Takes over a queue whose submitter has ended, when some of its jobs still exist.
     ///
     /// # Errors
     /// The store cannot be read, or the scheduler does not answer.
@@ -202,32 +202,32 @@ impl Post {
         self.rounds.iter().map(|round| round.job.clone()).collect()
     }
 
-    /// Tasks that are not over.
+    /// Tasks that have not ended.
     pub fn left(&self) -> usize {
         self.entries.iter().filter(|entry| entry.open).count()
     }
 
-    /// Workers that are there or will be.
+    /// Workers that run or wait.
     pub fn active(&self) -> usize {
         self.rounds.iter().map(|round| round.workers.saturating_sub(round.gone.len())).sum()
     }
 
-    /// Workers that have started and not ended.
+    /// Workers that run.
     pub fn at_work(&self) -> usize {
         self.workers.values().filter(|worker| !worker.ended).count()
     }
 
-    /// Whether a worker that is there has begun a task that is not over.
+    /// Whether a running worker has begun a task that has not ended.
     pub fn is_busy(&self) -> bool {
         self.workers.values().any(|worker| !worker.ended && !worker.begun.is_empty())
     }
 
-    /// A task is over: nothing more is expected of it.
+    /// Marks a task as ended.
     pub fn over(&mut self, task: usize) {
         self.entries[task].open = false;
     }
 
-    /// Asks for the workers that are missing; answers with what to tell.
+    /// Requests the missing workers; returns messages for the person watching.
     ///
     /// # Errors
     /// No worker can be had, or the workers end without doing anything.
@@ -278,7 +278,7 @@ impl Post {
         if self.idle_rounds < MOST_IDLE {
             return Ok(());
         }
-        let fault = self.fault.clone().unwrap_or_else(|| "they said nothing".to_owned());
+        let fault = self.fault.clone().unwrap_or_else(|| "they left no message".to_owned());
         Err(format!("the workers of {} submissions ended and finished no task: {fault}", self.idle_rounds))
     }
 
@@ -316,7 +316,7 @@ impl Post {
         Ok(())
     }
 
-    /// Reads what the workers have reported since.
+    /// Reads new messages of the workers.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -328,8 +328,8 @@ impl Post {
             }
             let from = self.workers.get(&name).map_or(0, |worker| worker.from);
             let (text, length, held) = self.queue.news(&name, from)?;
-            for said in text.lines().filter_map(Said::read) {
-                self.heard(&name, said, &mut news, &mut words);
+            for message in text.lines().filter_map(Message::read) {
+                self.heard(&name, message, &mut news, &mut words);
             }
             let Some(worker) = self.workers.get_mut(&name) else { continue };
             worker.from += length;
@@ -338,7 +338,7 @@ impl Post {
             }
             self.reach |= held && worker.machine != self.machine;
             worker.locked |= held || self.reach || worker.machine == self.machine;
-            // Its lock would be seen and is not: it ended without a word. What it wrote last may come to be seen late.
+            // Its lock is free, so it was lost. Its last messages may become visible late.
             if worker.locked && !held && !worker.ended && worker.heard.elapsed() > Duration::from_millis(1500) {
                 self.lose(&name, &mut news, &mut words);
             }
@@ -346,8 +346,8 @@ impl Post {
         Ok(Reports { news, words })
     }
 
-    fn heard(&mut self, name: &str, said: Said, news: &mut Vec<(usize, News)>, words: &mut Vec<String>) {
-        if let Said::Started { round, index, machine, .. } = &said {
+    fn heard(&mut self, name: &str, message: Message, news: &mut Vec<(usize, News)>, words: &mut Vec<String>) {
+        if let Message::Started { round, index, machine, .. } = &message {
             if let Some(round) = round.checked_sub(1).and_then(|round| self.rounds.get_mut(round)) {
                 round.started.insert(*index);
             }
@@ -364,9 +364,9 @@ impl Post {
             return;
         }
         let Some(worker) = self.workers.get_mut(name) else { return };
-        match &said {
-            Said::Begun { task } => drop(worker.begun.insert(*task)),
-            Said::Ended { fault } => {
+        match &message {
+            Message::Begun { task } => drop(worker.begun.insert(*task)),
+            Message::Ended { fault } => {
                 worker.ended = true;
                 let (round, index) = (worker.round, worker.index);
                 if let Some(fault) = fault {
@@ -376,17 +376,17 @@ impl Post {
                 self.gone(round, index);
                 return;
             }
-            Said::Done { task, .. } | Said::Failed { task, .. } => {
+            Message::Done { task, .. } | Message::Failed { task, .. } => {
                 worker.begun.remove(task);
                 self.idle_rounds = 0;
             }
-            Said::Stopped { task, .. } | Said::Elsewhere { task } | Said::Lost { task, .. } => {
+            Message::Stopped { task, .. } | Message::Elsewhere { task } | Message::Lost { task, .. } => {
                 worker.begun.remove(task);
             }
-            Said::Stands { .. } | Said::Started { .. } => {}
+            Message::Stands { .. } | Message::Started { .. } => {}
         }
-        if let Some(task) = said.task().filter(|task| self.entries.get(*task).is_some_and(|entry| entry.open)) {
-            news.push((task, News::Said(said)));
+        if let Some(task) = message.task().filter(|task| self.entries.get(*task).is_some_and(|entry| entry.open)) {
+            news.push((task, News::Message(message)));
         }
     }
 
@@ -396,7 +396,7 @@ impl Post {
         }
     }
 
-    /// A worker is gone without a word.
+    /// A worker was lost: it ended without a message.
     fn lose(&mut self, name: &str, news: &mut Vec<(usize, News)>, words: &mut Vec<String>) {
         let Some(worker) = self.workers.get_mut(name) else { return };
         worker.ended = true;
@@ -425,7 +425,7 @@ impl Post {
         format!("{said} in {}", self.queue.path().join(log).display())
     }
 
-    /// Compares with what the scheduler says is still there: news of the tasks of workers that are gone, and words.
+    /// Compares with the jobs that the scheduler lists: news of the tasks of lost workers, and messages.
     pub fn apply(&mut self, alive: &Alive) -> Reports {
         let (mut news, mut words) = (Vec::new(), Vec::new());
         for number in 0..self.rounds.len() {
@@ -448,7 +448,7 @@ impl Post {
                 self.fault = Some(said);
             }
             never.iter().for_each(|index| self.gone(number + 1, *index));
-            // A worker whose lock is held lives whatever the scheduler says, and one that was just heard has written more.
+            // A worker whose lock is held is alive whatever the scheduler lists, and so is one that has just written a message.
             let lost: Vec<String> = self
                 .workers
                 .iter()

@@ -1,4 +1,4 @@
-//! How a scheduler is spoken to: three questions, each one program that is run.
+//! Schedulers: three questions, each answered by running one program.
 
 use super::script::{self, Order};
 use super::site::{Commands, Kind, Site};
@@ -6,15 +6,15 @@ use std::collections::HashMap;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// What a scheduler is asked.
+/// The three questions to a scheduler.
 pub trait Scheduler: Send + Sync {
-    /// Submits an array of equal jobs, whose script lies in the folder of the queue; answers with the job.
+    /// Submits an array of equal jobs, whose script is in the folder of the queue; returns the number of the job.
     ///
     /// # Errors
-    /// It is refused; why, in the scheduler's words.
+    /// The scheduler refuses, for the reason in its own words.
     fn submit(&self, order: &Order) -> Result<String, String>;
 
-    /// What is still there, waiting or running, of these jobs and of those of this queue.
+    /// Which of these jobs, and of the jobs of this queue, wait or run.
     ///
     /// # Errors
     /// The scheduler does not answer, which says nothing about the jobs.
@@ -23,16 +23,16 @@ pub trait Scheduler: Send + Sync {
     /// Cancels the jobs of a queue.
     ///
     /// # Errors
-    /// It is refused.
+    /// The scheduler refuses.
     fn cancel(&self, queue: &str, jobs: &[String]) -> Result<(), String>;
 }
 
-/// Jobs that are still there.
+/// Jobs that wait or run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Alive {
-    /// By job: the numbers of its array that are there, where the scheduler tells them apart.
+    /// By job: the indices of its array that wait or run, where the scheduler lists them one by one.
     pub jobs: HashMap<String, Option<Vec<usize>>>,
-    /// How many wait for a place, and why the first of them does.
+    /// How many wait for a free node, and why the first of them does.
     pub waiting: Option<(usize, String)>,
 }
 
@@ -44,10 +44,10 @@ pub fn of(site: &Site) -> Box<dyn Scheduler> {
     }
 }
 
-/// A scheduler that does not answer for so long is not asked any more for now.
+/// Longest wait for an answer of a scheduler.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Runs a program to its end; its output, or why there is none.
+/// Runs a program to its end; returns its output, or why there is none.
 fn run(words: &[String]) -> Result<String, String> {
     let [program, arguments @ ..] = words else { return Err("no program".to_owned()) };
     let mut command = Command::new(program);
@@ -80,16 +80,16 @@ fn run(words: &[String]) -> Result<String, String> {
     match output.status.success() {
         true => Ok(text(&output.stdout)),
         false => {
-            let said = [text(&output.stderr), text(&output.stdout)].into_iter().find(|text| !text.is_empty());
-            let said = said.unwrap_or_else(|| output.status.to_string());
-            Err(format!("`{program}` says: {}", said.lines().collect::<Vec<_>>().join("; ")))
+            let answer = [text(&output.stderr), text(&output.stdout)].into_iter().find(|text| !text.is_empty());
+            let answer = answer.unwrap_or_else(|| output.status.to_string());
+            Err(format!("`{program}` says: {}", answer.lines().collect::<Vec<_>>().join("; ")))
         }
     }
 }
 
 fn read(source: Option<impl std::io::Read>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    // What was read until an error is what there is.
+    // After an error, the output is what was read before it.
     let _ = source.map(|mut source| source.read_to_end(&mut bytes));
     bytes
 }
@@ -103,10 +103,10 @@ struct Slurm;
 impl Scheduler for Slurm {
     fn submit(&self, order: &Order) -> Result<String, String> {
         let script = order.folder.join(format!("job-{}.sh", order.round)).display().to_string();
-        let said = run(&words(&["sbatch", "--parsable", &script]))?;
-        // With a cluster behind the number on some sites.
-        let job: String = said.lines().last().unwrap_or_default().chars().take_while(char::is_ascii_digit).collect();
-        if job.is_empty() { Err(format!("`sbatch` says no number of a job: {said}")) } else { Ok(job) }
+        let answer = run(&words(&["sbatch", "--parsable", &script]))?;
+        // On some sites the name of a cluster follows the number.
+        let job: String = answer.lines().last().unwrap_or_default().chars().take_while(char::is_ascii_digit).collect();
+        if job.is_empty() { Err(format!("`sbatch` says no number of a job: {answer}")) } else { Ok(job) }
     }
 
     fn alive(&self, queue: &str, _: &[String]) -> Result<Alive, String> {
@@ -133,7 +133,7 @@ fn listed(text: &str) -> Alive {
     for line in text.lines() {
         let mut parts = line.split_whitespace();
         let (Some(job), Some(index), Some(state)) = (parts.next(), parts.next(), parts.next()) else { continue };
-        // Those that are ending are there no more; nothing of them is begun.
+        // Jobs that are ending begin no more tasks, so they do not count.
         let waits = matches!(state, "PENDING" | "CONFIGURING" | "REQUEUED" | "SUSPENDED" | "REQUEUE_HOLD");
         if !waits && state != "RUNNING" {
             continue;
@@ -151,7 +151,7 @@ fn listed(text: &str) -> Alive {
     alive
 }
 
-/// A scheduler that is spoken to by the commands of the site file.
+/// A scheduler that is driven by the commands of the site file.
 struct Generic(Commands);
 
 impl Generic {
@@ -169,15 +169,15 @@ impl Generic {
 impl Scheduler for Generic {
     fn submit(&self, order: &Order) -> Result<String, String> {
         let command: Vec<String> = self.0.submit.iter().map(|word| script::filled(word, order)).collect();
-        let said = run(&command)?;
+        let answer = run(&command)?;
         let pattern = regex::Regex::new(&self.0.job).map_err(|error| error.to_string())?;
-        let found = pattern.find(&said).map(|found| found.as_str().to_owned());
-        found.ok_or_else(|| format!("`{}` says no job that `commands.job` finds: {said}", command[0]))
+        let found = pattern.find(&answer).map(|found| found.as_str().to_owned());
+        found.ok_or_else(|| format!("`{}` says no job that `commands.job` finds: {answer}", command[0]))
     }
 
     fn alive(&self, queue: &str, jobs: &[String]) -> Result<Alive, String> {
-        let said = run(&Self::with_jobs(&self.0.alive, queue, jobs))?;
-        let numbers: std::collections::HashSet<&str> = said.split(|c: char| !c.is_ascii_digit()).collect();
+        let answer = run(&Self::with_jobs(&self.0.alive, queue, jobs))?;
+        let numbers: std::collections::HashSet<&str> = answer.split(|c: char| !c.is_ascii_digit()).collect();
         let number =
             |job: &str| job.split(|c: char| !c.is_ascii_digit()).find(|part| !part.is_empty()).map(str::to_owned);
         let there = jobs.iter().filter(|job| number(job).is_some_and(|number| numbers.contains(number.as_str())));

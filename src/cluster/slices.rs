@@ -1,7 +1,7 @@
-//! Which task of the lists a worker begins next: its own slice in order, then the last of whichever slice has most left.
+//! Which task of the lists a worker begins next: first its own slice in order, then the last task of the fullest slice.
 //!
-//! The slice of worker `index` of `of` is the `index`-th part of every list, so that workers seldom meet: one that takes from
-//! another's slice does so from the end that its owner comes to last.
+//! Worker `index` of `of` owns the `index`-th part of every list, so that workers seldom want the same task: one that takes
+//! from the slice of another begins at the end that the owner reaches last.
 
 use std::collections::VecDeque;
 
@@ -21,9 +21,9 @@ impl Slices {
     /// Adds the tasks of one list.
     pub fn add(&mut self, tasks: std::ops::Range<usize>) {
         let (count, of) = (tasks.len(), self.slices.len());
-        for (place, task) in tasks.enumerate() {
+        for (number, task) in tasks.enumerate() {
             // With fewer tasks than workers each of the first workers has one.
-            let slice = if count < of { place } else { place * of / count };
+            let slice = if count < of { number } else { number * of / count };
             self.slices[slice].push_back(task);
         }
     }

@@ -1,4 +1,4 @@
-//! How work is started: one pool of threads, and the one budget of cores. It knows neither tasks nor physics.
+//! One pool of threads, and the one budget of cores. It knows neither tasks nor physics.
 //!
 //! `--jobs` bounds everything. The pool has that many threads. A piece of work given to it runs on one of them; what that
 //! work does in parallel through rayon (the statistics) runs on the same threads. A simulation brings threads of its own,
@@ -30,7 +30,7 @@ pub fn with_threads<'scope, T>(
 }
 
 impl<'scope> Threads<'_, 'scope> {
-    /// Hands one piece of work to the pool; it is told its share of the cores.
+    /// Hands one piece of work to the pool; it receives its share of the cores.
     pub fn give(&self, work: impl FnOnce(&Share) + Send + 'scope) {
         let share = self.budget.share();
         self.scope.spawn_fifo(move |_| work(&share));

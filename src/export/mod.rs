@@ -16,8 +16,8 @@ use crate::artifact::{Artifact, Node};
 /// A file: its name and bytes.
 pub type File = (String, Vec<u8>);
 
-/// The files of a result: texts and bytes whose names are file formats are written as they are, and take the place of the
-/// tables they were made from.
+/// The files of a result. Texts and bytes whose names are file formats are written unchanged, in place of the tables that
+/// they were made from.
 pub fn files(stage: &str, artifact: &Artifact) -> Vec<File> {
     let mut files = Vec::new();
     for (name, node) in artifact.root.iter() {

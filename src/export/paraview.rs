@@ -5,7 +5,7 @@
 //! | `NAME.particles.vtu` | discs as points | `radius`, `group` (number among those of the specimen; the aggregate's is the last), `clump` (-1 none); of a run `displacement` |
 //! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 between discs, 1 of a disc and aggregate, 2 within aggregate), `gap` |
 //! | `NAME.clumps.vtu` | polygons of aggregate | `polygon`, `clump` (-1 when no disc lies in it), `mass` |
-//! | `NAME.forces.vtu` | contacts of a run as lines, where it kept forces | `normal_force` (compression positive), `shear_force`, `bonded`, `chain` (1 from the mean force on) |
+//! | `NAME.forces.vtu` | contacts of a run as lines, where it stored forces | `normal_force` (compression positive), `shear_force`, `bonded`, `chain` (1 from the mean force on) |
 //! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact | `mode` (0 tension, 1 shear), `group` (number of the contact among those of all cracks by name), `axial_strain` |
 //! | `NAME.pvd` | all states of a run over the axial strain | |
 //!

@@ -3,7 +3,7 @@
 //!
 //! | file | a row for each |
 //! |---|---|
-//! | `NAME.particles.csv` | disc: place, radius, group, clump, and the density of single discs; the mass of pebbles is that of their clump |
+//! | `NAME.particles.csv` | disc: position, radius, group, clump, and the density of single discs; the mass of pebbles is that of their clump |
 //! | `NAME.clumps.csv` | rigid clump: mass and moment of inertia per metre of thickness, centre of mass |
 //! | `NAME.groups.csv` | contact group: microparameters of its spring and bond (of a run) |
 //! | `NAME.contacts.csv` | contact: its discs, group, gap, and whether it is bonded (of a run) |

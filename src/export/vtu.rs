@@ -1,11 +1,11 @@
 //! VTK unstructured grids (`.vtu`) and their series in time (`.pvd`), as ParaView and others read them.
 //!
 //! Numbers are written as text with the fewest digits that read back to the same number: about twice the size of the
-//! binary forms, but exact, free of byte order, and a few dozen lines. The crate there is for the format (`vtkio`) brings
+//! binary forms, but exact, free of byte order, and a few dozen lines. The crate for the format (`vtkio`) brings
 //! an XML parser, a parser for legacy files and three compressors for what is here one kind of cell per file.
 //!
-//! Format: VTK User's Guide, "VTK XML formats"; cell types 1 (vertex), 3 (line), 5 (triangle), 7 (polygon). What is
-//! plane has z = 0.
+//! Format: VTK User's Guide, "VTK XML formats"; cell types 1 (vertex), 3 (line), 5 (triangle), 7 (polygon). Plane
+//! points have z = 0.
 
 use std::fmt::{Display, Write};
 

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! A minus directly before a power is refused, because `-a^2` is −(a²) in mathematics and (−a)² in spreadsheets; so is
-//! one behind `*` or `/`, as in `2*-a^2`. In an exponent there is no such doubt: `a^-2`. `min` and `max` take one value
-//! or more. `1e-3` is a number, `2a` is nothing.
+//! one behind `*` or `/`, as in `2*-a^2`. An exponent may have a sign: `a^-2`. `min` and `max` take one value
+//! or more. `1e-3` is a number, `2a` is a fault.
 
 use super::{Measure, function_of_all, function_of_one};
 
@@ -24,7 +24,7 @@ const DEEPEST: usize = 64;
 #[derive(Clone, Debug)]
 pub(super) enum Term {
     Number(f64),
-    /// Which of the names.
+    /// Index of a name.
     Name(usize),
     Negative(Box<Term>),
     /// Operations of one rank, from the left. A list and not a tree: a long sum must not take a deep stack.
@@ -62,9 +62,9 @@ pub(super) fn formula(text: &str) -> Result<(Term, Vec<String>), String> {
     }
     let mut order: Vec<usize> = (0..reader.names.len()).collect();
     order.sort_by(|a, b| reader.names[*a].cmp(&reader.names[*b]));
-    let mut places = vec![0; order.len()];
-    order.iter().enumerate().for_each(|(place, &name)| places[name] = place);
-    root.rename(&places);
+    let mut indices = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(index, &name)| indices[name] = index);
+    root.rename(&indices);
     reader.names.sort_unstable();
     Ok((root, reader.names))
 }
@@ -88,18 +88,18 @@ impl Term {
         }
     }
 
-    /// Gives the names other places.
-    fn rename(&mut self, places: &[usize]) {
+    /// Renumbers the names.
+    fn rename(&mut self, indices: &[usize]) {
         match self {
             Self::Number(_) => {}
-            Self::Name(name) => *name = places[*name],
-            Self::Negative(term) | Self::One(_, term) => term.rename(places),
+            Self::Name(name) => *name = indices[*name],
+            Self::Negative(term) | Self::One(_, term) => term.rename(indices),
             Self::Chain(first, rest) => {
-                first.rename(places);
-                rest.iter_mut().for_each(|(_, term)| term.rename(places));
+                first.rename(indices);
+                rest.iter_mut().for_each(|(_, term)| term.rename(indices));
             }
-            Self::Power(a, b) => [a, b].into_iter().for_each(|term| term.rename(places)),
-            Self::All(_, terms) => terms.iter_mut().for_each(|term| term.rename(places)),
+            Self::Power(a, b) => [a, b].into_iter().for_each(|term| term.rename(indices)),
+            Self::All(_, terms) => terms.iter_mut().for_each(|term| term.rename(indices)),
         }
     }
 }

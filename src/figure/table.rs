@@ -14,7 +14,7 @@ pub struct Table {
     pub label: String,
     /// Columns of equal length.
     pub columns: Vec<Column>,
-    /// Remarks under the table.
+    /// NoteTable under the table.
     pub notes: Vec<String>,
 }
 

@@ -31,7 +31,7 @@ pub(super) fn workflow(
     overlay::profile(&mut root, overrides.profile.as_deref(), &mut sources, &mut faults);
     overlay::sets(&mut root, &overrides.sets, &mut sources, &mut faults);
     let mut check = Check { sources: &sources, faults, lost: Vec::new() };
-    let mut looked = stages::Looked { folder, absent: Vec::new(), remarks: Vec::new() };
+    let mut looked = stages::Looked { folder, absent: Vec::new(), warnings: Vec::new() };
     check.root_keys(&root);
     let head = check.head(&mut root);
     let mut context = Context {
@@ -46,7 +46,9 @@ pub(super) fn workflow(
     check.columns(&root, &context);
     let mut faults = check.faults;
     let Some((head, stages)) = head.zip(stages).filter(|_| faults.is_empty()) else {
-        faults.sort_by_key(|fault| fault.place.as_ref().map(|place| (place.source.name != name, place.span.start)));
+        faults.sort_by_key(|fault| {
+            fault.location.as_ref().map(|location| (location.source.name != name, location.span.start))
+        });
         let more = faults.len().saturating_sub(MOST_FAULTS);
         faults.truncate(MOST_FAULTS);
         if more > 0 {
@@ -65,7 +67,7 @@ pub(super) fn workflow(
         profiles,
         stages,
         absent: looked.absent,
-        remarks: looked.remarks,
+        warnings: looked.warnings,
     })
 }
 
@@ -81,7 +83,7 @@ impl Check<'_> {
     fn root_keys(&mut self, root: &Table) {
         for (name, entry) in root.in_order().into_iter().take(ROOT.len() + MOST_FAULTS + 1) {
             if !ROOT.contains(&name) {
-                let fault = Fault::new(format!("unknown key `{name}`")).at(self.sources.place(entry.key));
+                let fault = Fault::new(format!("unknown key `{name}`")).at(self.sources.location(entry.key));
                 self.faults.push(fault.known(name, "tables", ROOT));
             }
         }
@@ -132,7 +134,7 @@ impl Check<'_> {
         if table.levels.is_empty() && table.range.is_none() {
             let fault = Fault::new(format!("factor `{name}` has neither levels nor a range"));
             let hint = "give it `levels = [10, 20, 30]` or `range = [10, 30]`";
-            self.faults.push(fault.at(self.sources.place(node.span)).hint(hint));
+            self.faults.push(fault.at(self.sources.location(node.span)).hint(hint));
         }
         if let Some(range) = table.range
             && range[0] >= range[1]

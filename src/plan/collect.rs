@@ -14,7 +14,7 @@ pub(super) const NAME_PATTERN: &str = "^[A-Za-z][A-Za-z0-9_-]{0,63}$";
 
 /// Collects faults.
 pub(super) struct Check<'a> {
-    /// For the places of faults.
+    /// For the locations of faults.
     pub(super) sources: &'a Sources,
     /// The faults so far.
     pub(super) faults: Vec<Fault>,
@@ -31,7 +31,7 @@ impl Check<'_> {
             return Some(table);
         }
         let message = format!("wanted tables such as [{key}.NAME], found {found}");
-        self.faults.push(Fault::new(message).at(self.sources.place(span)));
+        self.faults.push(Fault::new(message).at(self.sources.location(span)));
         None
     }
 
@@ -44,12 +44,12 @@ impl Check<'_> {
         }
         let fault = Fault::new(format!("`{}` cannot be a name", super::node::shortened(name)));
         let hint = format!("a letter first, then letters, digits, `_` and `-`, at most {LONGEST_NAME} in all");
-        self.faults.push(fault.at(self.sources.place(entry.key)).hint(hint));
+        self.faults.push(fault.at(self.sources.location(entry.key)).hint(hint));
     }
 
-    /// A fault at `path` below `node`, or as near to it as the file goes; once, though two stages may find it.
+    /// Adds a fault at `path` below `node`, or at the nearest value that the file has. A fault that two stages find is added once.
     pub(super) fn complain(&mut self, node: &Node, path: &[Step], fault: Fault) {
-        let fault = fault.at(self.sources.place(node.nearest(path).span));
+        let fault = fault.at(self.sources.location(node.nearest(path).span));
         if !self.faults.contains(&fault) {
             self.faults.push(fault);
         }

@@ -15,14 +15,14 @@ pub struct Source {
 
 /// A stretch of a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The text it lies in.
     pub source: Arc<Source>,
     /// Bytes of the text, on character boundaries.
     pub span: Range<usize>,
 }
 
-impl Place {
+impl Location {
     /// Line and column of its first character, counted from 1, the column in characters.
     pub fn line_column(&self) -> (usize, usize) {
         let before = &self.source.text[..self.span.start];
@@ -32,7 +32,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (line, column) = self.line_column();
         write!(f, "{}:{line}:{column}", self.source.name)
@@ -41,34 +41,34 @@ impl fmt::Display for Place {
 
 /// One fault.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}{message}", self.place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default())]
+#[error("{}{message}", self.location.as_ref().map(|location| format!("{location}: ")).unwrap_or_default())]
 pub struct Fault {
     /// Where; `None` for a file that cannot be read at all.
-    pub place: Option<Place>,
+    pub location: Option<Location>,
     /// What was found and what was expected.
     pub message: String,
-    /// A few words at the place itself.
+    /// A few words at the location itself.
     pub label: Option<String>,
     /// What to do.
     pub hint: Option<String>,
-    /// Other places that belong to it, with a few words each.
-    pub also: Vec<(Place, String)>,
+    /// Other locations that belong to it, with a few words each.
+    pub also: Vec<(Location, String)>,
 }
 
 impl Fault {
-    /// A fault without a place.
+    /// A fault without a location.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { place: None, message: message.into(), label: None, hint: None, also: Vec::new() }
+        Self { location: None, message: message.into(), label: None, hint: None, also: Vec::new() }
     }
 
     /// Says where.
     #[must_use]
-    pub fn at(mut self, place: Place) -> Self {
-        self.place = Some(place);
+    pub fn at(mut self, location: Location) -> Self {
+        self.location = Some(location);
         self
     }
 
-    /// Adds a few words at the place.
+    /// Adds a few words at the location.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = Some(label.into());
@@ -82,10 +82,10 @@ impl Fault {
         self
     }
 
-    /// Adds another place that belongs to it.
+    /// Adds another location that belongs to it.
     #[must_use]
-    pub fn also(mut self, place: Place, words: impl Into<String>) -> Self {
-        self.also.push((place, words.into()));
+    pub fn also(mut self, location: Location, words: impl Into<String>) -> Self {
+        self.also.push((location, words.into()));
         self
     }
 
@@ -167,9 +167,9 @@ mod tests {
     #[test]
     fn lines_and_columns_count_from_one_in_characters() {
         let source = Arc::new(Source { name: "w.toml".into(), text: "a\nσ = 1".into() });
-        let place = |span| Place { source: Arc::clone(&source), span };
-        assert_eq!(place(0..1).line_column(), (1, 1));
-        assert_eq!(place(5..6).line_column(), (2, 3));
-        assert_eq!(Fault::new("no").at(place(8..8)).to_string(), "w.toml:2:6: no");
+        let location = |span| Location { source: Arc::clone(&source), span };
+        assert_eq!(location(0..1).line_column(), (1, 1));
+        assert_eq!(location(5..6).line_column(), (2, 3));
+        assert_eq!(Fault::new("no").at(location(8..8)).to_string(), "w.toml:2:6: no");
     }
 }

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn every_cycle_is_told_once_from_its_first_node() {
+    fn every_cycle_is_reported_once_from_its_first_node() {
         assert_eq!(cycles(&[vec![1], vec![2], vec![0]]), [vec![0, 1, 2]]);
         assert_eq!(cycles(&[vec![0], vec![2], vec![1]]), [vec![0], vec![1, 2]]);
         assert_eq!(cycles(&[vec![1, 2], vec![], vec![1]]), Vec::<Vec<usize>>::new());

@@ -1,6 +1,6 @@
 //! The task text, and the key that is its hash.
 //!
-//! A task text is what decides a task's result, one fact a line, for people as much as for the hash:
+//! A task text holds all that decides a task's result, one fact per line, readable for people:
 //!
 //! ```text
 //! flow task 1
@@ -111,7 +111,7 @@ fn hash_line(text: &mut String, what: &str, name: &str, hash: &[u8; 32]) {
     text.push('\n');
 }
 
-/// As blake3 shows a hash, sooner: a task may have a hundred thousand inputs.
+/// The hexadecimal digits of a hash, as blake3 gives them but faster: a task may have a hundred thousand inputs.
 fn push_hex(text: &mut String, hash: &[u8; 32]) {
     let mut digits = [0; 64];
     for (pair, byte) in digits.as_chunks_mut::<2>().0.iter_mut().zip(hash) {
@@ -169,7 +169,7 @@ fn push_number(text: &mut String, number: &Number) {
 fn push_real(text: &mut String, real: f64) {
     let size = real.abs();
     if size < 1e7 && real.trunc() == real {
-        // As below, but a whole number is told much sooner.
+        // As below, but much faster for a whole number.
         write(text, format_args!("{}", real as i64));
     } else if (1e-4..1e7).contains(&size) {
         write(text, format_args!("{real}"));

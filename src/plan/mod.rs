@@ -1,9 +1,9 @@
 //! From TOML text to a checked graph, and from tasks to keys; pure but for reading the file.
 //!
-//! [`load`] reads the text into a tree of values that know their places (`syntax`), lays the profile and the `--set`
-//! options over it (`overlay`), lets each table be read into its own type (`read`), checks names, units, ports and cycles
+//! [`load`] reads the text into a tree of values that know their locations (`syntax`), lays the profile and the `--set`
+//! options over it (`overlay`), reads each table into its own type (`read`), checks names, units, ports and cycles
 //! (`check`), and puts the stages in order (`graph`). It finds all faults of a file at once.
-//! [`key`](mod@key) writes the task text and its hash, [`why`] says what is different between two of them.
+//! [`key`](mod@key) writes the task text and its hash, [`why`] says how two task texts differ.
 
 mod check;
 mod collect;
@@ -21,12 +21,12 @@ mod stages;
 mod syntax;
 pub mod why;
 
-pub use fault::{Fault, Place, Source, nearest};
+pub use fault::{Fault, Location, Source, nearest};
 
 use crate::stage::{Context, Stage};
 use std::path::{Path, PathBuf};
 
-/// What is laid over the values of the file.
+/// Overrides of the values of the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Overrides {
     /// Name of a profile of the file.
@@ -47,16 +47,16 @@ pub struct Workflow {
     pub about: String,
     /// Seed, factors and responses.
     pub context: Context,
-    /// The profile that was laid over it.
+    /// The profile whose overrides apply.
     pub profile: Option<String>,
     /// Names of all profiles of the file.
     pub profiles: Vec<String>,
     /// Stages so that each comes after its inputs, else in the order of the file.
     pub stages: Vec<StageNode>,
-    /// Files beside it that cannot be read: faults of a run, but results that are stored can be shown without them.
+    /// Files beside it that cannot be read. They are faults of a run, but stored results can be shown without them.
     pub absent: Vec<Fault>,
-    /// What is no fault, and must be known before its results are trusted.
-    pub remarks: Vec<Fault>,
+    /// Warnings: no faults, but a reader must know them before trusting the results.
+    pub warnings: Vec<Fault>,
 }
 
 /// A stage of a workflow.
@@ -72,7 +72,7 @@ pub struct StageNode {
 }
 
 impl Workflow {
-    /// Which stage has this name.
+    /// The index of the stage with this name.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.stages.iter().position(|stage| stage.name == name)
     }

@@ -1,6 +1,6 @@
-//! A workflow as a tree of values that know where they stand.
+//! A workflow as a tree of values with their locations.
 
-use super::fault::{Place, Source};
+use super::fault::{Location, Source};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -25,17 +25,17 @@ impl Sources {
         Span { source: self.0.len() as u32 - 1, start: 0, end: text.len() as u32 }
     }
 
-    /// The place of a span.
-    pub(super) fn place(&self, span: Span) -> Place {
+    /// The location of a span.
+    pub(super) fn location(&self, span: Span) -> Location {
         let source = Arc::clone(&self.0[span.source as usize]);
-        Place { source, span: span.start as usize..span.end as usize }
+        Location { source, span: span.start as usize..span.end as usize }
     }
 }
 
 /// One value of the tree.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
-    /// Where it stands.
+    /// Its location.
     pub(super) span: Span,
     /// What it is.
     pub(super) value: Value,
@@ -48,13 +48,13 @@ pub(super) enum Value {
     Int(i64),
     Real(f64),
     Flag(bool),
-    /// A date or time; nothing in a workflow is one, so it is kept as text for messages only.
+    /// A date or time. No workflow value is one, so only its text is stored, for messages.
     Date(String),
     List(Vec<Node>),
     Table(Table),
     /// A value whose fault is reported already: it reads as whatever is wanted.
     Hole,
-    /// A value of a type that nothing wants: only where it is not looked at does it pass.
+    /// A value of a type that no setting has: it is a fault wherever it is read.
     Probe,
 }
 
@@ -62,10 +62,10 @@ pub(super) enum Value {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Table(pub(super) BTreeMap<String, Entry>);
 
-/// A value in a table, with the place of its name.
+/// A value in a table, with the location of its name.
 #[derive(Clone, Debug)]
 pub(super) struct Entry {
-    /// Where its name stands.
+    /// Location of its name.
     pub(super) key: Span,
     /// The value.
     pub(super) node: Node,
@@ -108,7 +108,7 @@ impl Node {
         }
     }
 
-    /// As JSON: what a table says, without its places.
+    /// As JSON: what a table says, without its locations.
     pub(super) fn json(&self) -> serde_json::Value {
         use serde_json::Value as Json;
         match &self.value {

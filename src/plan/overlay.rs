@@ -1,7 +1,7 @@
 //! Profiles and `--set`: values laid over those of the file, by path. Tables merge, everything else is replaced.
 //!
-//! What is laid over a stage, factor or response must name one that exists; whether its keys exist is seen when the
-//! merged table is read, and the fault then points at the profile or the option.
+//! An override of a stage, factor or response must name one that exists. Unknown keys are found when the merged table is
+//! read, and the fault then points at the profile or the option.
 
 use super::collect::MOST_FAULTS;
 use super::fault::Fault;
@@ -28,16 +28,15 @@ pub(super) fn profile(root: &mut Table, name: Option<&str>, sources: &mut Source
         None => &none,
         Some(node) => node.table().unwrap_or_else(|| {
             let message = format!("wanted tables such as [profile.quick.stage.NAME], found {}", node.describe());
-            faults.push(Fault::new(message).at(sources.place(node.span)));
+            faults.push(Fault::new(message).at(sources.location(node.span)));
             &none
         }),
     };
     for (name, entry) in table.in_order() {
         match entry.node.table() {
             Some(table) => check_paths(root, table, &format!("profile `{name}`"), sources, faults),
-            None => {
-                faults.push(Fault::new(format!("profile `{name}` is not a table")).at(sources.place(entry.node.span)))
-            }
+            None => faults
+                .push(Fault::new(format!("profile `{name}` is not a table")).at(sources.location(entry.node.span))),
         }
     }
     let Some(name) = name else { return };
@@ -46,7 +45,7 @@ pub(super) fn profile(root: &mut Table, name: Option<&str>, sources: &mut Source
         Some(None) => {}
         None => {
             let whole = sources.add("--profile", name);
-            let fault = Fault::new(format!("there is no profile `{name}`")).at(sources.place(whole));
+            let fault = Fault::new(format!("there is no profile `{name}`")).at(sources.location(whole));
             faults.push(fault.known(name, "profiles", table.in_order().into_iter().map(|(name, _)| name)));
         }
     }
@@ -72,7 +71,7 @@ pub(super) fn sets(root: &mut Table, sets: &[String], sources: &mut Sources, fau
 /// The tables that `path=value` stands for.
 fn option(set: &str, sources: &Sources, whole: Span) -> Result<Table, Vec<Fault>> {
     let form = "write --set stage.NAME.key=value";
-    let refused = |message: String| vec![Fault::new(message).at(sources.place(whole)).hint(form)];
+    let refused = |message: String| vec![Fault::new(message).at(sources.location(whole)).hint(form)];
     let (path, text) = set.split_once('=').ok_or_else(|| refused(format!("`{set}` has no `=`")))?;
     let steps = path_steps(path).ok_or_else(|| refused(format!("`{}` is not a path of keys", path.trim())))?;
     let offset = set.len() - text.trim_start().len();
@@ -111,17 +110,17 @@ fn path_steps(path: &str) -> Option<Vec<String>> {
 /// What the overlay names must be there.
 fn check_paths(root: &Table, over: &Table, whose: &str, sources: &Sources, faults: &mut Vec<Fault>) {
     for (name, entry) in over.in_order() {
-        let place = sources.place(entry.key);
+        let location = sources.location(entry.key);
         let Some((_, things)) = NAMED.iter().find(|(key, _)| *key == name) else {
             if name != "workflow" {
-                let fault = Fault::new(format!("{whose} cannot set `{name}`")).at(place);
+                let fault = Fault::new(format!("{whose} cannot set `{name}`")).at(location);
                 faults.push(fault.known(name, "keys", ["workflow", "factor", "response", "material", "stage"]));
             }
             continue;
         };
         let Some(table) = entry.node.table() else {
             let message = format!("{whose} must name one of the {things} below `{name}`");
-            faults.push(Fault::new(message).at(place));
+            faults.push(Fault::new(message).at(location));
             continue;
         };
         let known = root.get(name).and_then(Node::table);
@@ -134,7 +133,7 @@ fn check_paths(root: &Table, over: &Table, whose: &str, sources: &Sources, fault
             }
             let fault = Fault::new(format!("{whose} sets `{name}.{inner}`, which does not exist"));
             let names = known.map(Table::in_order).unwrap_or_default();
-            faults.push(fault.at(sources.place(entry.key)).known(
+            faults.push(fault.at(sources.location(entry.key)).known(
                 inner,
                 things,
                 names.into_iter().map(|(name, _)| name),

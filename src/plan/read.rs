@@ -14,14 +14,14 @@ use super::node::{Entry, Node, Sources, Step, Value, shortened};
 use super::reader::{Cause, Reader, Unread};
 use std::slice;
 
-/// So many faults of one table are told.
+/// Most faults that are reported of one table.
 const MOST_FAULTS: usize = 20;
 
 /// Tables and lists with more values are not searched.
 const MOST_SEARCHED: usize = 64;
 
 /// Reads `node` with `read`; every fault goes to `faults`, and the value is given only when there is none. `known` gives
-/// the keys of the table for a message, when the type itself does not tell them.
+/// the keys of the table for a message, when the type itself does not give them.
 pub(super) fn read<T>(
     node: &mut Node,
     sources: &Sources,
@@ -53,8 +53,8 @@ pub(super) fn read<T>(
     (whole && faults.len() == before).then_some(value)
 }
 
-/// The fault, told with its place; the tree is changed so that the next reading gets past it. `None` when the error is a
-/// consequence of faults that were told.
+/// The fault with its location; the tree is changed so that the next reading gets past it. `None` when the error is a
+/// consequence of faults that were reported.
 fn tell<T>(
     node: &mut Node,
     error: &Unread,
@@ -143,9 +143,9 @@ fn unread_key(root: &mut Node, path: &mut Vec<Step>, reads: &impl Fn(&Node) -> b
     None
 }
 
-/// Tells the missing key and puts a hole there; `None` when one was there already.
+/// Reports the missing key and puts a hole there; `None` when one was there already.
 fn missing(node: &mut Node, path: &[Step], name: &str, sources: &Sources) -> Option<Fault> {
-    let place = sources.place(node.nearest(path).span);
+    let location = sources.location(node.nearest(path).span);
     let found = node.find_mut(path)?;
     let span = found.span;
     let Value::Table(table) = &mut found.value else { return None };
@@ -153,24 +153,24 @@ fn missing(node: &mut Node, path: &[Step], name: &str, sources: &Sources) -> Opt
         return None;
     }
     table.0.insert(name.to_owned(), Entry { key: span, node: Node { span, value: Value::Hole } });
-    Some(Fault::new(format!("missing key `{name}`")).at(place).label(format!("`{name}` is needed here")))
+    Some(Fault::new(format!("missing key `{name}`")).at(location).label(format!("`{name}` is needed here")))
 }
 
-/// Tells the unknown key and takes it out.
+/// Reports the unknown key and takes it out.
 fn unknown(node: &mut Node, path: &[Step], name: &str, known: &[String], sources: &Sources) -> Option<Fault> {
     let Some(Value::Table(table)) = node.find_mut(path).map(|found| &mut found.value) else { return None };
     let entry = table.0.remove(name)?;
-    let fault = Fault::new(format!("unknown key `{}`", shortened(name))).at(sources.place(entry.key));
+    let fault = Fault::new(format!("unknown key `{}`", shortened(name))).at(sources.location(entry.key));
     Some(if known.is_empty() { fault } else { fault.known(name, "keys", known.iter().map(String::as_str)) })
 }
 
-/// Tells what is wrong with a value and puts a hole there; `None` when it is one already.
+/// Reports what is wrong with a value and puts a hole there; `None` when it is one already.
 fn wrong(node: &mut Node, path: &[Step], sources: &Sources, tell: impl FnOnce(&Node) -> Fault) -> Option<Fault> {
     let found = node.find_mut(path)?;
     if matches!(found.value, Value::Hole) {
         return None;
     }
-    let fault = tell(found).at(sources.place(found.span));
+    let fault = tell(found).at(sources.location(found.span));
     found.value = Value::Hole;
     Some(fault)
 }

@@ -23,12 +23,12 @@ impl Check<'_> {
         }
         for (name, factor) in &context.factors {
             for path in &factor.sets {
-                let place = One { factors, name, factor, path };
+                let one = One { factors, name, factor, path };
                 match path.split_once('.') {
                     Some((stage, key)) if context.sketches.contains_key(stage) => {
-                        self.stage_setting(context, &place, stage, key);
+                        self.stage_setting(context, &one, stage, key);
                     }
-                    _ => self.microparameter(context, &place),
+                    _ => self.microparameter(context, &one),
                 }
             }
         }

@@ -22,14 +22,14 @@ struct Configured {
     ports: Vec<Port>,
 }
 
-/// What was seen of the files beside the workflow.
+/// Files beside the workflow that stages name.
 pub(super) struct Looked<'a> {
     /// The folder they lie in; none when there is only a text.
     pub(super) folder: Option<&'a Path>,
     /// Those that cannot be read.
     pub(super) absent: Vec<Fault>,
-    /// What else is to be said of them.
-    pub(super) remarks: Vec<Fault>,
+    /// Warnings about them.
+    pub(super) warnings: Vec<Fault>,
 }
 
 /// The stages in order; all faults go to `check`, and then stages may be missing.
@@ -99,12 +99,12 @@ fn given_materials(stages: &mut [Configured], context: &Context) {
     }
 }
 
-/// Lets every stage look at its settings, now that it can see what the others say of themselves.
+/// Lets every stage check its settings, now that the sketches of the others are known.
 fn examine(check: &mut Check<'_>, table: &Table, stages: &[Configured], materials: Option<&Node>, context: &Context) {
     for Configured { name, stage, .. } in stages {
         let Some(own) = table.get(name) else { continue };
         for complaint in stage.check(context) {
-            // It only follows from a fault that was told already.
+            // It is a consequence of a fault that was reported already.
             let names = |(section, lost): &(&str, String)| {
                 [format!("`{lost}`"), format!("[{section}.{lost}]")].iter().any(|name| complaint.message.contains(name))
             };
@@ -127,11 +127,11 @@ fn look(check: &Check<'_>, table: &Table, stages: &[Configured], context: &Conte
         let mut found = Beside::of(folder);
         stage.stage.beside(context, &mut found);
         let fault = |complaint: Complaint| {
-            let place = check.sources.place(node.nearest(&steps(complaint.path.iter().map(String::as_str))).span);
-            Fault { hint: complaint.hint, ..Fault::new(complaint.message) }.at(place)
+            let location = check.sources.location(node.nearest(&steps(complaint.path.iter().map(String::as_str))).span);
+            Fault { hint: complaint.hint, ..Fault::new(complaint.message) }.at(location)
         };
         looked.absent.extend(found.faults.into_iter().map(fault));
-        looked.remarks.extend(found.remarks.into_iter().map(fault));
+        looked.warnings.extend(found.warnings.into_iter().map(fault));
     }
 }
 
@@ -141,27 +141,27 @@ fn stage_of(kind: &str, reader: Reader<'_>) -> Result<Box<dyn Stage>, Unread> {
 
 /// Takes `kind` out of the table of a stage.
 fn take_kind(check: &mut Check<'_>, name: &str, node: &mut Node) -> Option<&'static str> {
-    let place = check.sources.place(node.span);
+    let location = check.sources.location(node.span);
     let Value::Table(table) = &mut node.value else {
         let message = format!("stage `{name}` must be a table, found {}", node.describe());
-        check.faults.push(Fault::new(message).at(place));
+        check.faults.push(Fault::new(message).at(location));
         return None;
     };
     let names = || KINDS.iter().map(|kind| kind.name);
     let Some(entry) = table.0.remove("kind") else {
-        let fault = Fault::new(format!("stage `{name}` has no `kind`")).at(place);
+        let fault = Fault::new(format!("stage `{name}` has no `kind`")).at(location);
         check.faults.push(fault.label("`kind` is needed here").known("", "kinds", names()));
         return None;
     };
-    let place = check.sources.place(entry.node.span);
+    let location = check.sources.location(entry.node.span);
     let Value::Text(word) = &entry.node.value else {
         let message = format!("wanted a kind of stage, found {}", entry.node.describe());
-        check.faults.push(Fault::new(message).at(place).known("", "kinds", names()));
+        check.faults.push(Fault::new(message).at(location).known("", "kinds", names()));
         return None;
     };
     let found = names().find(|kind| kind == word);
     if found.is_none() {
-        let fault = Fault::new(format!("there is no kind of stage `{}`", super::node::shortened(word))).at(place);
+        let fault = Fault::new(format!("there is no kind of stage `{}`", super::node::shortened(word))).at(location);
         check.faults.push(fault.known(word, "kinds", names()));
     }
     found
@@ -173,7 +173,8 @@ fn same_but_for_case(check: &mut Check<'_>, table: &Table) {
     for (name, entry) in table.in_order() {
         if let Some((other, first)) = seen.insert(name.to_lowercase(), (name, entry)) {
             let fault = Fault::new(format!("stages `{other}` and `{name}` differ only by upper and lower case"));
-            let fault = fault.at(check.sources.place(entry.key)).also(check.sources.place(first.key), "the other one");
+            let fault =
+                fault.at(check.sources.location(entry.key)).also(check.sources.location(first.key), "the other one");
             check.faults.push(fault);
             if check.faults.len() > MOST_FAULTS {
                 return;
@@ -203,7 +204,7 @@ fn connect(check: &mut Check<'_>, table: &Table, stages: &[Configured]) -> Vec<V
                 None => {
                     let fault = Fault::new(format!("`{}` names no stage", super::node::shortened(name)));
                     let known = table.in_order().into_iter().map(|(name, _)| name).filter(|known| *known != stage.name);
-                    place_at_port(check, table, stage, port.key, at, fault.known(name, "stages", known));
+                    put_at_port(check, table, stage, port.key, at, fault.known(name, "stages", known));
                 }
             }
         }
@@ -219,10 +220,10 @@ fn fits(check: &mut Check<'_>, table: &Table, stage: &Configured, port: &Port, a
         return;
     }
     let message = format!("`{}` wants {}, but stage `{}` gives {gives}", port.key, port.accepts, input.name);
-    place_at_port(check, table, stage, port.key, at, Fault::new(message));
+    put_at_port(check, table, stage, port.key, at, Fault::new(message));
 }
 
-fn place_at_port(check: &mut Check<'_>, table: &Table, stage: &Configured, key: &str, at: usize, fault: Fault) {
+fn put_at_port(check: &mut Check<'_>, table: &Table, stage: &Configured, key: &str, at: usize, fault: Fault) {
     let mut path = steps(key.split('.'));
     path.push(Step::Index(at));
     if let Some(node) = table.get(&stage.name) {
@@ -245,10 +246,10 @@ fn tell_cycle(
         let (needing, needed) = (*pair[0], *pair[1]);
         let Some((key, _)) = inputs[needing].iter().find(|(_, i)| *i == needed) else { continue };
         let Some(node) = table.get(&stages[needing].name) else { continue };
-        let place = check.sources.place(node.nearest(&steps(key.split('.'))).span);
-        fault = match fault.place {
-            None => fault.at(place).label(format!("`{}` needs `{}`", stages[needing].name, stages[needed].name)),
-            Some(_) => fault.also(place, format!("`{}` needs `{}`", stages[needing].name, stages[needed].name)),
+        let location = check.sources.location(node.nearest(&steps(key.split('.'))).span);
+        fault = match fault.location {
+            None => fault.at(location).label(format!("`{}` needs `{}`", stages[needing].name, stages[needed].name)),
+            Some(_) => fault.also(location, format!("`{}` needs `{}`", stages[needing].name, stages[needed].name)),
         };
     }
     check.faults.push(fault);

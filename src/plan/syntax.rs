@@ -1,4 +1,4 @@
-//! From bytes to a tree of values with places: TOML, and nothing about workflows.
+//! From bytes to a tree of values with locations: TOML, and nothing about workflows.
 //!
 //! The limits keep every file, whatever it holds, within a second and the stack: [`LARGEST`] bytes, [`DEEPEST`] levels.
 
@@ -15,7 +15,7 @@ use toml::de::{DeTable, DeValue};
 /// The largest workflow file, in bytes.
 pub(super) const LARGEST: usize = 1 << 20;
 
-/// The largest text of which every fault of syntax is told; of a larger one only the first, because going on behind a
+/// The largest text of which every fault of syntax is reported; of a larger one only the first, because going on behind a
 /// fault costs the TOML reader far more than reading.
 const LARGEST_FAULTY: usize = 1 << 15;
 
@@ -25,7 +25,7 @@ const DEEPEST: usize = 32;
 /// What to do about it.
 const NOT_DEEP: &str = "no table or list of a workflow is nested deeper than 32 levels";
 
-/// So many faults of one text are told.
+/// Most faults that are reported of one text.
 const MOST_FAULTS: usize = 20;
 
 /// Reads a workflow file.
@@ -104,7 +104,7 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
         let deep = || deepest_key(text).filter(|_| error.message().contains("recurs"));
         let span = span(sources, index, error.span().or_else(deep).unwrap_or(end));
         let (start, end) = (span.start as usize, span.end as usize);
-        // Every key of a table that stands there twice would be told again.
+        // Every key of a duplicate table would be reported again.
         let inside = |header: usize| header <= start && !text[header..start].contains("\n[");
         if last.replace(start) == Some(start) || error.message() == DUPLICATE && doubled.is_some_and(inside) {
             continue;
@@ -124,7 +124,7 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
             message if message.contains("recurs") => Fault::new("nested too deeply").hint(NOT_DEEP),
             message => Fault::new(message),
         };
-        faults.push(fault.at(sources.place(span)));
+        faults.push(fault.at(sources.location(span)));
     }
     faults
 }
@@ -179,7 +179,7 @@ fn shift(node: &mut Node, offset: u32) {
     }
 }
 
-/// A span inside the text and on its character boundaries, whatever the TOML reader said.
+/// A span inside the text and on its character boundaries, whatever the TOML reader gives.
 fn span(sources: &Sources, index: u32, range: Range<usize>) -> Span {
     let text = &sources.0[index as usize].text;
     let end = text.floor_char_boundary(range.end.min(text.len()));
@@ -229,7 +229,7 @@ impl Convert<'_> {
 
     fn hole(&mut self, span: Span, message: String) -> Value {
         if self.faults.len() < MOST_FAULTS {
-            self.faults.push(Fault::new(message).at(self.sources.place(span)));
+            self.faults.push(Fault::new(message).at(self.sources.location(span)));
         }
         Value::Hole
     }

@@ -40,7 +40,7 @@ fn a_good_workflow_is_read() {
 }
 
 #[test]
-fn all_faults_are_told_at_once() {
+fn all_faults_are_reported_at_once() {
     let text = "x = 1\n[workflow]\nsed = 1\n[stage.b]\nfil = 3\nkind = \"data\"\n[stage.c]\nkind = \"dta\"";
     let expected = [
         "w.toml:1:1: unknown key `x` | known tables: `workflow`, `factor`, `response`, `material`, `stage`, `profile`",

@@ -224,14 +224,14 @@ mod tests {
         task_text(&task, &contents)
     }
 
-    fn told(old: &str, new: &str) -> Vec<String> {
+    fn reasons(old: &str, new: &str) -> Vec<String> {
         why(old, new).iter().map(ToString::to_string).collect()
     }
 
     #[test]
     fn every_reason_reads_as_old_and_new() {
         let old = text(json!({"mortar": {"Ec": 2e10}, "a b": "x y"}), 1, &[1, 2, 3]);
-        assert_eq!(told("", &old), ["new"]);
+        assert_eq!(reasons("", &old), ["new"]);
         let new = text(json!({"mortar": {"Ec": 1.6e10, "mu": 0.5}}), 2, &[1, 9, 3]);
         let expected = [
             "seed 1 → 2",
@@ -240,10 +240,10 @@ mod tests {
             "`mortar.mu` not set → 0.5",
             "input `run`: 1 changed of 3",
         ];
-        assert_eq!(told(&old, &new), expected);
-        assert_eq!(told(&new, &new.replace("data 2", "data 3")), ["data: version 2 → 3"]);
-        assert_eq!(told(&text(json!({}), 1, &[1, 2]), &text(json!({}), 1, &[2, 1, 5])), ["input `run`: 1 new of 3"]);
-        assert_eq!(told(&text(json!({}), 1, &[1]), &text(json!({}), 1, &[2])), ["input `run` changed"]);
+        assert_eq!(reasons(&old, &new), expected);
+        assert_eq!(reasons(&new, &new.replace("data 2", "data 3")), ["data: version 2 → 3"]);
+        assert_eq!(reasons(&text(json!({}), 1, &[1, 2]), &text(json!({}), 1, &[2, 1, 5])), ["input `run`: 1 new of 3"]);
+        assert_eq!(reasons(&text(json!({}), 1, &[1]), &text(json!({}), 1, &[2])), ["input `run` changed"]);
     }
 
     /// Any JSON without floats that print alike: names and texts may hold anything.

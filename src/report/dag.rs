@@ -15,7 +15,7 @@ pub(super) fn picture(paper: &Paper, glyphs: &mut Glyphs) -> Markup {
     // Lists of what the workflow says, and data that only tables read, compute nothing.
     let computes = |i: &usize| paper.parts[*i].class.computes();
     let shown: Vec<usize> = own.iter().copied().filter(|i| computes(i) || own.len() == 1 || is_read(i)).collect();
-    let place = |index: usize| shown.iter().position(|&i| i == index);
+    let position = |index: usize| shown.iter().position(|&i| i == index);
     let stages = shown.iter().map(|&i| {
         let part = &paper.parts[i];
         let runs = part.runs().filter(|&runs| runs > 1).map(|runs| format!(" · {runs} runs"));
@@ -30,7 +30,7 @@ pub(super) fn picture(paper: &Paper, glyphs: &mut Glyphs) -> Markup {
         }
     });
     let inputs = shown.iter().flat_map(|&i| paper.parts[i].inputs.iter().map(move |&(_, input)| (input, i)));
-    let mut edges: Vec<(usize, usize)> = inputs.filter_map(|(a, b)| Some((place(a)?, place(b)?))).collect();
+    let mut edges: Vec<(usize, usize)> = inputs.filter_map(|(a, b)| Some((position(a)?, position(b)?))).collect();
     edges.sort_unstable();
     edges.dedup();
     let classes = ["done", "to run", "cannot run"].map(str::to_owned).to_vec();

@@ -24,7 +24,7 @@ impl Glyphs {
     /// A picture of ours in the page; nothing when it is not one.
     pub(super) fn inline(&mut self, text: &str, label: &str) -> Option<(Markup, [f64; 2])> {
         let drawing = svg::read(text)?;
-        // A page has one outline per id: of two that differ the first is kept.
+        // A page has one outline per id: of two that differ the first is used.
         for (id, outline) in drawing.glyphs {
             self.0.entry(id).or_insert(outline);
         }

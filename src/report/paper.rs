@@ -19,7 +19,7 @@ pub struct Paper {
     pub file: String,
     /// Its text.
     pub text: String,
-    /// The profile that was laid over it.
+    /// The profile whose overrides apply.
     pub profile: Option<String>,
     /// Overrides as they were typed.
     pub sets: Vec<String>,
@@ -48,13 +48,13 @@ pub struct Part {
     pub inputs: Vec<(String, usize)>,
     /// Its settings in canonical form.
     pub settings: Value,
-    /// Where it stands.
+    /// Its status.
     pub state: State,
     /// What it cost.
     pub cost: Cost,
 }
 
-/// Where a stage stands.
+/// Status of a stage.
 #[derive(Clone, Debug)]
 pub enum State {
     /// Its result.
@@ -64,9 +64,9 @@ pub enum State {
         /// Its values.
         artifact: Arc<Artifact>,
     },
-    /// It was not run yet.
+    /// It has not run yet.
     Missing,
-    /// It cannot be had; why.
+    /// It cannot be computed or read, for this reason.
     Broken(String),
 }
 

@@ -18,7 +18,7 @@ use serde_json::Value;
 pub(super) fn section(paper: &Paper, index: usize, members: &[usize], glyphs: &mut Glyphs) -> Markup {
     let part = &paper.parts[index];
     if part.is_shown_elsewhere() {
-        // A table or figure of nothing that comes before it.
+        // A table or figure that shows no earlier stage.
         return html! { section { h2 { (part.words()) } (member(paper, index, glyphs)) } };
     }
     let head = format!("head-{}", part.name);
@@ -50,7 +50,7 @@ fn interactive(paper: &Paper, part: &Part) -> Markup {
     }
 }
 
-/// A note in place of a result that is not there, with the command that makes it.
+/// A note in place of a missing result, with the command that computes it.
 pub(super) fn missing(paper: &Paper, part: &Part) -> Markup {
     // A section of its own bears the id; a table or figure bears it here.
     let id = part.is_shown_elsewhere().then(|| format!("stage-{}", part.name));

@@ -1,6 +1,6 @@
 //! Symbols of factors and responses as HTML: italics, subscripts, superscripts, bars.
 //!
-//! The label is set by [`figure::text`], and the places of its glyphs say what each of them is, so pages and
+//! The label is set by [`figure::text`], and the positions of its glyphs say what each of them is, so pages and
 //! pictures read the same notation.
 
 use crate::stage::Context;
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn terms_are_told_by_the_symbols_of_their_factors() {
+    fn terms_are_named_by_the_symbols_of_their_factors() {
         let factor = Factor { symbol: "E_c".to_owned(), ..Factor::default() };
         let context = Context { factors: [("Ec".to_owned(), factor)].into(), ..Context::default() };
         let set = |text: &str| term(&context, text).map(maud::PreEscaped::into_string);

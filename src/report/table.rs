@@ -76,8 +76,8 @@ impl<'a> Sheet<'a> {
                     tbody {
                         @for row in 0..rows.min(self.most) {
                             tr {
-                                @for (place, column) in columns.iter().enumerate() {
-                                    (self.cell(column, row, named && place == 0))
+                                @for (index, column) in columns.iter().enumerate() {
+                                    (self.cell(column, row, named && index == 0))
                                 }
                             }
                         }
@@ -261,14 +261,14 @@ mod tests {
 
     #[test]
     fn deviations_have_a_sign_and_a_word() {
-        let told = |mark: Mark, value: f64| {
+        let words = |mark: Mark, value: f64| {
             let judged = mark.judge(value);
             format!("{} {}", judged.sign, judged.word)
         };
-        assert_eq!(told(Mark::Signed, -4.9), "≈ close");
-        assert_eq!([told(Mark::Signed, 5.1), told(Mark::Signed, -21.0)], ["↑ high", "↓ far low"]);
-        assert_eq!([told(Mark::Size, 12.0), told(Mark::Size, 20.1)], ["≠ off", "≠ far off"]);
-        assert_eq!(told(Mark::Signed, f64::NAN), " ");
+        assert_eq!(words(Mark::Signed, -4.9), "≈ close");
+        assert_eq!([words(Mark::Signed, 5.1), words(Mark::Signed, -21.0)], ["↑ high", "↓ far low"]);
+        assert_eq!([words(Mark::Size, 12.0), words(Mark::Size, 20.1)], ["≠ off", "≠ far off"]);
+        assert_eq!(words(Mark::Signed, f64::NAN), " ");
     }
 
     #[test]

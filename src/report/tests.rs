@@ -100,7 +100,7 @@ fn what_a_workflow_or_a_store_says_stays_text() {
 }
 
 #[test]
-fn a_page_names_no_other_place() {
+fn a_page_names_no_other_address() {
     let page = page(&hostile());
     for attribute in ["src=\"", "href=\"", "url("] {
         for (at, _) in page.match_indices(attribute) {
@@ -116,7 +116,7 @@ fn a_page_names_no_other_place() {
 }
 
 #[test]
-fn what_is_missing_is_said_with_its_command() {
+fn what_is_missing_is_named_with_its_command() {
     let mut paper = hostile();
     paper.file = "w.toml".to_owned();
     (paper.profile, paper.sets, paper.store) = (None, vec!["stage.a.b=1 mm".to_owned()], String::new());

@@ -39,9 +39,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_told_in_fitting_units() {
-        let told = [0.0123, 3.21, 42.4, 600.0, 5430.0].map(duration);
-        assert_eq!(told, ["12 ms", "3.2 s", "42 s", "10 min", "1 h 31 min"]);
+    fn times_are_shown_in_fitting_units() {
+        let words = [0.0123, 3.21, 42.4, 600.0, 5430.0].map(duration);
+        assert_eq!(words, ["12 ms", "3.2 s", "42 s", "10 min", "1 h 31 min"]);
     }
 
     #[test]

@@ -1,12 +1,12 @@
-//! The numbers of a figure for the script, which tells those under the pointer or the arrow keys.
+//! The numbers of a figure for the script, which shows those under the pointer or the arrow keys.
 //!
-//! Pictures say where their axes lie (`data-x`, `data-y`, `data-space`); this adds what is drawn there, panel by panel
+//! Pictures hold the positions of their axes (`data-x`, `data-y`, `data-space`); this adds what is drawn there, panel by panel
 //! in the order of the picture. Three forms, tagged by `form`:
 //!
 //! * `curve`: per curve axial strain in %, stress, lateral strain in %, and counts of cracks by mode, on one index;
 //! * `field`: a response on a regular grid of two factors, thinned; between its nodes the script takes the parabola
 //!   through three of them along each side, which is exact for second-order surfaces;
-//! * `points`: per panel places with their words.
+//! * `points`: per panel points with their words.
 
 use crate::artifact::{Table, Values};
 use crate::stage::Context;
@@ -16,10 +16,10 @@ use serde_json::{Value, json};
 /// Nodes along one side of a thinned field.
 const NODES: usize = 21;
 
-/// Most places of one figure.
+/// Most points of one figure.
 const MOST: usize = 4000;
 
-/// The values of a figure that shows `show`; nothing when the script cannot tell them.
+/// The values of a figure that shows `show`; nothing when the script cannot show them.
 pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
     if show != "contour" && show != "surface" && data.rows() > MOST {
         return None;
@@ -119,7 +119,7 @@ fn field(data: &Table, context: &Context) -> Option<Value> {
     }))
 }
 
-/// A place with its words.
+/// A point with its words.
 type Point = (f64, f64, String);
 
 fn points(panels: Vec<Vec<Point>>) -> Option<Value> {
@@ -146,7 +146,7 @@ fn groups(words: &[String]) -> Vec<(&str, Vec<usize>)> {
 }
 
 /// A number for people, with its unit.
-fn told(value: f64, unit: &str) -> String {
+fn quantity(value: f64, unit: &str) -> String {
     let text = figure::axis::significant(value, 4);
     if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
@@ -160,7 +160,7 @@ fn pairs(data: &Table, context: &Context) -> Option<Value> {
         let words = |i: usize| {
             let origin = if origins[i].is_empty() { String::new() } else { format!("{}, ", origins[i]) };
             let deviation = figure::axis::fixed(100.0 * (ys[i] / xs[i] - 1.0), 1);
-            let (x, y) = (told(xs[i], &units[i]), told(ys[i], &units[i]));
+            let (x, y) = (quantity(xs[i], &units[i]), quantity(ys[i], &units[i]));
             format!("{origin}run {}: {sign} {} {x}, {} {y} ({deviation} %)", rows[i], a.name, b.name)
         };
         members.into_iter().map(|i| (xs[i], ys[i], words(i))).collect()
@@ -174,7 +174,8 @@ fn effects(data: &Table, context: &Context) -> Option<Value> {
     let (values, unit) = (data.shown("mean").ok()?.0, &means.unit);
     let panel = |(factor, rows): (&str, Vec<usize>)| {
         let sign = name_of(context, factor);
-        let words = |i: usize| format!("{sign} = {}: mean {}", told(levels[i], &units[i]), told(values[i], unit));
+        let words =
+            |i: usize| format!("{sign} = {}: mean {}", quantity(levels[i], &units[i]), quantity(values[i], unit));
         rows.into_iter().map(|i| (levels[i], values[i], words(i))).collect()
     };
     points(groups(texts(data, "factor")?).into_iter().map(panel).collect())
@@ -187,8 +188,9 @@ fn residuals(data: &Table) -> Option<Value> {
         (data.shown("fitted").ok()?.0, data.shown("normal_quantile").ok()?.0, data.shown("leverage").ok()?.0);
     let order: Vec<f64> = (1..=runs.len()).map(|i| i as f64).collect();
     let panel = |(xs, what): (&Vec<f64>, &str)| {
-        let words =
-            |i: usize| format!("run {}: {what} {}, studentized residual {}", runs[i], told(xs[i], ""), told(ys[i], ""));
+        let words = |i: usize| {
+            format!("run {}: {what} {}, studentized residual {}", runs[i], quantity(xs[i], ""), quantity(ys[i], ""))
+        };
         (0..runs.len()).map(|i| (xs[i], ys[i], words(i))).collect()
     };
     let views = [(&quantile, "normal quantile"), (&fitted, "fitted"), (&order, "place"), (&leverage, "leverage")];
@@ -198,14 +200,15 @@ fn residuals(data: &Table) -> Option<Value> {
 fn convergence(data: &Table) -> Option<Value> {
     let [_, effort, ..] = data.columns.as_slice() else { return None };
     let (runs, xs, ys) = (texts(data, "run")?, data.shown(&effort.name).ok()?.0, data.shown("best").ok()?.0);
-    let words = |i: usize| format!("{}, {} {}: best misfit {}", runs[i], effort.name, told(xs[i], ""), told(ys[i], ""));
+    let words =
+        |i: usize| format!("{}, {} {}: best misfit {}", runs[i], effort.name, quantity(xs[i], ""), quantity(ys[i], ""));
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }
 
 fn effect_plot(data: &Table) -> Option<Value> {
     let [_, sizes, ..] = data.columns.as_slice() else { return None };
     let (names, xs, ys) = (texts(data, "effect")?, data.shown(&sizes.name).ok()?.0, data.shown("quantile").ok()?.0);
-    let words = |i: usize| format!("{}: {}", Line::new(&names[i], 1.0).plain, told(xs[i], &sizes.unit));
+    let words = |i: usize| format!("{}: {}", Line::new(&names[i], 1.0).plain, quantity(xs[i], &sizes.unit));
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }
 

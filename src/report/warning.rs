@@ -1,12 +1,12 @@
-//! What a reader should be warned of before a result is used: what artifacts say themselves, and what their statistics
-//! show by the rules of the field.
+//! Warnings before a result is used: those that artifacts hold, and those that follow from their statistics by the rules
+//! of the field.
 
 use super::paper::Part;
 use crate::artifact::calibration::{Prediction, Solution, Summary, Verification};
 use crate::artifact::groups::{GroupResiduals, Groups};
 use crate::artifact::run::Run;
 use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
-use crate::artifact::validity::said;
+use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Node, Wanted};
 
 /// Adjusted and predicted R² of a sound model differ by less than this (a rule of thumb of designed experiments).
@@ -20,20 +20,20 @@ const LEVEL: f64 = 0.05;
 /// The warnings of a stage.
 pub(super) fn warnings(part: &Part) -> Vec<String> {
     let Some(artifact) = part.artifact() else { return Vec::new() };
-    let mut found = said(artifact);
+    let mut found = sentences(artifact);
     found.extend(own(artifact));
-    // A result of another version says nothing here; whoever shows its tables tells.
+    // A result of another version gives no warnings here; the section that shows its tables reports it.
     found.extend(judged(artifact).unwrap_or_default());
     found
 }
 
-/// Texts that the stage left as warnings; what makes a run invalid is said with it.
+/// Warnings in the artifact, and why a run is not valid.
 fn own(artifact: &Artifact) -> Vec<String> {
     let all = artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default();
     all.iter().filter(|text| !text.starts_with(Run::NOT_VALID)).cloned().collect()
 }
 
-/// What the numbers of a result warn of.
+/// Warnings from the numbers of a result.
 fn judged(artifact: &Artifact) -> Result<Vec<String>, Wanted> {
     let mut found = Vec::new();
     if artifact.is(Anova::KIND) {
@@ -87,8 +87,8 @@ fn fits(fit: &Fits) -> Vec<String> {
 fn flags(residuals: &Residuals) -> Vec<String> {
     let all = residuals.response.iter().zip(&residuals.row).zip(&residuals.flag);
     let flagged = all.filter(|(_, flag)| !flag.is_empty());
-    let told: Vec<String> = flagged.map(|((response, row), flag)| format!("{response}, row {row} ({flag})")).collect();
-    if told.is_empty() { Vec::new() } else { vec![format!("suspicious runs, kept in the fit: {}", told.join("; "))] }
+    let words: Vec<String> = flagged.map(|((response, row), flag)| format!("{response}, row {row} ({flag})")).collect();
+    if words.is_empty() { Vec::new() } else { vec![format!("suspicious runs, kept in the fit: {}", words.join("; "))] }
 }
 
 fn inflation(coefficients: &Coefficients) -> Vec<String> {
@@ -113,11 +113,11 @@ fn reach(prediction: &Prediction) -> Vec<String> {
 fn outside(summary: &Summary) -> Vec<String> {
     let rows = summary.set.iter().zip(&summary.response).zip(&summary.target_inside);
     let out = rows.filter(|(_, inside)| *inside == "no");
-    let told: Vec<String> = out.map(|((set, response), _)| format!("{response} of set {set}")).collect();
-    if told.is_empty() {
+    let words: Vec<String> = out.map(|((set, response), _)| format!("{response} of set {set}")).collect();
+    if words.is_empty() {
         Vec::new()
     } else {
-        vec![format!("targets outside the 95 % interval of the mean: {}", told.join(", "))]
+        vec![format!("targets outside the 95 % interval of the mean: {}", words.join(", "))]
     }
 }
 

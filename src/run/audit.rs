@@ -14,7 +14,7 @@ use std::sync::mpsc::channel;
 /// A result that was computed again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Audited {
-    /// Place of its stage in the workflow.
+    /// Index of its stage in the workflow.
     pub stage: usize,
     /// Its design row.
     pub row: Option<usize>,

@@ -3,7 +3,7 @@
 //! A node stands for one task; equal tasks are one node, whichever stage asked first. Equality is that of the
 //! *recipe*: the key of a task whose inputs are known; else a hash of its text with the recipe of each input task in place
 //! of its result, so it is known before anything ran. A run that an earlier campaign made has no node: it stands with the
-//! task that gathers it ([`Task::kept`]), and counts there.
+//! task that gathers it ([`Task::cached`]), and counts there.
 
 use super::TaskReport;
 use crate::artifact::{ContentHash, FirstBytes, Key};
@@ -96,8 +96,8 @@ struct Node {
 const BLOCK: usize = 1 << 16;
 
 /// The runs of an earlier campaign among the inputs of a task.
-fn kept_runs(task: &Task) -> &[(usize, usize, Key, ContentHash)] {
-    task.kept.as_ref().map_or(&[], |kept| &kept.runs)
+fn cached_runs(task: &Task) -> &[(usize, usize, Key, ContentHash)] {
+    task.cached.as_ref().map_or(&[], |cached| &cached.runs)
 }
 
 /// The graph of tasks.
@@ -107,7 +107,7 @@ pub(super) struct Board {
     by_recipe: ByKey,
     /// Tasks seen already, by address; the board keeps them alive, so an address stays theirs.
     by_address: HashMap<*const Task, NodeId>,
-    kept: Vec<Arc<Task>>,
+    alive: Vec<Arc<Task>>,
     /// The text that was written last: what is decided about is often started next, and texts may be long.
     written: Option<(NodeId, String)>,
     counts: Vec<TaskCount>,
@@ -130,7 +130,7 @@ impl Board {
             })
             .collect();
         let (recipe, text) = self.recipe(task, &inputs);
-        self.kept.push(Arc::clone(task));
+        self.alive.push(Arc::clone(task));
         let node = match self.by_recipe.get(&recipe) {
             Some(&node) => node,
             None => {
@@ -160,9 +160,9 @@ impl Board {
             self.counts.resize(node.stage + 1, TaskCount::default());
             self.seconds.resize(node.stage + 1, 0.0);
         }
-        let kept = kept_runs(&node.task).len();
-        self.counts[node.stage].total += 1 + kept;
-        self.counts[node.stage].cached += kept;
+        let cached = cached_runs(&node.task).len();
+        self.counts[node.stage].total += 1 + cached;
+        self.counts[node.stage].cached += cached;
         let lost = |input: &NodeId| matches!(self.state(*input), TaskState::Failed(_) | TaskState::Skipped);
         let lost = node.inputs.iter().flatten().any(lost);
         self.nodes.push(node);
@@ -261,7 +261,7 @@ impl Board {
         }
     }
 
-    /// The key of the task that is one of the inputs of a node, unless that is kept.
+    /// The key of the task that is one of the inputs of a node, unless that run is cached.
     pub(super) fn input_key(&self, node: NodeId, place: usize) -> Option<Key> {
         self.key_of(self.nodes[node].inputs[place]?)
     }
@@ -314,21 +314,21 @@ impl Board {
         (0..self.nodes.len()).filter(|&node| seen[node]).collect()
     }
 
-    /// Results and rows of these nodes that are done, each behind the runs that are kept for it.
+    /// Results and rows of these nodes that are done, each behind the runs that are cached for it.
     pub(super) fn results(&self, nodes: &[NodeId]) -> impl Iterator<Item = (ObjectId, Option<usize>)> {
         nodes.iter().flat_map(|&node| {
-            let kept = kept_runs(&self.nodes[node].task).iter();
-            let kept = kept.map(|&(_, row, key, content)| (ObjectId { content, key }, Some(row)));
-            kept.chain(self.object(node).map(|object| (object, self.row(node))))
+            let cached = cached_runs(&self.nodes[node].task).iter();
+            let cached = cached.map(|&(_, row, key, content)| (ObjectId { content, key }, Some(row)));
+            cached.chain(self.object(node).map(|object| (object, self.row(node))))
         })
     }
 
-    /// Keys of the runs that are kept for a node.
-    pub(super) fn kept_keys(&self, node: NodeId) -> impl Iterator<Item = Key> {
-        kept_runs(&self.nodes[node].task).iter().map(|&(_, _, key, _)| key)
+    /// Keys of the runs that are cached for a node.
+    pub(super) fn cached_keys(&self, node: NodeId) -> impl Iterator<Item = Key> {
+        cached_runs(&self.nodes[node].task).iter().map(|&(_, _, key, _)| key)
     }
 
-    /// Every task but the runs that are kept.
+    /// Every task but the runs that are cached.
     pub(super) fn reports(&self) -> impl DoubleEndedIterator<Item = TaskReport> {
         (0..self.nodes.len()).map(|node| TaskReport {
             stage: self.nodes[node].stage,
@@ -342,8 +342,8 @@ impl Board {
     /// The object of every task that is done.
     pub(super) fn objects(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
         (0..self.nodes.len()).flat_map(|node| {
-            let kept = kept_runs(&self.nodes[node].task).iter();
-            kept.map(|&(_, _, key, content)| ObjectId { content, key }).chain(self.object(node))
+            let cached = cached_runs(&self.nodes[node].task).iter();
+            cached.map(|&(_, _, key, content)| ObjectId { content, key }).chain(self.object(node))
         })
     }
 

@@ -1,7 +1,7 @@
-//! Tasks that other processes on the same store compute: looked at now and then, while this one works on others.
+//! Tasks that other processes on the same store compute. This process checks them now and then, and works on other tasks.
 //!
-//! Two campaigns that begin together meet at the same first task. From then on each takes its next tasks from a place of its
-//! own among those that are left, so that they seldom meet again.
+//! Two campaigns that begin together both reach for the same first task. From then on each continues at an index of its own
+//! among the remaining tasks, so that they seldom reach for the same task again.
 
 use super::board::NodeId;
 use crate::store::Waiting;
@@ -11,11 +11,11 @@ use std::time::Duration;
 /// Longest pause between two looks.
 const LONGEST: Duration = Duration::from_millis(50);
 
-/// Tasks that were found with others.
+/// Tasks that other processes compute.
 #[derive(Default)]
 pub(super) struct Elsewhere {
     tasks: Vec<(NodeId, Waiting)>,
-    /// How often a task was found with another process.
+    /// How often another process already had a task that this one wanted.
     met: usize,
     pause: Duration,
 }
@@ -25,7 +25,7 @@ impl Elsewhere {
         self.tasks.is_empty()
     }
 
-    /// Notes a task that another process has.
+    /// Adds a task that another process computes.
     pub(super) fn put(&mut self, node: NodeId, waiting: Waiting) {
         self.met += 1;
         self.pause = Duration::from_millis(1);
@@ -37,7 +37,7 @@ impl Elsewhere {
         self.tasks.clear();
     }
 
-    /// The tasks that others have let go of, finished or not.
+    /// The tasks that no other process computes any more, finished or not.
     pub(super) fn over(&mut self) -> Vec<NodeId> {
         let over: Vec<NodeId> =
             self.tasks.extract_if(.., |(_, waiting)| waiting.is_over()).map(|(node, _)| node).collect();
@@ -55,13 +55,13 @@ impl Elsewhere {
         self.tasks.first().map(|(node, waiting)| (*node, waiting.holder.to_string()))
     }
 
-    /// Takes the task to start next: the first, or from where this process is at work.
+    /// Takes the task to start next: the first one, or one at a random index once another process was met.
     pub(super) fn next(&self, ready: &mut BTreeSet<NodeId>) -> Option<NodeId> {
         if self.met == 0 {
             return ready.pop_first();
         }
         let (first, last) = (*ready.first()?, *ready.last()?);
-        // Another place each time: one that stays is soon somebody else's again.
+        // A new index each time: the neighbours of an old one are soon taken by another process.
         let number = (u64::from(std::process::id()) << 20 | self.met as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let from = first + (number >> 33) as usize % (last - first + 1);
         let node = *ready.range(from..).next()?;

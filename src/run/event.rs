@@ -12,13 +12,13 @@ pub enum Event<'a> {
         /// Its row.
         row: Option<usize>,
     },
-    /// A running task says where it stands.
-    Said {
+    /// A running task reports its progress.
+    Progress {
         /// The stage.
         stage: &'a str,
         /// Its row.
         row: Option<usize>,
-        /// Where it stands.
+        /// Its progress.
         progress: &'a Progress,
     },
     /// A stage that decides by outcomes asked for more.
@@ -27,10 +27,10 @@ pub enum Event<'a> {
         stage: &'a str,
         /// Its counts.
         count: TaskCount,
-        /// Where it stands.
+        /// Its progress.
         note: &'a str,
     },
-    /// A task ended, well or not.
+    /// A task ended, with a result or a failure.
     Ended {
         /// The stage.
         stage: &'a str,
@@ -48,7 +48,7 @@ pub enum Event<'a> {
     },
     /// A stage ended.
     Stage {
-        /// What became of it.
+        /// Its outcome.
         report: &'a StageReport,
     },
 }
@@ -59,7 +59,7 @@ pub trait Watch: Sync {
     fn event(&self, event: Event<'_>);
 }
 
-/// Says nothing.
+/// Ignores all events.
 pub struct Silent;
 
 impl Watch for Silent {

@@ -4,7 +4,7 @@ use crate::artifact::{ContentHash, Key};
 use crate::cluster::post::Reports;
 use crate::cluster::scheduler::{self, Alive};
 use crate::cluster::site::Needs;
-use crate::cluster::{Cause, Line, News, Post, Said, Scheduler, Site};
+use crate::cluster::{Cause, Line, Message, News, Post, Scheduler, Site};
 use crate::stage::Progress;
 use crate::store::{Store, StoreError};
 use std::collections::HashMap;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
-/// What is heard of the workers.
+/// News from the workers.
 pub(super) enum Heard {
     /// A worker has begun a task.
     Begun(Key),
@@ -31,21 +31,21 @@ pub(super) enum Heard {
     Word(String),
 }
 
-/// Where a task stands that was handed over.
-struct Place {
+/// A task that was handed over, and where it stands.
+struct Handed {
     post: usize,
     task: usize,
-    /// How often a worker ended that had begun it: gone without a word, or told to end.
+    /// How often a worker that had begun it was lost without a message, and how often the scheduler ended it.
     gone: usize,
-    told_to_end: usize,
-    /// The result is reported and has not been seen yet, since then.
+    ended: usize,
+    /// A worker reported the result (with its seconds) at this time, and the result is not visible in the store yet.
     done: Option<(f64, Instant)>,
 }
 
-/// How the workers are left when the run ends.
+/// What happens to the workers when the run ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Leave {
-    /// Nothing more is wanted of them.
+    /// They are cancelled.
     Cancel,
     /// They go on.
     Working,
@@ -59,7 +59,7 @@ pub(super) struct Far<'a> {
     program: PathBuf,
     session: String,
     posts: Vec<Post>,
-    places: HashMap<Key, Place>,
+    handed: HashMap<Key, Handed>,
     /// Tasks to be listed.
     fresh: Vec<(Needs, Key, Line, usize, usize)>,
     asked: Option<Receiver<(usize, Result<Alive, String>)>>,
@@ -69,17 +69,18 @@ pub(super) struct Far<'a> {
     draining: bool,
 }
 
-/// The scheduler is asked which jobs are there at most as often.
+/// Shortest time between two questions to the scheduler.
 const ASK_EACH: Duration = Duration::from_secs(60);
-/// A reported result is waited for so long where files are seen late.
+/// Longest wait for a reported result on a file system that shows new files late.
 const LATE: Duration = Duration::from_secs(30);
 /// Shortest and longest pause between two looks at the reports.
 const PAUSE: (Duration, Duration) = (Duration::from_millis(20), Duration::from_millis(500));
-/// So often a task may be ended by the scheduler before its end.
-const MOST_TOLD: usize = 5;
+/// A task fails when the scheduler has ended its worker this many times.
+const MOST_ENDED: usize = 5;
 
 impl<'a> Far<'a> {
-    /// Nothing handed over yet, but for what an earlier submitter has left: words on that, or why it cannot be known.
+    /// A cluster with the workers that an earlier submitter left; also returns a message on these, or an error when they
+    /// cannot be found out.
     pub(super) fn new(store: &'a Store, site: &'a Site) -> (Self, Vec<String>, Result<(), String>) {
         let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
         let mut far = Self {
@@ -89,7 +90,7 @@ impl<'a> Far<'a> {
             program: std::env::current_exe().unwrap_or_else(|_| "flow".into()),
             session: format!("{}-{:x}", now.as_secs(), std::process::id()),
             posts: Vec::new(),
-            places: HashMap::new(),
+            handed: HashMap::new(),
             fresh: Vec::new(),
             asked: None,
             asked_at: Instant::now(),
@@ -113,8 +114,8 @@ impl<'a> Far<'a> {
                     post.jobs().join(", ")
                 ));
                 for (task, entry) in post.entries.iter().enumerate() {
-                    let place = Place { post: self.posts.len(), task, gone: 0, told_to_end: 0, done: None };
-                    self.places.insert(entry.key, place);
+                    let handed = Handed { post: self.posts.len(), task, gone: 0, ended: 0, done: None };
+                    self.handed.insert(entry.key, handed);
                 }
                 self.posts.push(post);
             }
@@ -129,14 +130,14 @@ impl<'a> Far<'a> {
 
     /// Whether a task was handed over already.
     pub(super) fn has(&self, key: &Key) -> bool {
-        self.places.contains_key(key)
+        self.handed.contains_key(key)
     }
 
-    /// Whether nothing is expected of the workers.
+    /// Whether no result is expected from the workers.
     pub(super) fn is_idle(&self) -> bool {
         match self.draining {
             true => !self.posts.iter().any(Post::is_busy),
-            false => self.places.is_empty() && self.fresh.is_empty(),
+            false => self.handed.is_empty() && self.fresh.is_empty(),
         }
     }
 
@@ -145,14 +146,14 @@ impl<'a> Far<'a> {
         self.fresh.push((self.site.needs(stage), key, line, 0, 0));
     }
 
-    /// Begins nothing more; what workers have begun they finish.
+    /// Stops handing over: workers finish the tasks that they have begun.
     pub(super) fn drain(&mut self) {
         if !std::mem::replace(&mut self.draining, true) {
             self.posts.iter().for_each(|post| drop(post.queue.close()));
         }
     }
 
-    /// Lists what was handed over and asks for the workers that are missing; answers with words.
+    /// Lists the tasks that were handed over and requests the missing workers; returns messages for the person watching.
     ///
     /// # Errors
     /// The store cannot be written, or no worker can be had.
@@ -176,9 +177,9 @@ impl<'a> Far<'a> {
             };
             let post = &mut self.posts[number];
             let mut lines = Vec::with_capacity(same.len());
-            for (_, key, line, gone, told_to_end) in same {
+            for (_, key, line, gone, ended) in same {
                 let task = post.entries.len() + lines.len();
-                self.places.insert(key, Place { post: number, task, gone, told_to_end, done: None });
+                self.handed.insert(key, Handed { post: number, task, gone, ended, done: None });
                 lines.push(line);
             }
             post.list(lines).map_err(words)?;
@@ -196,7 +197,7 @@ impl<'a> Far<'a> {
         self.quiet
     }
 
-    /// What was heard since the last look.
+    /// News since the last call.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -216,24 +217,24 @@ impl<'a> Far<'a> {
     fn sort(&mut self, number: usize, news: Vec<(usize, News)>, heard: &mut Vec<Heard>) {
         for (task, news) in news {
             let key = self.posts[number].entries[task].key;
-            // A task that was listed again stands in another place by now.
-            let Some(place) = self.places.get_mut(&key).filter(|place| (place.post, place.task) == (number, task))
+            // A task that was listed again is another task of another post by now.
+            let Some(handed) = self.handed.get_mut(&key).filter(|handed| (handed.post, handed.task) == (number, task))
             else {
                 continue;
             };
             match news {
-                News::Said(Said::Begun { .. }) => heard.push(Heard::Begun(key)),
-                News::Said(Said::Stands { fraction, note, warning, .. }) => {
+                News::Message(Message::Begun { .. }) => heard.push(Heard::Begun(key)),
+                News::Message(Message::Stands { fraction, note, warning, .. }) => {
                     heard.push(Heard::Stands(key, Progress { fraction, note, warning }));
                 }
-                News::Said(Said::Done { seconds, .. }) => {
-                    place.done = Some((seconds, Instant::now()));
+                News::Message(Message::Done { seconds, .. }) => {
+                    handed.done = Some((seconds, Instant::now()));
                     heard.push(Heard::Done(key, seconds));
                 }
-                News::Said(Said::Failed { why, .. }) => heard.push(Heard::Failed(key, why)),
-                News::Said(Said::Stopped { cause, .. }) => self.stopped(key, cause, heard),
-                News::Said(Said::Elsewhere { .. }) => heard.push(Heard::Open(key)),
-                News::Said(Said::Lost { input, why, .. }) => match ContentHash::from_hex(&input) {
+                News::Message(Message::Failed { why, .. }) => heard.push(Heard::Failed(key, why)),
+                News::Message(Message::Stopped { cause, .. }) => self.stopped(key, cause, heard),
+                News::Message(Message::Elsewhere { .. }) => heard.push(Heard::Open(key)),
+                News::Message(Message::Lost { input, why, .. }) => match ContentHash::from_hex(&input) {
                     Some(input) => {
                         heard.push(Heard::Open(key));
                         heard.push(Heard::Lost(input, why));
@@ -241,15 +242,15 @@ impl<'a> Far<'a> {
                     None => heard.push(Heard::Failed(key, why)),
                 },
                 News::Gone { machine, words } => self.lost(key, (&machine, &words), heard),
-                News::Said(Said::Started { .. } | Said::Ended { .. }) => {}
+                News::Message(Message::Started { .. } | Message::Ended { .. }) => {}
             }
         }
     }
 
     /// A worker ended a task before its end.
     fn stopped(&mut self, key: Key, cause: Cause, heard: &mut Vec<Heard>) {
-        let Some(place) = self.places.get_mut(&key) else { return };
-        let post = &self.posts[place.post];
+        let Some(handed) = self.handed.get_mut(&key) else { return };
+        let post = &self.posts[handed.post];
         match cause {
             Cause::Time | Cause::Store => self.list_again(key, Needs::clone),
             Cause::WholeTime => {
@@ -262,23 +263,23 @@ impl<'a> Far<'a> {
                     ),
                 ));
             }
-            Cause::Signal if place.told_to_end + 1 < MOST_TOLD => {
-                place.told_to_end += 1;
+            Cause::Signal if handed.ended + 1 < MOST_ENDED => {
+                handed.ended += 1;
                 self.list_again(key, |needs| if needs.alone { needs.clone() } else { needs.again() });
             }
             Cause::Signal => heard.push(Heard::Failed(
                 key,
-                format!("the scheduler ended its worker {MOST_TOLD} times{}", memory(&post.needs)),
+                format!("the scheduler ended its worker {MOST_ENDED} times{}", memory(&post.needs)),
             )),
         }
     }
 
-    /// The worker that had begun a task is gone: it is tried once more, alone.
+    /// A task whose worker is gone is tried once more, alone on a worker.
     fn lost(&mut self, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) {
-        let Some(place) = self.places.get_mut(&key) else { return };
-        let post = &self.posts[place.post];
-        place.gone += 1;
-        if place.gone > 1 {
+        let Some(handed) = self.handed.get_mut(&key) else { return };
+        let post = &self.posts[handed.post];
+        handed.gone += 1;
+        if handed.gone > 1 {
             let (machine, words) = at;
             heard.push(Heard::Failed(
                 key,
@@ -292,16 +293,16 @@ impl<'a> Far<'a> {
         self.list_again(key, Needs::again);
     }
 
-    /// Takes a task out of its queue, to be listed for workers with what `needs` makes of those that it had.
+    /// Takes a task out of its queue and lists it again, for workers with the needs that `needs` makes of the old ones.
     fn list_again(&mut self, key: Key, needs: impl Fn(&Needs) -> Needs) {
-        let Some(place) = self.places.get(&key) else { return };
-        let post = &mut self.posts[place.post];
-        let line = post.entries[place.task].line.clone();
-        self.fresh.push((needs(&post.needs), key, line, place.gone, place.told_to_end));
-        post.over(place.task);
+        let Some(handed) = self.handed.get(&key) else { return };
+        let post = &mut self.posts[handed.post];
+        let line = post.entries[handed.task].line.clone();
+        self.fresh.push((needs(&post.needs), key, line, handed.gone, handed.ended));
+        post.over(handed.task);
     }
 
-    /// Asks the scheduler which jobs are there, at most once a minute, and takes its answer when it comes.
+    /// Asks the scheduler at most once a minute which jobs exist, and reads its answer when there is one.
     fn ask(&mut self, heard: &mut Vec<Heard>) {
         if let Some(inbox) = &self.asked {
             match inbox.try_recv() {
@@ -335,22 +336,22 @@ impl<'a> Far<'a> {
         self.asked = Some(inbox);
     }
 
-    /// Takes in which jobs of a queue are there.
+    /// Compares a queue with the jobs that exist.
     fn compare(&mut self, number: usize, alive: Alive, heard: &mut Vec<Heard>) {
         let Reports { news, words } = self.posts[number].apply(&alive);
         heard.extend(words.into_iter().map(Heard::Word));
         self.sort(number, news, heard);
-        let waiting = alive.waiting.map(|(count, why)| format!("{count} workers wait for a place ({why})"));
+        let waiting = alive.waiting.map(|(count, why)| format!("{count} workers wait for a free node ({why})"));
         if waiting.is_some() && waiting != self.waiting {
             heard.extend(waiting.clone().map(Heard::Word));
             self.waiting = waiting;
         }
     }
 
-    /// Results that were reported and are not seen yet are asked for again, and computed again after a while.
+    /// Looks again for results that were reported but are not visible; after a while their tasks are computed again.
     fn settle_late(&mut self, heard: &mut Vec<Heard>) {
-        for (key, place) in &self.places {
-            match place.done {
+        for (key, handed) in &self.handed {
+            match handed.done {
                 Some((_, since)) if since.elapsed() > LATE => heard.push(Heard::Open(*key)),
                 Some((seconds, since)) if since.elapsed() > PAUSE.1 => heard.push(Heard::Done(*key, seconds)),
                 _ => {}
@@ -358,14 +359,14 @@ impl<'a> Far<'a> {
         }
     }
 
-    /// A task is over, or is decided about anew.
+    /// Forgets a task that has ended, or about which the run decides again.
     pub(super) fn forget(&mut self, key: &Key) {
-        if let Some(place) = self.places.remove(key) {
-            self.posts[place.post].over(place.task);
+        if let Some(handed) = self.handed.remove(key) {
+            self.posts[handed.post].over(handed.task);
         }
     }
 
-    /// Ends with the workers; words on how they are left.
+    /// Ends the work with the cluster; returns messages on what happens to the workers.
     pub(super) fn end(&mut self, leave: Leave) -> Vec<String> {
         if leave == Leave::Working {
             let workers: usize = self.posts.iter().map(Post::active).sum();

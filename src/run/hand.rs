@@ -1,4 +1,4 @@
-//! What the run loop hands over to workers on other machines, and what it makes of what it hears of them.
+//! The part of the run loop that hands tasks over to workers on other machines and acts on their news.
 
 use super::board::NodeId;
 use super::far::{Far, Heard, Leave};
@@ -22,12 +22,14 @@ pub(super) fn cluster<'a>(
 }
 
 impl Loop<'_, '_> {
-    /// Hands what takes long over to the workers on other machines.
+    /// Hands tasks that take long over to the workers on other machines.
     pub(super) fn hand_over(&mut self) {
         let Some(far) = &mut self.far else { return };
         let goes = |node: &NodeId| {
             let stage = &self.workflow.stages[self.board.stage(*node)].name;
-            far.takes(stage, is_far(self.board.task(*node).work))
+            let task = self.board.task(*node);
+            // Workers do not know of one another, so they could not keep a bound on a program's runs.
+            task.at_once.is_none() && far.takes(stage, is_far(task.work))
         };
         let nodes: Vec<NodeId> = self.ready.iter().copied().filter(goes).collect();
         for node in nodes {
@@ -71,7 +73,7 @@ impl Loop<'_, '_> {
         Ok(())
     }
 
-    /// Whether nothing is expected of the workers on other machines, or no longer.
+    /// Whether no result is expected from workers on other machines.
     pub(super) fn far_rests(&mut self) -> bool {
         let at_once = self.stop.load(Ordering::Relaxed) || self.fatal.is_some() || self.refused.is_some();
         let ends = self.ends();
@@ -83,7 +85,7 @@ impl Loop<'_, '_> {
         at_once || far.is_idle()
     }
 
-    /// Takes in what the workers on other machines report.
+    /// Reads what the workers on other machines report.
     pub(super) fn listen(&mut self) {
         let Some(far) = &mut self.far else { return };
         let heard = match far.hear() {
@@ -103,22 +105,22 @@ impl Loop<'_, '_> {
     }
 
     fn hears(&mut self, heard: Heard) {
-        let place = |node: NodeId, run: &Self| (run.board.stage(node), run.board.row(node));
+        let stage_and_row = |node: NodeId, run: &Self| (run.board.stage(node), run.board.row(node));
         match heard {
             Heard::Word(text) => self.watch.event(Event::Word { text: &text }),
             Heard::Begun(key) | Heard::Stands(key, _) if !self.far_nodes.contains_key(&key) => {}
             Heard::Begun(key) => {
-                let (stage, row) = place(self.far_nodes[&key], self);
+                let (stage, row) = stage_and_row(self.far_nodes[&key], self);
                 self.watch.event(Event::Started { stage: &self.workflow.stages[stage].name, row });
             }
             Heard::Stands(key, progress) => {
-                let (stage, row) = place(self.far_nodes[&key], self);
+                let (stage, row) = stage_and_row(self.far_nodes[&key], self);
                 let stage = &self.workflow.stages[stage].name;
-                self.watch.event(Event::Said { stage, row, progress: &progress });
+                self.watch.event(Event::Progress { stage, row, progress: &progress });
             }
             Heard::Done(key, seconds) => match self.store.find(&key) {
                 Ok(Some(record)) => {
-                    let finished = task::Finished { content: record.content, shared: false, seconds, brief: None };
+                    let finished = task::Finished { content: record.content, shared: false, seconds, summary: None };
                     self.is_over(&key, Ok(task::Outcome::Finished(finished)));
                 }
                 // It is not seen yet.

@@ -1,34 +1,35 @@
-//! What stages may look up while a campaign runs.
+//! What a stage may look up when it is asked for its next step.
 
 use super::board::{Board, TaskState};
 use super::files::{Files, path_of};
-use super::ledger::Ledger;
+use super::run_memo::RunMemo;
 use super::task::Lost;
 use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
 use crate::stage::beside::plain;
-use crate::stage::ledger::Kept;
+use crate::stage::cached::CachedRun;
 use crate::stage::rows::Rows;
 use crate::stage::{FileInput, Library, Memory, Outcome, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
 use std::sync::Arc;
 
+/// The library of one stage: results, cached runs and files.
 pub(super) struct Shelf<'a> {
     pub(super) workflow: &'a Workflow,
     pub(super) store: &'a Store,
     pub(super) board: &'a Board,
-    /// What is remembered of the runs of the stage that asks.
-    pub(super) ledger: Option<&'a Ledger>,
-    /// What the stage that asks remembers of its last step.
+    /// The memo of the runs of the stage that asks.
+    pub(super) run_memo: Option<&'a RunMemo>,
+    /// What the stage that asks carries over from its last step.
     pub(super) memory: &'a Memory,
-    pub(super) notes: RefCell<Notes>,
+    pub(super) lookups: RefCell<Lookups>,
 }
 
-/// What a stage asked for.
+/// What a stage looked up in one step.
 #[derive(Default)]
-pub(super) struct Notes {
-    /// Files that were looked at, with their digests.
+pub(super) struct Lookups {
+    /// The files that it read, with their digests.
     pub(super) files: Files,
     /// The rows of a fan-out.
     pub(super) rows: Option<Arc<Rows>>,
@@ -40,14 +41,14 @@ impl Library for Shelf<'_> {
     fn load(&self, content: &ContentHash) -> Result<Arc<Artifact>, StageError> {
         self.store.get(content).map_err(|error| {
             let message = error.to_string();
-            self.notes.borrow_mut().lost.get_or_insert(Lost { content: *content, error });
+            self.lookups.borrow_mut().lost.get_or_insert(Lost { content: *content, error });
             StageError::new(message)
         })
     }
 
-    fn kept(&self, rows: &Arc<Rows>, index: usize) -> Option<Kept<'_>> {
-        self.notes.borrow_mut().rows.get_or_insert_with(|| Arc::clone(rows));
-        self.ledger?.kept(rows, index)
+    fn cached(&self, rows: &Arc<Rows>, index: usize) -> Option<CachedRun<'_>> {
+        self.lookups.borrow_mut().rows.get_or_insert_with(|| Arc::clone(rows));
+        self.run_memo?.cached(rows, index)
     }
 
     fn outcome(&self, task: &Task) -> Option<Outcome> {
@@ -74,7 +75,7 @@ impl Library for Shelf<'_> {
         plain(&full).map_err(absent)?;
         let bytes = std::fs::read(&full).map_err(|e| absent(e.to_string()))?;
         let digest = blake3::hash(&bytes);
-        self.notes.borrow_mut().files.push((path.to_owned(), digest.to_hex().to_string()));
+        self.lookups.borrow_mut().files.push((path.to_owned(), digest.to_hex().to_string()));
         Ok(FileInput { name: name.to_owned(), path: full, digest: *digest.as_bytes() })
     }
 }

@@ -1,7 +1,7 @@
-//! Recognising an unchanged stage at once.
+//! Memos of stages: an unchanged stage is completed at once.
 //!
 //! `next` is a pure function of the stage's settings, what the workflow shares, its inputs, the files it looks at, and
-//! the program. Their hash is the key of a [`Memo`] that says what the stage came to and which objects that rests on.
+//! the program. Their hash is the key of a [`Memo`] that holds the result of the stage and the objects that the result rests on.
 //! When the memo is there, the files are as they were and the objects are in the store, the stage is done without a look
 //! at its tasks: ten thousand of them cost one listing of folders. A memo is only a short cut: without it the tasks' own
 //! keys give the same answer, later.
@@ -16,13 +16,13 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::os::unix::fs::MetadataExt;
 
-/// What a stage came to.
-pub(super) struct Known {
+/// The result of a stage, from its memo.
+pub(super) struct Recalled {
     pub(super) content: ContentHash,
     pub(super) objects: Vec<ObjectId>,
 }
 
-impl Known {
+impl Recalled {
     /// Its tasks, with those that it shares with other stages.
     pub(super) fn count(&self) -> TaskCount {
         TaskCount { total: self.objects.len(), cached: self.objects.len(), ..TaskCount::default() }
@@ -38,19 +38,19 @@ struct Note {
     rows: Vec<i64>,
 }
 
-/// Hashes of what all stages of a workflow share, and of the program: any rebuild voids all memos.
+/// Hashes of what all stages of a workflow share, and of the program: every rebuild invalidates all memos.
 #[derive(Clone, Copy)]
 pub(super) struct Base {
-    /// Of all that is shared.
+    /// Hash of all that stages share.
     pub(super) whole: Key,
-    /// Without the levels of factors: what a single run depends on.
+    /// The same without the levels of factors: what a single run depends on.
     pub(super) run: Key,
 }
 
 /// The hashes that the keys of all memos begin with.
 pub(super) fn base(workflow: &Workflow) -> Base {
     let program = std::env::current_exe().and_then(std::fs::metadata).ok().map(|meta| {
-        // Not by the time that can be set alone: another build may have the same.
+        // The modification time alone can be set, and two builds may have the same one.
         (meta.len(), meta.ino(), meta.mtime(), meta.mtime_nsec(), meta.ctime(), meta.ctime_nsec())
     });
     let Context { seed, factors, responses, materials, sketches, templates, outline } = &workflow.context;
@@ -60,7 +60,7 @@ pub(super) fn base(workflow: &Workflow) -> Base {
     let run = Key::of(&format!("run\n{shared}{:?}\n", bare.collect::<Vec<_>>()));
     let mut whole = format!("{shared}{outline:?}\n{run}").into_bytes();
     for factor in factors.values() {
-        // Numbers as they are: their texts take long to find for ten thousand levels.
+        // Bits of numbers, because formatting ten thousand levels takes long.
         let numbers = factor.levels.iter().chain(factor.range.iter().flatten());
         whole.extend(numbers.flat_map(|number| number.to_bits().to_le_bytes()));
         whole.extend(
@@ -72,7 +72,7 @@ pub(super) fn base(workflow: &Workflow) -> Base {
     Base { whole: Key(*blake3::hash(&whole).as_bytes()), run }
 }
 
-/// Key of a stage whose inputs are there: `inputs` holds their stage keys and contents.
+/// Key of the memo of a stage whose inputs are known: `inputs` holds their stage keys and contents.
 pub(super) fn key(workflow: &Workflow, index: usize, base: &Key, inputs: &[(Key, ContentHash)]) -> Key {
     let node = &workflow.stages[index];
     let mut text = format!("{base}\nkind {}\nsettings {}\n", node.kind, node.stage.settings());
@@ -83,7 +83,7 @@ pub(super) fn key(workflow: &Workflow, index: usize, base: &Key, inputs: &[(Key,
     Key::of(&text)
 }
 
-/// Key of what the runs of a stage share: as [`key`], without the design that they are the rows of.
+/// Key of the memo of the runs of a stage: as [`key`], without the design whose rows they are.
 pub(super) fn run_key(workflow: &Workflow, index: usize, base: &Key, inputs: &[(Key, ContentHash)]) -> Key {
     let node = &workflow.stages[index];
     let mut text = format!("{base}\nkind {}\nsettings {}\n", node.kind, node.stage.settings());
@@ -93,14 +93,14 @@ pub(super) fn run_key(workflow: &Workflow, index: usize, base: &Key, inputs: &[(
     Key::of(&text)
 }
 
-/// What the memo of a stage says, when all it rests on is still so.
-pub(super) fn recall(workflow: &Workflow, store: &Store, key: &Key) -> Option<Known> {
+/// The result of a stage from its memo; `None` when a file or an object that it rests on has changed or is gone.
+pub(super) fn recall(workflow: &Workflow, store: &Store, key: &Key) -> Option<Recalled> {
     let memo = store.memo(key).ok()??;
     let note: Note = serde_json::from_str(&memo.note).ok()?;
     if !unchanged(workflow, &note.files) || !store.has_all(&memo.objects).ok()? {
         return None;
     }
-    Some(Known { content: ContentHash::from_hex(&note.content)?, objects: memo.objects })
+    Some(Recalled { content: ContentHash::from_hex(&note.content)?, objects: memo.objects })
 }
 
 /// The tasks that the memo of a stage rests on: design row and key of each. For the reasons of a rerun.
@@ -111,8 +111,8 @@ pub fn remembered(store: &Store, key: &Key) -> Option<Vec<(Option<usize>, Key)>>
     Some(rows.zip(memo.objects.into_iter().map(|object| object.key)).collect())
 }
 
-/// Keeps what a stage came to: `nodes` are all the tasks it rests on.
-pub(super) fn keep(store: &Store, key: &Key, content: ContentHash, board: &Board, nodes: &[NodeId], files: Files) {
+/// Stores the memo of a stage: `nodes` are all the tasks that its result rests on.
+pub(super) fn store(store: &Store, key: &Key, content: ContentHash, board: &Board, nodes: &[NodeId], files: Files) {
     let (objects, rows): (Vec<ObjectId>, Vec<Option<usize>>) = board.results(nodes).unzip();
     let rows = rows.into_iter().map(|row| row.map_or(-1, |row| row as i64)).collect();
     let note = Note { content: content.to_string(), files, rows };

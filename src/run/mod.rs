@@ -6,24 +6,25 @@
 //! * the [`stages`]: where each stage of the workflow stands;
 //! * a queue of nodes whose inputs are known and whose result is not in the store.
 //!
-//! It goes round: ask each stage that can say more for its next step; put its tasks on the board; settle every node
+//! The loop repeats: ask each stage that can go on for its next step; put its tasks on the board; settle every node
 //! whose inputs are known by looking its key up in the store; start what is ready; wait for one answer. `plan` is the
 //! same loop that starts nothing, so it cannot disagree with `run`.
 
 mod audit;
 mod board;
+mod campaigns;
 mod commit;
 mod elsewhere;
 mod event;
 mod far;
 mod files;
 mod hand;
-mod ledger;
 mod library;
+mod licences;
 mod memo;
 #[cfg(test)]
 mod pins;
-mod record;
+mod run_memo;
 mod stages;
 mod streamed;
 mod task;
@@ -31,10 +32,10 @@ mod worker;
 
 pub use audit::{Audited, audit};
 pub use board::{TaskCount, TaskState};
+pub use campaigns::{Past, record};
 pub use commit::commit;
 pub use event::{Event, Silent, Watch};
 pub use memo::remembered;
-pub use record::{Past, record};
 pub use stages::{StageReport, StageStatus};
 pub use worker::{Worked, Worker, program};
 
@@ -47,6 +48,7 @@ use crate::store::{ObjectId, Store, StoreError};
 use board::{Board, NodeId};
 use elsewhere::Elsewhere;
 use far::Far;
+use licences::Licences;
 use stages::Stages;
 use std::any::Any;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -63,13 +65,13 @@ pub struct Settings {
     pub jobs: usize,
     /// Go on with what does not depend on a failed task.
     pub keep_going: bool,
-    /// Only decide, start nothing.
+    /// Decide only: start nothing.
     pub dry: bool,
     /// Stages that are wanted, with all they need; all stages when empty.
     pub targets: Vec<String>,
     /// Stages whose tasks are computed although their results are stored.
     pub again: Vec<String>,
-    /// Believe what is remembered about unchanged stages; without it every task is looked up.
+    /// Complete unchanged stages from their memos; without it every task is looked up.
     pub memos: bool,
     /// The cluster whose workers compute what takes long; none when all is computed here.
     pub cluster: Option<Cluster>,
@@ -84,7 +86,7 @@ pub struct Cluster {
     pub leave: Arc<AtomicBool>,
 }
 
-/// What became of a campaign.
+/// The outcome of a campaign.
 pub struct Report {
     /// Every wanted stage, in the order of the workflow.
     pub stages: Vec<StageReport>,
@@ -93,13 +95,13 @@ pub struct Report {
     /// The store could not be read; what was wrong.
     pub broken: Option<String>,
     board: Board,
-    places: Stages,
+    states: Stages,
 }
 
 /// One task, for people and programs.
 #[derive(Clone, Debug)]
 pub struct TaskReport {
-    /// Place of its stage in the workflow.
+    /// Index of its stage in the workflow.
     pub stage: usize,
     /// Its design row.
     pub row: Option<usize>,
@@ -119,7 +121,7 @@ impl Report {
 
     /// Every object that the campaign rests on.
     pub fn objects(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
-        self.board.objects().chain(self.places.remembered())
+        self.board.objects().chain(self.states.remembered())
     }
 
     /// Counts over all stages.
@@ -148,6 +150,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
             ready: BTreeSet::new(),
             running: 0,
             elsewhere: Elsewhere::default(),
+            licences: Licences::default(),
             far,
             far_nodes: HashMap::new(),
             past: cluster.and_then(|_| Past::of(workflow, store).ok()),
@@ -168,14 +171,14 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
         interrupted: false,
         broken: Some(format!("the system grants no {jobs} threads ({error}); try fewer with `--jobs`")),
         board: Board::default(),
-        places: Stages::new(workflow, &settings.targets, false),
+        states: Stages::new(workflow, &settings.targets, false),
     })
 }
 
 /// A broken invariant of this program, as the failure of the task that met it.
 fn panicked(panic: &(dyn Any + Send)) -> Failure {
     let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-    let text = format!("the program met a fault of its own: {}", said.unwrap_or("a panic without words"));
+    let text = format!("internal error: {}", said.unwrap_or("a panic without words"));
     StageError::new(text).hint("please report it with the workflow and what was printed above").into()
 }
 
@@ -215,6 +218,8 @@ struct Loop<'pool, 'env> {
     running: usize,
     /// Tasks that other processes compute.
     elsewhere: Elsewhere,
+    /// Programs that may only run so often at once.
+    licences: Licences,
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
     far_nodes: HashMap<Key, NodeId>,
@@ -222,9 +227,9 @@ struct Loop<'pool, 'env> {
     past: Option<Past<'env>>,
     /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.
     most_seconds: HashMap<String, Option<f64>>,
-    /// Why the cluster cannot go on: nothing more is started.
+    /// Why the cluster cannot be used any more; then nothing more is started.
     refused: Option<String>,
-    /// What gathering takes from the runs that were computed.
+    /// Summaries of the runs that were computed.
     streamed: Streamed,
     failed: bool,
     /// Stages that have failed while other tasks of theirs may still end, and those left out because of them.
@@ -258,7 +263,7 @@ impl Loop<'_, '_> {
         let interrupted = self.stop.load(Ordering::Relaxed);
         let broken = self.fatal.map(|error| error.to_string()).or(self.refused);
         let stages = self.stages.reports(self.workflow, &self.board);
-        Report { stages, interrupted, broken, board: self.board, places: self.stages }
+        Report { stages, interrupted, broken, board: self.board, states: self.stages }
     }
 
     /// Waits for an answer, or for another process to let go of a task.
@@ -282,7 +287,7 @@ impl Loop<'_, '_> {
         if let Some((node, holder)) = self.elsewhere.first().filter(|_| self.running == 0) {
             let (stage, row) = (&self.workflow.stages[self.board.stage(node)].name, self.board.row(node));
             let progress = Progress::note(format!("waits for {holder}"));
-            self.watch.event(Event::Said { stage, row, progress: &progress });
+            self.watch.event(Event::Progress { stage, row, progress: &progress });
         }
     }
 
@@ -292,7 +297,7 @@ impl Loop<'_, '_> {
         self.settings.dry || ended || (self.failed && !self.settings.keep_going)
     }
 
-    /// Asks each stage that can say more; whether any did.
+    /// Asks each stage that can go on for its next step; returns whether any took one.
     fn advance(&mut self) -> bool {
         let mut moved = false;
         for index in self.stages.due(self.workflow, &self.board) {
@@ -329,8 +334,8 @@ impl Loop<'_, '_> {
         moved
     }
 
-    /// Tells of stages that have failed once none of their tasks can end any more, so that all are counted, and then of
-    /// those left out because of them.
+    /// Reports failed stages once all their tasks have ended, so that every failure is counted, and then the stages that were
+    /// skipped because of them.
     fn tell_without_result(&mut self, last: bool) {
         let (workflow, stages, board, watch) = (self.workflow, &self.stages, &self.board, self.watch);
         let mut waiting: Vec<String> = Vec::new();
@@ -388,6 +393,9 @@ impl Loop<'_, '_> {
         self.hand_over();
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
+            if !self.licences.admits(node, self.board.task(node).at_once.as_ref()) {
+                continue;
+            }
             let again = self.forced(node);
             match task::Order::new(&mut self.board, node, self.store, &self.streamed, again) {
                 Ok(order) => self.give(order),
@@ -416,6 +424,7 @@ impl Loop<'_, '_> {
         self.untold.clear();
         self.ready.clear();
         self.elsewhere.clear();
+        self.licences.clear();
         self.far_nodes.clear();
         self.board = Board::default();
         self.stages = Stages::new(self.workflow, &self.settings.targets, false);
@@ -430,7 +439,7 @@ impl Loop<'_, '_> {
         self.running += 1;
         self.pool.give(move |share| {
             let begins = || watch.event(Event::Started { stage, row });
-            let say = |progress: Progress| watch.event(Event::Said { stage, row, progress: &progress });
+            let say = |progress: Progress| watch.event(Event::Progress { stage, row, progress: &progress });
             // What panics is our own fault, but no reason to leave the loop waiting or to end the other tasks.
             let result = catch_unwind(AssertUnwindSafe(|| order.execute(store, share, &say, stop, &begins)));
             let result = result.unwrap_or_else(|panic| Err(panicked(&*panic)));
@@ -444,6 +453,7 @@ impl Loop<'_, '_> {
         if self.board.is_running(node) {
             self.running -= 1;
         }
+        self.ready.extend(self.licences.release(node, self.board.task(node).at_once.as_ref()));
         let failure = match answer.result {
             Ok(task::Outcome::Elsewhere(waiting)) => {
                 self.board.stopped(node);
@@ -452,8 +462,8 @@ impl Loop<'_, '_> {
             }
             Ok(task::Outcome::Finished(finished)) => {
                 self.board.took(node, finished.seconds);
-                if let Some(brief) = &finished.brief {
-                    self.streamed.put(finished.content, brief);
+                if let Some(summary) = &finished.summary {
+                    self.streamed.put(finished.content, summary);
                 }
                 if let Some(key) = self.board.key_of(node).filter(|_| !finished.shared) {
                     self.ended.insert(key, None);
@@ -486,14 +496,4 @@ impl Loop<'_, '_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panic_in_a_task_becomes_its_failure_with_what_was_said() {
-        for panic in [catch_unwind(|| panic!("BUG: {}", 7)), catch_unwind(|| panic!("BUG: 7"))] {
-            let Failure::Failed(error) = panicked(&*panic.unwrap_err()) else { panic!("not a failure") };
-            assert!(error.message.ends_with("BUG: 7") && error.hint.is_some(), "{error:?}");
-        }
-    }
-}
+mod tests;

@@ -166,8 +166,8 @@ table 464517716712
 figure e5375085b080
 agreement 2
 anova 3
-calibrate 3
-command 1
+calibrate 4
+command 2
 data 2
 design 2
 effort 1

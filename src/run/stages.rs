@@ -2,9 +2,9 @@
 
 use super::board::{Board, ByKey, NodeId, TaskCount, TaskState};
 use super::files::Files;
-use super::ledger::Ledger;
-use super::library::{Notes, Shelf};
+use super::library::{Lookups, Shelf};
 use super::memo::{self, Base};
+use super::run_memo::RunMemo;
 use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
@@ -16,14 +16,14 @@ use std::collections::HashSet;
 use std::hash::BuildHasherDefault;
 use std::sync::Arc;
 
-/// What became of a stage, for people and programs.
+/// The outcome of a stage, for people and programs.
 #[derive(Clone, Debug)]
 pub struct StageReport {
     /// Its name.
     pub name: String,
     /// Its kind.
     pub kind: &'static str,
-    /// Where it stands.
+    /// Its status.
     pub status: StageStatus,
     /// Its tasks.
     pub tasks: TaskCount,
@@ -33,16 +33,16 @@ pub struct StageReport {
     pub seconds: f64,
 }
 
-/// Where a stage stands.
+/// Status of a stage.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StageStatus {
-    /// Not begun or not ended: work is left to do, or was not started.
+    /// Not finished: work is left, or was not started.
     Open,
     /// Its result.
     Done(ContentHash),
     /// Why it failed.
     Failed(String),
-    /// A stage that it needs failed; which.
+    /// A stage that it needs failed: this one.
     Skipped(String),
 }
 
@@ -59,44 +59,44 @@ impl StageStatus {
 }
 
 enum State {
-    /// Some inputs are not there, or its step is still to be asked for.
+    /// Inputs are missing, or the stage has not been asked for its next step.
     Waiting,
-    /// It must see these first.
+    /// It needs the outcomes of these tasks before its next step.
     Asking(Vec<NodeId>),
     /// The node whose result is the stage's.
     Finishing(NodeId),
-    /// It cannot go on; why.
+    /// It cannot go on, for this reason.
     Broken(String),
     Ended(StageStatus),
 }
 
-struct Place {
+struct Entry {
     state: State,
     wanted: bool,
     /// Key of its memo, from the moment its inputs are known.
     key: Option<Key>,
-    /// Key of the ledger of its runs, known as soon.
+    /// Key of the memo of its runs, known at the same time.
     run: Option<Key>,
     /// The rows whose runs it gathers.
     rows: Option<Arc<Rows>>,
-    /// Every node it asked for, and the one it finishes with.
+    /// Every node it asked for, and the node that is its result.
     asked: Vec<NodeId>,
     files: Files,
-    /// What it worked out at its last step.
+    /// What it carries over from its last step.
     memory: Memory,
-    /// What its memo said, when that was enough.
-    remembered: Option<memo::Known>,
+    /// What its memo says, when the stage was completed from it.
+    remembered: Option<memo::Recalled>,
 }
 
 pub(super) struct Stages {
-    places: Vec<Place>,
+    entries: Vec<Entry>,
     base: Base,
-    /// Whether memos are believed.
+    /// Whether memos may complete stages.
     memos: bool,
 }
 
 impl Stages {
-    /// No stage begun; `memos` says whether memos may be believed.
+    /// All stages before their first step; `memos` says whether memos may complete them.
     pub(super) fn new(workflow: &Workflow, targets: &[String], memos: bool) -> Self {
         let mut wanted: Vec<bool> =
             workflow.stages.iter().map(|stage| targets.is_empty() || targets.contains(&stage.name)).collect();
@@ -105,7 +105,7 @@ impl Stages {
                 workflow.stages[index].inputs.iter().for_each(|&(_, input)| wanted[input] = true);
             }
         }
-        let place = |wanted| Place {
+        let entry = |wanted| Entry {
             state: State::Waiting,
             wanted,
             key: None,
@@ -116,52 +116,55 @@ impl Stages {
             memory: Memory::default(),
             remembered: None,
         };
-        Self { places: wanted.into_iter().map(place).collect(), base: memo::base(workflow), memos }
+        Self { entries: wanted.into_iter().map(entry).collect(), base: memo::base(workflow), memos }
     }
 
     /// Wanted stages that can be asked for their next step.
     pub(super) fn due(&self, workflow: &Workflow, board: &Board) -> Vec<usize> {
         let settled = |node: &NodeId| !matches!(board.state(*node), TaskState::Open | TaskState::Running);
-        let due = |index: &usize| match &self.places[*index].state {
+        let due = |index: &usize| match &self.entries[*index].state {
             State::Waiting => workflow.stages[*index].inputs.iter().all(|&(_, input)| self.content(input).is_some()),
             State::Asking(nodes) => nodes.iter().all(settled),
             State::Finishing(_) | State::Broken(_) | State::Ended(_) => false,
         };
-        (0..self.places.len()).filter(|&index| self.places[index].wanted).filter(due).collect()
+        (0..self.entries.len()).filter(|&index| self.entries[index].wanted).filter(due).collect()
     }
 
     fn content(&self, index: usize) -> Option<ContentHash> {
-        match self.places[index].state {
+        match self.entries[index].state {
             State::Ended(StageStatus::Done(content)) => Some(content),
             State::Waiting | State::Asking(_) | State::Finishing(_) | State::Broken(_) | State::Ended(_) => None,
         }
     }
 
-    /// Ends a stage at once when its memo says what it comes to; whether it did.
+    /// Completes the stage from its memo; returns whether it could.
     pub(super) fn recall(&mut self, workflow: &Workflow, index: usize, store: &Store) -> bool {
-        if !matches!(self.places[index].state, State::Waiting) {
+        if !matches!(self.entries[index].state, State::Waiting) {
             return false;
         }
-        let inputs = |key: fn(&Place) -> Option<Key>| -> Option<Vec<(Key, ContentHash)>> {
+        let inputs = |key: fn(&Entry) -> Option<Key>| -> Option<Vec<(Key, ContentHash)>> {
             let inputs = workflow.stages[index].inputs.iter();
-            inputs.map(|&(_, input)| Some((key(&self.places[input])?, self.content(input)?))).collect()
+            inputs.map(|&(_, input)| Some((key(&self.entries[input])?, self.content(input)?))).collect()
         };
-        let (Some(whole), Some(run)) = (inputs(|place| place.key), inputs(|place| place.run)) else { return false };
+        let (Some(whole), Some(run)) = (inputs(|entry| entry.key), inputs(|entry| entry.run)) else { return false };
         let key = memo::key(workflow, index, &self.base.whole, &whole);
-        let place = &mut self.places[index];
-        place.key = Some(key);
-        place.run = Some(memo::run_key(workflow, index, &self.base.run, &run));
+        let entry = &mut self.entries[index];
+        entry.key = Some(key);
+        entry.run = Some(memo::run_key(workflow, index, &self.base.run, &run));
         if !self.memos {
             return false;
         }
         let Some(known) = memo::recall(workflow, store, &key) else { return false };
-        self.places[index].state = State::Ended(StageStatus::Done(known.content));
-        self.places[index].remembered = Some(known);
+        self.entries[index].state = State::Ended(StageStatus::Done(known.content));
+        self.entries[index].remembered = Some(known);
         true
     }
 
-    /// Asks a stage for its next step; answers with the nodes that are new on the board, and with where the stage stands
-    /// when it asked for outcomes, or with a result that it needs and that cannot be read.
+    /// Asks a stage for its next step. Returns the nodes that are new on the board, and a note on its progress when the stage
+    /// asked for outcomes.
+    ///
+    /// # Errors
+    /// A result that the stage needs cannot be read.
     pub(super) fn step(
         &mut self,
         workflow: &Workflow,
@@ -169,12 +172,12 @@ impl Stages {
         store: &Store,
         board: &mut Board,
     ) -> Result<(Vec<NodeId>, Option<String>), Box<Lost>> {
-        let key = self.places[index].run.filter(|_| self.memos && matches!(self.places[index].state, State::Waiting));
-        let ledger = key.and_then(|key| Ledger::read(workflow, store, &key));
-        let memory = &self.places[index].memory;
-        let shelf = Shelf { workflow, store, board, ledger: ledger.as_ref(), memory, notes: RefCell::default() };
+        let key = self.entries[index].run.filter(|_| self.memos && matches!(self.entries[index].state, State::Waiting));
+        let run_memo = key.and_then(|key| RunMemo::read(workflow, store, &key));
+        let memory = &self.entries[index].memory;
+        let shelf = Shelf { workflow, store, board, run_memo: run_memo.as_ref(), memory, lookups: RefCell::default() };
         let step = workflow.stages[index].stage.next(&self.known(workflow, index, &shelf));
-        let Notes { files, rows, lost } = shelf.notes.into_inner();
+        let Lookups { files, rows, lost } = shelf.lookups.into_inner();
         if let Some(lost) = lost {
             return Err(Box::new(lost));
         }
@@ -188,27 +191,27 @@ impl Stages {
             }
             Err(error) => State::Broken(in_words(error)),
         };
-        let place = &mut self.places[index];
+        let entry = &mut self.entries[index];
         match &state {
-            State::Finishing(node) => place.asked.push(*node),
-            State::Asking(nodes) => place.asked.extend(nodes),
+            State::Finishing(node) => entry.asked.push(*node),
+            State::Asking(nodes) => entry.asked.extend(nodes),
             State::Waiting | State::Broken(_) | State::Ended(_) => {}
         }
-        place.files.extend(files);
+        entry.files.extend(files);
         if rows.is_some() {
-            // A kept run does not look at its files, and yet rests on them.
-            place.files.extend(ledger.into_iter().flat_map(|ledger| ledger.files));
-            place.rows = rows;
+            // A cached run reads no files now, but its result depends on them.
+            entry.files.extend(run_memo.into_iter().flat_map(|run_memo| run_memo.files));
+            entry.rows = rows;
         }
-        place.files.sort();
-        place.files.dedup();
-        place.state = state;
+        entry.files.sort();
+        entry.files.dedup();
+        entry.state = state;
         Ok((new, stands))
     }
 
     /// Ends a stage that cannot go on.
     pub(super) fn fail(&mut self, index: usize, error: StageError) {
-        self.places[index].state = State::Broken(in_words(error));
+        self.entries[index].state = State::Broken(in_words(error));
     }
 
     /// What a stage knows once its inputs are there.
@@ -233,38 +236,38 @@ impl Stages {
         Known { name: &workflow.stages[index].name, context: &workflow.context, inputs, library }
     }
 
-    /// Ends the stages that can end now, and keeps their memos when something was or may be run.
+    /// Ends the stages that can end now, and stores their memos in `store`, if there is one.
     pub(super) fn close(&mut self, workflow: &Workflow, board: &Board, store: Option<&Store>) -> Vec<StageReport> {
         let mut closed = Vec::new();
-        for index in 0..self.places.len() {
-            if !self.places[index].wanted {
+        for index in 0..self.entries.len() {
+            if !self.entries[index].wanted {
                 continue;
             }
             let Some(status) = self.end(workflow, index, board) else { continue };
             if let (StageStatus::Done(content), Some(store)) = (&status, store) {
-                self.keep(index, *content, board, store);
+                self.store_memos(index, *content, board, store);
             }
-            self.places[index].state = State::Ended(status);
+            self.entries[index].state = State::Ended(status);
             closed.push(self.report(workflow, index, board));
         }
         closed
     }
 
-    fn keep(&mut self, index: usize, content: ContentHash, board: &Board, store: &Store) {
-        let place = &mut self.places[index];
-        if let Some(key) = &place.key {
-            if let (State::Finishing(node), Some(run), Some(rows)) = (&place.state, &place.run, &place.rows) {
-                Ledger::keep(store, run, board, *node, rows, &place.files);
+    fn store_memos(&mut self, index: usize, content: ContentHash, board: &Board, store: &Store) {
+        let entry = &mut self.entries[index];
+        if let Some(key) = &entry.key {
+            if let (State::Finishing(node), Some(run), Some(rows)) = (&entry.state, &entry.run, &entry.rows) {
+                RunMemo::store(store, run, board, *node, rows, &entry.files);
             }
-            let nodes = board.closure(&place.asked);
-            memo::keep(store, key, content, board, &nodes, std::mem::take(&mut place.files));
+            let nodes = board.closure(&entry.asked);
+            memo::store(store, key, content, board, &nodes, std::mem::take(&mut entry.files));
         }
     }
 
     fn end(&self, workflow: &Workflow, index: usize, board: &Board) -> Option<StageStatus> {
-        match &self.places[index].state {
+        match &self.entries[index].state {
             State::Waiting => {
-                workflow.stages[index].inputs.iter().find_map(|&(_, input)| match &self.places[input].state {
+                workflow.stages[index].inputs.iter().find_map(|&(_, input)| match &self.entries[input].state {
                     State::Ended(StageStatus::Failed(_)) => {
                         Some(StageStatus::Skipped(workflow.stages[input].name.clone()))
                     }
@@ -284,43 +287,43 @@ impl Stages {
         }
     }
 
-    /// Where a stage stands, by the tasks that it asked for first.
+    /// The report of a stage, with the tasks that it was the first to ask for.
     pub(super) fn report(&self, workflow: &Workflow, index: usize, board: &Board) -> StageReport {
-        let place = &self.places[index];
+        let entry = &self.entries[index];
         StageReport {
             name: workflow.stages[index].name.clone(),
             kind: workflow.stages[index].kind,
-            status: match &place.state {
+            status: match &entry.state {
                 State::Ended(status) => status.clone(),
                 State::Waiting | State::Asking(_) | State::Finishing(_) | State::Broken(_) => StageStatus::Open,
             },
-            tasks: place.remembered.as_ref().map_or_else(|| board.count(index), memo::Known::count),
-            memo: place.key,
+            tasks: entry.remembered.as_ref().map_or_else(|| board.count(index), memo::Recalled::count),
+            memo: entry.key,
             seconds: board.seconds(index),
         }
     }
 
-    /// Every wanted stage. A task that several stages rest on counts for the first of them in the workflow, whichever
-    /// asked first, so that counts do not depend on timing.
+    /// The reports of all wanted stages. A task that several stages share counts for the first of them in the workflow, so
+    /// that counts do not depend on timing.
     pub(super) fn reports(&self, workflow: &Workflow, board: &Board) -> Vec<StageReport> {
-        let recalled = self.places.iter().any(|place| place.remembered.is_some());
+        let recalled = self.entries.iter().any(|entry| entry.remembered.is_some());
         let by_key = if recalled { board.by_key() } else { ByKey::default() };
         let mut keys: HashSet<Key, BuildHasherDefault<FirstBytes>> = HashSet::default();
         let mut nodes = vec![false; board.len()];
-        let wanted = (0..self.places.len()).filter(|&index| self.places[index].wanted);
+        let wanted = (0..self.entries.len()).filter(|&index| self.entries[index].wanted);
         wanted
             .map(|index| {
-                let place = &self.places[index];
+                let entry = &self.entries[index];
                 let mut tasks = TaskCount::default();
-                for object in place.remembered.iter().flat_map(|known| &known.objects) {
+                for object in entry.remembered.iter().flat_map(|known| &known.objects) {
                     if keys.insert(object.key) {
                         let node = by_key.get(&object.key).inspect(|&&node| nodes[node] = true);
                         tasks = tasks + node.map_or(TaskCount::CACHED, |&node| board.count_of(node));
                     }
                 }
-                for node in board.closure(&place.asked) {
+                for node in board.closure(&entry.asked) {
                     let new = !std::mem::replace(&mut nodes[node], true);
-                    for key in board.kept_keys(node).filter(|_| new) {
+                    for key in board.cached_keys(node).filter(|_| new) {
                         if keys.insert(key) {
                             tasks = tasks + TaskCount::CACHED;
                         }
@@ -334,9 +337,12 @@ impl Stages {
             .collect()
     }
 
-    /// Objects that memos spoke for.
+    /// The objects of the stages that were completed from memos.
     pub(super) fn remembered(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
-        self.places.iter().filter_map(|place| place.remembered.as_ref()).flat_map(|known| known.objects.iter().copied())
+        self.entries
+            .iter()
+            .filter_map(|entry| entry.remembered.as_ref())
+            .flat_map(|known| known.objects.iter().copied())
     }
 }
 

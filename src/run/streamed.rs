@@ -1,37 +1,37 @@
-//! What gathering takes from each run, noted when the run ends: a table of a hundred thousand runs is gathered without all
-//! of their artifacts in memory, or read again, at once.
+//! Summaries of runs, made when each run ends: a table of a hundred thousand runs is gathered without reading their
+//! artifacts again.
 
 use crate::artifact::{Artifact, ContentHash, FirstBytes};
-use crate::stage::ledger::{Brief, Briefs};
+use crate::stage::cached::{RunSummaries, RunSummary};
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
-/// Briefs of the runs that this campaign has computed, by their results.
+/// Summaries of the runs that this campaign has computed, by the content of their results.
 #[derive(Default)]
 pub(super) struct Streamed {
-    briefs: Briefs,
-    places: HashMap<ContentHash, u32, BuildHasherDefault<FirstBytes>>,
+    summaries: RunSummaries,
+    indices: HashMap<ContentHash, u32, BuildHasherDefault<FirstBytes>>,
 }
 
-/// The brief of a result, when it is a run.
-pub(super) fn brief(artifact: &Artifact) -> Option<Briefs> {
-    let mut briefs = Briefs::default();
-    briefs.push_run(artifact).then_some(briefs)
+/// The summary of a result, when it is a run.
+pub(super) fn summary(artifact: &Artifact) -> Option<RunSummaries> {
+    let mut summaries = RunSummaries::default();
+    summaries.push_run(artifact).then_some(summaries)
 }
 
 impl Streamed {
-    /// Notes a run.
-    pub(super) fn put(&mut self, content: ContentHash, brief: &Briefs) {
-        if let Some(brief) = brief.get(0)
-            && !self.places.contains_key(&content)
+    /// Adds a run.
+    pub(super) fn put(&mut self, content: ContentHash, summary: &RunSummaries) {
+        if let Some(summary) = summary.get(0)
+            && !self.indices.contains_key(&content)
         {
-            self.places.insert(content, self.briefs.len() as u32);
-            self.briefs.push(brief);
+            self.indices.insert(content, self.summaries.len() as u32);
+            self.summaries.push(summary);
         }
     }
 
     /// The run with this result.
-    pub(super) fn get(&self, content: &ContentHash) -> Option<Brief<'_>> {
-        self.briefs.get(*self.places.get(content)? as usize)
+    pub(super) fn get(&self, content: &ContentHash) -> Option<RunSummary<'_>> {
+        self.summaries.get(*self.indices.get(content)? as usize)
     }
 }

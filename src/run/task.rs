@@ -6,7 +6,7 @@ use super::board::{Board, NodeId};
 use super::streamed::{self, Streamed};
 use crate::artifact::{Artifact, ContentHash, Key};
 use crate::exec::Share;
-use crate::stage::ledger::{Briefs, KeptRuns};
+use crate::stage::cached::{CachedRuns, RunSummaries};
 use crate::stage::rows::{GATHER, RUN};
 use crate::stage::{Failure, Job, Progress, StageError, Task, work};
 use crate::store::{Claim, Guard, Store, StoreError, Timing, Waiting};
@@ -21,7 +21,7 @@ pub(super) struct Order {
     key: Key,
     text: String,
     inputs: Vec<(String, Arc<Artifact>)>,
-    /// Whether a stored result does not count.
+    /// Whether the task is computed although a result is stored.
     again: bool,
 }
 
@@ -38,11 +38,11 @@ pub(super) struct Finished {
     pub(super) shared: bool,
     /// How long it took here, seconds.
     pub(super) seconds: f64,
-    /// What gathering takes from it, when it is a run that was computed here.
-    pub(super) brief: Option<Briefs>,
+    /// Its summary, when it is a run that was computed here.
+    pub(super) summary: Option<RunSummaries>,
 }
 
-/// What became of a task that was started.
+/// The outcome of a task that was started.
 pub(super) enum Outcome {
     /// Its result is stored.
     Finished(Finished),
@@ -64,31 +64,31 @@ impl Order {
             panic!("BUG: a task was started before its inputs were known");
         };
         let task = Arc::clone(board.task(node));
-        let nothing = KeptRuns::default();
-        let old = task.kept.as_deref().unwrap_or(&nothing);
-        let mut kept = old.runs.iter().enumerate().map(|(run, (place, ..))| (run, *place)).peekable();
-        // Of the runs that a task gathers a brief is enough.
+        let nothing = CachedRuns::default();
+        let old = task.cached.as_deref().unwrap_or(&nothing);
+        let mut cached = old.runs.iter().enumerate().map(|(run, (index, ..))| (run, *index)).peekable();
+        // A gathering task needs only a summary of each run.
         let gathers = task.work == GATHER.name;
-        let (mut inputs, mut places, mut briefs) = (Vec::new(), Vec::new(), Briefs::default());
-        for (place, ((name, _), content)) in task.inputs.iter().zip(&contents).enumerate() {
+        let (mut inputs, mut indices, mut summaries) = (Vec::new(), Vec::new(), RunSummaries::default());
+        for (index, ((name, _), content)) in task.inputs.iter().zip(&contents).enumerate() {
             let lost = |error| Box::new(Lost { content: *content, error });
-            let known = match kept.next_if(|(_, kept)| *kept == place) {
-                Some((run, _)) => old.briefs.get(run),
+            let known = match cached.next_if(|(_, cached)| *cached == index) {
+                Some((run, _)) => old.summaries.get(run),
                 None => streamed.get(content).filter(|_| gathers && name == RUN),
             };
-            if let Some(brief) = known {
-                briefs.push(brief);
-                places.push(place);
+            if let Some(summary) = known {
+                summaries.push(summary);
+                indices.push(index);
                 continue;
             }
             let artifact = store.get(content).map_err(lost)?;
-            match gathers && name == RUN && briefs.push_run(&artifact) {
-                true => places.push(place),
+            match gathers && name == RUN && summaries.push_run(&artifact) {
+                true => indices.push(index),
                 false => inputs.push((name.to_string(), artifact)),
             }
         }
-        if !places.is_empty() {
-            inputs.push(("kept".to_owned(), Arc::new(briefs.artifact(&places))));
+        if !indices.is_empty() {
+            inputs.push(("cached".to_owned(), Arc::new(summaries.artifact(&indices))));
         }
         Ok(Self { node, task, key, text, inputs, again })
     }
@@ -105,7 +105,7 @@ impl Order {
         let claim = if self.again { store.claim_again(&self.key) } else { store.claim(&self.key) };
         match claim.map_err(failure)? {
             Claim::Done(record) => {
-                Ok(Outcome::Finished(Finished { content: record.content, shared: true, seconds: 0.0, brief: None }))
+                Ok(Outcome::Finished(Finished { content: record.content, shared: true, seconds: 0.0, summary: None }))
             }
             Claim::Theirs(waiting) => Ok(Outcome::Elsewhere(waiting)),
             Claim::Mine(claim) => {
@@ -125,8 +125,8 @@ impl Order {
     ) -> Result<Finished, Failure> {
         let (artifact, timing) = compute(&self.task, &self.inputs, share, say, stop)?;
         let (record, artifact) = store.finish(claim, self.text, artifact, &timing).map_err(failure)?;
-        let brief = streamed::brief(&artifact);
-        Ok(Finished { content: record.content, shared: false, seconds: timing.seconds, brief })
+        let summary = streamed::summary(&artifact);
+        Ok(Finished { content: record.content, shared: false, seconds: timing.seconds, summary })
     }
 }
 

@@ -1,12 +1,12 @@
-//! A worker: takes tasks from the lists of a queue until none is left, and writes down what it does.
+//! A worker takes tasks from the lists of a queue until none is left, and reports what it does.
 //!
-//! It opens no journal: the lists say what is not finished and where inputs lie, and the marker of a task says whether
-//! somebody has begun it. What it prints is for the log of its job; what the submitter knows stands in the report.
+//! It opens no journal: the lists say which tasks are open and where their inputs are, and the marker of a task says whether
+//! a worker has begun it. Its output goes to the log of its job; the submitter reads the report only.
 
 use super::{panicked, stages, task};
 use crate::artifact::Artifact;
 use crate::cluster::slices::Slices;
-use crate::cluster::{Cause, Line, Said};
+use crate::cluster::{Cause, Line, Message};
 use crate::exec::{Share, Threads, with_threads};
 use crate::stage::{Failure, Progress};
 use crate::store::{Queue, ReportFile, Store, StoreError};
@@ -35,14 +35,14 @@ pub struct Worker {
     pub alone: bool,
 }
 
-/// What a worker did.
+/// The outcome of a worker.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Worked {
     /// Tasks whose results it stored.
     pub done: usize,
     /// Tasks that failed.
     pub failed: usize,
-    /// Whether it ended because its time was over, or would have been.
+    /// Whether it ended because too little of its time was left.
     pub out_of_time: bool,
 }
 
@@ -52,7 +52,7 @@ const LOOK_EACH: Duration = Duration::from_millis(200);
 const STANDS_EACH: Duration = Duration::from_secs(5);
 /// Part of a worker's life that is left for ending it, and the most that is.
 const ENDING: (f64, f64) = (0.05, 60.0);
-/// A task that begins within this part of a worker's life has all of it.
+/// A task that begins within this first part of a worker's life counts as having had all of it.
 const FRESH: f64 = 0.1;
 
 /// First digits of the digest of this program.
@@ -71,8 +71,8 @@ impl Worker {
         let plain: String = machine.chars().filter(char::is_ascii_alphanumeric).take(24).collect();
         let name = format!("{:04}-{:04}-{plain}-{}", self.round, self.index, std::process::id());
         let report = Mutex::new(queue.report(&name).map_err(|error| error.to_string())?);
-        let told = |said: &Said| tell(&report, said).map_err(|error| error.to_string());
-        told(&Said::Started { round: self.round, index: self.index, machine, program: program() })?;
+        let told = |message: &Message| tell(&report, message).map_err(|error| error.to_string());
+        told(&Message::Started { round: self.round, index: self.index, machine, program: program() })?;
         let ending = AtomicBool::new(false);
         let (answers, inbox) = channel();
         let worked = with_threads(self.cpus, |pool| {
@@ -99,19 +99,19 @@ impl Worker {
         let worked =
             worked.unwrap_or_else(|error| Err(format!("the system grants no {} threads ({error})", self.cpus)));
         // Without room for this line the lock of the report says that the worker is gone.
-        let _ = told(&Said::Ended { fault: worked.as_ref().err().cloned() });
+        let _ = told(&Message::Ended { fault: worked.as_ref().err().cloned() });
         worked
     }
 }
 
-fn tell(report: &Mutex<ReportFile>, said: &Said) -> Result<(), StoreError> {
-    report.lock().unwrap_or_else(PoisonError::into_inner).say(&said.to_text())
+fn tell(report: &Mutex<ReportFile>, message: &Message) -> Result<(), StoreError> {
+    report.lock().unwrap_or_else(PoisonError::into_inner).say(&message.to_text())
 }
 
 struct Answer {
     task: usize,
-    said: Said,
-    /// What is wrong with the store or this program, so that no more is begun.
+    message: Message,
+    /// A fault of the store or of this program, after which no task is begun.
     fault: Option<String>,
 }
 
@@ -120,7 +120,7 @@ struct Loop<'pool, 'env> {
     started: Instant,
     store: &'env Store,
     queue: &'env Queue,
-    /// The scheduler, or a person, wants the worker to end.
+    /// The scheduler, or a person, has asked the worker to end.
     stop: &'env AtomicBool,
     /// Tasks are to end.
     ending: &'env AtomicBool,
@@ -175,7 +175,7 @@ impl Loop<'_, '_> {
         fault.map_or(Ok(self.worked), Err)
     }
 
-    /// Reads the lists that are new.
+    /// Reads new lists.
     fn look(&mut self) -> Result<(), String> {
         let first = self.lines.len();
         while let Some(text) = self.queue.list(self.lists + 1).map_err(|error| error.to_string())? {
@@ -189,7 +189,7 @@ impl Loop<'_, '_> {
             self.slices.add(from..self.lines.len());
             self.lists += 1;
         }
-        // A worker of a later round need not try each of the tasks that are begun.
+        // Workers of a later round skip the tasks that are begun.
         if first < self.lines.len() {
             let begun = self.queue.begun().map_err(|error| error.to_string())?;
             self.slices.forget(&begun.into_iter().collect());
@@ -219,7 +219,7 @@ impl Loop<'_, '_> {
             if !self.queue.begin(task).map_err(|error| error.to_string())? {
                 continue;
             }
-            tell(self.report, &Said::Begun { task }).map_err(|error| error.to_string())?;
+            tell(self.report, &Message::Begun { task }).map_err(|error| error.to_string())?;
             self.begun += 1;
             self.running.insert(task, self.started.elapsed().as_secs_f64());
             self.give(task, line);
@@ -229,34 +229,34 @@ impl Loop<'_, '_> {
 
     fn give(&self, task: usize, line: Arc<Line>) {
         let (store, report, ending, answers) = (self.store, self.report, self.ending, self.answers.clone());
-        let said = Mutex::new(None::<Instant>);
+        let last_report = Mutex::new(None::<Instant>);
         self.pool.give(move |share| {
             let say = |progress: Progress| {
-                let mut last = said.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut last = last_report.lock().unwrap_or_else(PoisonError::into_inner);
                 if progress.warning || last.is_none_or(|when| when.elapsed() > STANDS_EACH) {
                     *last = Some(Instant::now());
                     let Progress { fraction, note, warning } = progress;
                     // A report that cannot be written shows at the end of the task.
-                    let _ = tell(report, &Said::Stands { task, fraction, note, warning });
+                    let _ = tell(report, &Message::Stands { task, fraction, note, warning });
                 }
             };
             let done = catch_unwind(AssertUnwindSafe(|| execute(task, &line, store, share, &say, ending)));
-            let (said, fault) = done.unwrap_or_else(|panic| (failed(task, panicked(&*panic)), None));
+            let (message, fault) = done.unwrap_or_else(|panic| (failed(task, panicked(&*panic)), None));
             // The loop may be gone only when it panicked; then nobody waits for this answer.
-            let _ = answers.send(Answer { task, said, fault });
+            let _ = answers.send(Answer { task, message, fault });
         });
     }
 
-    fn take(&mut self, Answer { task, mut said, fault }: Answer) -> Result<(), String> {
+    fn take(&mut self, Answer { task, mut message, fault }: Answer) -> Result<(), String> {
         let since = self.running.remove(&task).unwrap_or_default();
-        match &mut said {
-            Said::Done { seconds, .. } => {
+        match &mut message {
+            Message::Done { seconds, .. } => {
                 self.worked.done += 1;
                 let longest = self.lasted.entry(self.lines[task].stage.clone()).or_default();
                 *longest = longest.max(*seconds);
             }
-            Said::Failed { .. } => self.worked.failed += 1,
-            Said::Stopped { cause: cause @ Cause::Time, .. } => {
+            Message::Failed { .. } => self.worked.failed += 1,
+            Message::Stopped { cause: cause @ Cause::Time, .. } => {
                 *cause = match self.worker.seconds {
                     _ if self.stop.load(Ordering::Relaxed) => Cause::Signal,
                     Some(seconds) if since < FRESH * seconds => Cause::WholeTime,
@@ -265,7 +265,7 @@ impl Loop<'_, '_> {
             }
             _ => {}
         }
-        let told = tell(self.report, &said).map_err(|error| error.to_string());
+        let told = tell(self.report, &message).map_err(|error| error.to_string());
         match fault {
             Some(fault) => Err(fault),
             None => told,
@@ -273,10 +273,10 @@ impl Loop<'_, '_> {
     }
 }
 
-fn failed(task: usize, failure: Failure) -> Said {
+fn failed(task: usize, failure: Failure) -> Message {
     match failure {
-        Failure::Stopped => Said::Stopped { task, cause: Cause::Time },
-        Failure::Failed(error) => Said::Failed { task, why: stages::in_words(error) },
+        Failure::Stopped => Message::Stopped { task, cause: Cause::Time },
+        Failure::Failed(error) => Message::Failed { task, why: stages::in_words(error) },
     }
 }
 
@@ -288,8 +288,8 @@ fn execute(
     share: &Share,
     say: &(dyn Fn(Progress) + Sync),
     ending: &AtomicBool,
-) -> (Said, Option<String>) {
-    let stopped = Said::Stopped { task, cause: Cause::Store };
+) -> (Message, Option<String>) {
+    let stopped = Message::Stopped { task, cause: Cause::Store };
     let errand = match line.errand() {
         Ok(errand) => errand,
         Err(why) => return (stopped, Some(why)),
@@ -300,20 +300,20 @@ fn execute(
             Ok(artifact) => inputs.push((name.clone(), artifact)),
             Err(error) if error.is_missing() => {
                 let input = located.object.content.to_string();
-                return (Said::Lost { task, input, why: error.to_string() }, None);
+                return (Message::Lost { task, input, why: error.to_string() }, None);
             }
             Err(error) => return (stopped, Some(error.to_string())),
         }
     }
     let claim = match store.claim_unseen(&errand.key) {
         Ok(Some(claim)) => claim,
-        Ok(None) => return (Said::Elsewhere { task }, None),
+        Ok(None) => return (Message::Elsewhere { task }, None),
         Err(error) => return (stopped, Some(error.to_string())),
     };
     match task::compute(&errand.task, &inputs, share, say, ending) {
         Ok((artifact, timing)) => match store.finish(claim, errand.text, artifact, &timing) {
-            Ok(_) => (Said::Done { task, seconds: timing.seconds }, None),
-            Err(error @ StoreError::Unstorable(_)) => (Said::Failed { task, why: error.to_string() }, None),
+            Ok(_) => (Message::Done { task, seconds: timing.seconds }, None),
+            Err(error @ StoreError::Unstorable(_)) => (Message::Failed { task, why: error.to_string() }, None),
             Err(error) => (stopped, Some(error.to_string())),
         },
         Err(failure) => (failed(task, failure), None),

@@ -36,7 +36,7 @@ pub struct Anova {
     /// Factors that are counted as error: empty columns, weak factors.
     #[serde(default)]
     pub as_error: Vec<String>,
-    /// Factors that set nothing: they are analysed like the others, and a significant one is remarked upon, for then
+    /// Factors that set nothing: they are analysed like the others, and a significant one gets a note, for then
     /// the model lacks interactions or the table has an error.
     #[serde(default)]
     pub empty: Vec<String>,

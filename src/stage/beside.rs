@@ -15,7 +15,7 @@ pub struct Beside {
     /// Files that cannot be read, or not as what they are named for.
     pub faults: Vec<Complaint>,
     /// What makes a result stale, or a program fail, without being a fault for certain.
-    pub remarks: Vec<Complaint>,
+    pub warnings: Vec<Complaint>,
 }
 
 impl Beside {

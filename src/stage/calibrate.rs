@@ -180,11 +180,11 @@ impl Calibrate {
 }
 
 /// Version 3: extents of the parameters, targets met or not, effort; intervals of every method are those of models over all
-/// runs; responses are told in the history, and runs are no inputs.
+/// runs; responses are told in the history, and runs are no inputs. Version 4: effort by expectation counts whole batches.
 impl Kind for Calibrate {
     const NAME: &'static str = "calibrate";
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
     const CLASS: Class = Class::Calibration;
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 3, run: solve::solve }];
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 4, run: solve::solve }];
 }

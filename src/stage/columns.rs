@@ -248,7 +248,7 @@ pub(super) fn refused(Faults(faults): Faults) -> StageError {
 /// The faults of a sample from which runs may have been left out: it may lack what these had.
 pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageError {
     let mut error = refused(faults);
-    not_valid.said().iter().for_each(|said| error.message += &format!("\n{said}"));
+    not_valid.grouped_sentences().iter().for_each(|sentence| error.message += &format!("\n{sentence}"));
     error
 }
 

@@ -1,6 +1,6 @@
 //! What a stage can see when it decides what to do next.
 
-use super::ledger::Kept;
+use super::cached::CachedRun;
 use super::material::Material;
 use super::rows::Rows;
 use super::vary::Template;
@@ -164,7 +164,7 @@ pub trait Library {
 
     /// The run of a row that an earlier campaign made, if it knows of one and all that decides a run is as it was. Asked
     /// once for every row of a fan-out, in order.
-    fn kept(&self, _rows: &Arc<Rows>, _index: usize) -> Option<Kept<'_>> {
+    fn cached(&self, _rows: &Arc<Rows>, _index: usize) -> Option<CachedRun<'_>> {
         None
     }
 

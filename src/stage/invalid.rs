@@ -102,7 +102,7 @@ impl Judged<'_> {
     }
 
     /// How many of how many are not valid, why, and what became of them; nothing when all are valid.
-    pub(super) fn said(&self) -> Option<String> {
+    pub(super) fn sentence(&self) -> Option<String> {
         Tally::of(self.all, self.invalid.iter().map(|(_, why)| *why)).sentence(self.verdict())
     }
 
@@ -137,13 +137,13 @@ mod tests {
         let table = runs();
         let left = Invalid::LeaveOut.judge(&table).unwrap();
         assert_eq!([0, 1, 2, 3].map(|row| left.leaves_out(row)), [false, true, false, true]);
-        assert_eq!(left.said().unwrap(), "2 of 4 runs are not valid and were left out: rotation (1); at grip (1)");
+        assert_eq!(left.sentence().unwrap(), "2 of 4 runs are not valid and were left out: rotation (1); at grip (1)");
         let kept = Invalid::Keep.judge(&table).unwrap();
         assert!((0..4).all(|row| !kept.leaves_out(row)));
-        assert_eq!(kept.said().unwrap(), "2 of 4 runs are not valid and were kept: rotation (1); at grip (1)");
+        assert_eq!(kept.sentence().unwrap(), "2 of 4 runs are not valid and were kept: rotation (1); at grip (1)");
         let refused = Invalid::Refuse.judge(&table).err().unwrap();
         assert_eq!(refused.message, "2 of 4 runs are not valid: rotation (1); at grip (1)");
-        assert!(Invalid::Refuse.judge(&Table::default()).unwrap().said().is_none());
+        assert!(Invalid::Refuse.judge(&Table::default()).unwrap().sentence().is_none());
     }
 
     #[test]

@@ -37,6 +37,7 @@
 pub mod agreement;
 pub mod anova;
 pub mod beside;
+pub mod cached;
 pub mod calibrate;
 #[cfg(test)]
 pub mod census;
@@ -52,7 +53,6 @@ pub mod fitted;
 pub mod formula;
 mod given;
 pub mod invalid;
-pub mod ledger;
 pub mod material;
 mod memory;
 mod notes;
@@ -78,7 +78,7 @@ pub use context::{
 };
 pub use memory::Memory;
 pub use packed::Packed;
-pub use task::{Failure, FileInput, Job, Progress, Source, Step, Task, Work};
+pub use task::{AtOnce, Failure, FileInput, Job, Progress, Source, Step, Task, Work};
 
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Unread, Wanted};
 use schemars::{JsonSchema, Schema, SchemaGenerator};

@@ -2,21 +2,21 @@
 //!
 //! A note repeats in words what stands in the other tables; nothing is left out of an analysis because of one.
 
-use crate::artifact::statistics::Remarks;
+use crate::artifact::statistics::NoteTable;
 use crate::artifact::validity::NotValid;
 use stats::diagnostics::Residual;
 use stats::fit::Fit;
 use stats::regression::Coefficient;
 
-/// Remarks with the responses they are about, in order.
+/// Notes with the responses they are about, in order.
 #[derive(Default)]
 pub(super) struct Notes<'a> {
-    remarks: Vec<(String, String)>,
+    notes: Vec<(String, String)>,
     /// Runs that are not valid.
     not_valid: Option<&'a NotValid>,
 }
 
-/// Lack of fit up to this p is remarked upon.
+/// Lack of fit up to this p gets a note.
 const LACK_OF_FIT: f64 = 0.05;
 /// How far predicted R² may lie below adjusted R².
 const R2_GAP: f64 = 0.2;
@@ -29,14 +29,14 @@ const ROWS: usize = 8;
 impl<'a> Notes<'a> {
     /// Begins with the runs that are not valid.
     pub(super) fn of(not_valid: &'a NotValid) -> Self {
-        let mut notes = Self { remarks: Vec::new(), not_valid: Some(not_valid) };
+        let mut notes = Self { notes: Vec::new(), not_valid: Some(not_valid) };
         not_valid.sentences().into_iter().for_each(|(response, said)| notes.add(response, said));
         notes
     }
 
-    /// Adds a remark.
+    /// Adds a note.
     pub(super) fn add(&mut self, response: &str, note: impl Into<String>) {
-        self.remarks.push((response.to_owned(), note.into()));
+        self.notes.push((response.to_owned(), note.into()));
     }
 
     /// Runs without a value, beside those that were left out.
@@ -112,9 +112,9 @@ impl<'a> Notes<'a> {
     }
 
     /// The table.
-    pub(super) fn table(self) -> Remarks {
-        let (response, note) = self.remarks.into_iter().unzip();
-        Remarks { response, note }
+    pub(super) fn table(self) -> NoteTable {
+        let (response, note) = self.notes.into_iter().unzip();
+        NoteTable { response, note }
     }
 }
 

@@ -7,7 +7,7 @@ mod points;
 
 pub use points::Rows;
 
-use super::ledger::{Briefs, KeptRuns};
+use super::cached::{CachedRuns, RunSummaries};
 use super::material::{self, Material};
 use super::{
     Complaint, Context, Failure, Input, Job, Known, Parameter, Point, Source, Stage, StageError, Step, Task, Work, vary,
@@ -120,12 +120,12 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
     let mut task = gather(known, design, &artifact)?;
     let rows = Arc::new(Rows::of(&artifact, known.context)?);
     task.inputs.reserve(rows.len());
-    let mut kept_runs = KeptRuns::with_room(rows.len());
+    let mut cached_runs = CachedRuns::with_room(rows.len());
     for index in 0..rows.len() {
-        let source = match known.library.kept(&rows, index) {
-            Some(kept) => {
-                kept_runs.push(task.inputs.len(), index, kept);
-                Source::Content(kept.content)
+        let source = match known.library.cached(&rows, index) {
+            Some(cached) => {
+                cached_runs.push(task.inputs.len(), index, cached);
+                Source::Content(cached.content)
             }
             None => {
                 let run = vary::sample(simulator, known, &rows.point(index), rows.replicate(index))?;
@@ -134,7 +134,7 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
         };
         task.inputs.push((RUN.into(), source));
     }
-    task.kept = (!kept_runs.runs.is_empty()).then(|| Arc::new(kept_runs));
+    task.cached = (!cached_runs.runs.is_empty()).then(|| Arc::new(cached_runs));
     Ok(Step::Finish(task))
 }
 
@@ -166,8 +166,9 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     let params: GatherParams = job.params()?;
     let design = job.input("design")?;
     let design = Design::table(design).map_err(StageError::from)?;
-    let kept = job.inputs.iter().find(|(name, _)| name == "kept").map(|(_, kept)| kept_runs(kept)).transpose()?;
-    let results = all_responses(job, kept.as_ref())?;
+    let cached =
+        job.inputs.iter().find(|(name, _)| name == "cached").map(|(_, cached)| cached_runs(cached)).transpose()?;
+    let results = all_responses(job, cached.as_ref())?;
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() };
     for name in &params.factors {
         let column = design.column(name).ok_or_else(|| StageError::new(format!("the design lost factor `{name}`")))?;
@@ -191,30 +192,30 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     Ok(Results::of(table, verdicts).to_artifact())
 }
 
-/// Places among the inputs of the task, and briefs, of runs that were made before.
-fn kept_runs(kept: &Artifact) -> Result<(&[i64], Briefs), StageError> {
-    let places = kept.table("places").and_then(|table| table.column("place")).map(|column| &column.values);
-    match (places, kept.root.get("briefs")) {
-        (Some(Values::Ints(places)), Some(Node::Bytes(bytes))) => {
-            let briefs = Briefs::from_bytes(bytes).filter(|briefs| briefs.len() == places.len());
-            Ok((places, briefs.ok_or_else(|| StageError::new("the kept runs cannot be read"))?))
+/// Indices among the inputs of the task, and summaries, of runs that were made before.
+fn cached_runs(cached: &Artifact) -> Result<(&[i64], RunSummaries), StageError> {
+    let indices = cached.table("indices").and_then(|table| table.column("index")).map(|column| &column.values);
+    match (indices, cached.root.get("summaries")) {
+        (Some(Values::Ints(indices)), Some(Node::Bytes(bytes))) => {
+            let summaries = RunSummaries::from_bytes(bytes).filter(|summaries| summaries.len() == indices.len());
+            Ok((indices, summaries.ok_or_else(|| StageError::new("the cached runs cannot be read"))?))
         }
-        _ => Err(StageError::new("the kept runs hold no places or no briefs")),
+        _ => Err(StageError::new("the cached runs hold no indices or no summaries")),
     }
 }
 
-/// What every run gave, in the order of the rows, whether it is at hand or kept.
-fn all_responses<'a>(job: &'a Job, kept: Option<&'a (&[i64], Briefs)>) -> Result<Vec<Outcome<'a>>, StageError> {
-    let old = kept.into_iter().flat_map(|(places, briefs)| {
-        let brief = |run: usize| briefs.get(run).ok_or_else(|| StageError::new("a kept run has no brief"));
-        places.iter().enumerate().map(move |(run, place)| Ok((*place as usize, brief(run)?.responses())))
+/// What every run gave, in the order of the rows, whether it is loaded or cached.
+fn all_responses<'a>(job: &'a Job, cached: Option<&'a (&[i64], RunSummaries)>) -> Result<Vec<Outcome<'a>>, StageError> {
+    let old = cached.into_iter().flat_map(|(indices, summaries)| {
+        let summary = |run: usize| summaries.get(run).ok_or_else(|| StageError::new("a cached run has no summary"));
+        indices.iter().enumerate().map(move |(run, index)| Ok((*index as usize, summary(run)?.responses())))
     });
     let mut old = old.collect::<Result<Vec<_>, StageError>>()?.into_iter().peekable();
     let mut new = job.inputs.iter().filter(|(name, _)| name == RUN);
     let mut all = Vec::new();
     // The first input of a gathering task is the design.
-    for place in 1.. {
-        match old.next_if(|(kept, _)| *kept == place) {
+    for index in 1.. {
+        match old.next_if(|(cached, _)| *cached == index) {
             Some((_, responses)) => all.push(responses),
             None => match new.next() {
                 Some((_, run)) => all.push(Run::outcome(run)?),

@@ -1,7 +1,7 @@
 //! The unit of work, and what runs it.
 
 use super::beside::plain;
-use super::ledger::KeptRuns;
+use super::cached::CachedRuns;
 use super::{Packed, StageError};
 use crate::artifact::{Artifact, ContentHash};
 use dem::Watch;
@@ -29,8 +29,10 @@ pub struct Task {
     pub row: Option<usize>,
     /// Seconds after which an external program is ended; not part of its key.
     pub time_limit: Option<f64>,
+    /// Bound on how many tasks of its program run at once; not part of its key.
+    pub at_once: Option<AtOnce>,
     /// Those of its inputs that an earlier campaign made and that need not be read; not part of its key.
-    pub kept: Option<Arc<KeptRuns>>,
+    pub cached: Option<Arc<CachedRuns>>,
 }
 
 impl Task {
@@ -44,7 +46,8 @@ impl Task {
             files: Vec::new(),
             row: None,
             time_limit: None,
-            kept: None,
+            at_once: None,
+            cached: None,
         }
     }
 
@@ -75,6 +78,15 @@ impl Task {
         self.row = Some(row);
         self
     }
+}
+
+/// A bound on how many tasks run an external program at once, such as the number of its licences.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AtOnce {
+    /// The program: stages that run the same one share its licences.
+    pub program: String,
+    /// The most that may run.
+    pub most: usize,
 }
 
 /// Where an input comes from.
@@ -123,7 +135,7 @@ pub struct Job<'a> {
     pub params: &'a Value,
     /// Its seed.
     pub seed: Option<u64>,
-    /// Its inputs by name, in order; kept ones are together in one input `kept` at the end.
+    /// Its inputs by name, in order; cached runs are together in one input `cached` at the end.
     pub inputs: &'a [(String, Arc<Artifact>)],
     /// Files it reads.
     pub files: &'a [FileInput],

@@ -11,7 +11,7 @@ use super::{Unit, UnitError};
 pub struct Conversion {
     ratio: f64,
     /// The power of ten that the ratio is.
-    places: Option<i32>,
+    exponent: Option<i32>,
 }
 
 /// Most digits of a number that is converted as the decimal it is.
@@ -27,9 +27,9 @@ impl Unit {
             return Err(UnitError::Differ);
         }
         let ratio = self.factor / other.factor;
-        let places = math::elementary::log10(ratio).round();
-        let is_power = (ratio / math::elementary::pow(10.0, places) - 1.0).abs() < 1e-13;
-        Ok(Conversion { ratio, places: is_power.then_some(places as i32) })
+        let exponent = math::elementary::log10(ratio).round();
+        let is_power = (ratio / math::elementary::pow(10.0, exponent) - 1.0).abs() < 1e-13;
+        Ok(Conversion { ratio, exponent: is_power.then_some(exponent as i32) })
     }
 
     /// A number of SI units as a number of this unit.
@@ -40,7 +40,7 @@ impl Unit {
 
 impl Conversion {
     /// Numbers stay as they are.
-    pub const NONE: Self = Self { ratio: 1.0, places: Some(0) };
+    pub const NONE: Self = Self { ratio: 1.0, exponent: Some(0) };
 
     /// Between units as texts; equal texts need no reading.
     ///
@@ -55,14 +55,14 @@ impl Conversion {
 
     /// Whether numbers stay as they are.
     pub fn is_identity(self) -> bool {
-        self.places == Some(0)
+        self.exponent == Some(0)
     }
 
     /// The number in the other unit.
     pub fn of(self, value: f64) -> f64 {
-        match self.places {
+        match self.exponent {
             Some(0) => value,
-            Some(places) => moved(value, places).unwrap_or(value * self.ratio),
+            Some(exponent) => moved(value, exponent).unwrap_or(value * self.ratio),
             None => value * self.ratio,
         }
     }
@@ -78,11 +78,11 @@ impl Conversion {
 }
 
 /// The decimal with its point moved; `None` when it has more digits than people write.
-fn moved(value: f64, places: i32) -> Option<f64> {
+fn moved(value: f64, exponent: i32) -> Option<f64> {
     let text = format!("{value:e}");
     let (digits, power) = text.split_once('e')?;
     let written = digits.bytes().filter(u8::is_ascii_digit).count();
-    let power = power.parse::<i32>().ok()?.checked_add(places)?;
+    let power = power.parse::<i32>().ok()?.checked_add(exponent)?;
     (written <= WRITTEN).then(|| format!("{digits}e{power}").parse().ok())?
 }
 

@@ -163,9 +163,11 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
 }
 
 /// Pages for people who look at the repository, by their path in it.
-const PAGES: [&str; 6] = [
+const PAGES: [&str; 8] = [
     "README.md",
+    "workflows/annealing/README.md",
     "workflows/c30/README.md",
+    "workflows/engines/README.md",
     "store/README.md",
     "src/dem/tests/engine/VALIDATION.md",
     "tests/bench/README.md",

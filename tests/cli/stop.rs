@@ -1,4 +1,4 @@
-//! Ctrl-C, a request to end and the end of the terminal: what is finished stays, a second run goes on.
+//! Ctrl-C, a request to end and the end of the terminal: finished tasks stay stored, and a second run continues.
 
 use crate::space::{Space, told};
 use rustix::process::{Pid, Signal, kill_process};
@@ -38,7 +38,7 @@ fn a_run_that_is_told_to_end_keeps_what_is_finished() {
         interrupt(&space, &run, signal);
         let output = run.wait_with_output().expect("the end of the run");
         assert_eq!(output.status.code(), Some(130), "{signal:?}: {}", told(&output));
-        assert!(told(&output).contains("interrupted: a second run goes on"), "{}", told(&output));
+        assert!(told(&output).contains("interrupted; run again to continue"), "{}", told(&output));
         space.write("go", "");
         space.run(&[]).expect(&[("slow", 1)]);
     }

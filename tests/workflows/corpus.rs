@@ -1,5 +1,5 @@
 //! `tests/good` runs; a file of `tests/bad` states its faults in comments at its end, `# fault LINE:COLUMN MESSAGE` (`-` where a fault
-//! has no place), and `# profile: NAME` when it is read with a profile. Those that a schema cannot see lie in
+//! has no location), and `# profile: NAME` when it is read with a profile. Those that a schema cannot see lie in
 //! `beyond-schema`.
 
 use flow::plan::{Fault, Overrides, parse};
@@ -22,14 +22,14 @@ pub(crate) fn files(folder: &str) -> Vec<PathBuf> {
 fn told(text: &str) -> Vec<String> {
     let profile = text.lines().find_map(|line| line.strip_prefix("# profile: ")).map(str::to_owned);
     let line = |fault: &Fault| {
-        let place = fault.place.as_ref().map(|place| {
-            let (line, column) = place.line_column();
-            let option = if place.source.name.starts_with("--") { place.source.name.as_str() } else { "" };
+        let location = fault.location.as_ref().map(|location| {
+            let (line, column) = location.line_column();
+            let option = if location.source.name.starts_with("--") { location.source.name.as_str() } else { "" };
             format!("{option}{line}:{column}")
         });
         let words = [Some(&fault.message), fault.label.as_ref()].into_iter().flatten();
         let words: Vec<&str> = words.map(String::as_str).collect();
-        format!("# fault {} {}", place.as_deref().unwrap_or("-"), words.join("; ").replace('\n', " "))
+        format!("# fault {} {}", location.as_deref().unwrap_or("-"), words.join("; ").replace('\n', " "))
     };
     let faults = parse("bad.toml", text, &Overrides { profile, sets: Vec::new() }).err().unwrap_or_default();
     faults.iter().map(line).collect()

@@ -64,11 +64,11 @@ fn a_key_that_is_nested_too_deeply_is_pointed_at() {
         (format!("about = \"{}\"\n[[{key}]]\n", ".".repeat(200)), (2, 3), key.len()),
         (format!("# {}\n\t{quoted} = 1\n", "a,".repeat(200)), (2, 2), quoted.len()),
     ];
-    for (text, place, length) in texts {
+    for (text, location, length) in texts {
         let faults = parse("deep.toml", &text, &Overrides::default()).err().unwrap_or_default();
         let deep = faults.iter().find(|fault| fault.message == "nested too deeply").unwrap();
-        let found = deep.place.as_ref().unwrap();
-        assert_eq!((found.line_column(), found.span.len()), (place, length), "{text:.90}");
+        let found = deep.location.as_ref().unwrap();
+        assert_eq!((found.line_column(), found.span.len()), (location, length), "{text:.90}");
     }
 }
 

@@ -79,8 +79,8 @@ fn pick<'a, T: ?Sized>(random: &mut Stream, from: &[&'a T]) -> &'a T {
     from[random.below(from.len())]
 }
 
-/// A place between characters.
-fn place(random: &mut Stream, text: &str) -> usize {
+/// A location between characters.
+fn location(random: &mut Stream, text: &str) -> usize {
     text.floor_char_boundary(random.below(text.len() + 1))
 }
 
@@ -148,7 +148,7 @@ impl Inputs {
     }
 
     fn mutate(&self, random: &mut Stream, text: &mut String) {
-        let (a, b) = (place(random, text), place(random, text));
+        let (a, b) = (location(random, text), location(random, text));
         let (from, to) = (a.min(b), a.max(b));
         let near = text.floor_char_boundary(text.len().min(from + random.below(12)));
         match random.below(8) {
@@ -158,11 +158,11 @@ impl Inputs {
             3 => text.replace_range(from..to, ""),
             4 => {
                 let copied = text[from..to].to_owned();
-                text.insert_str(place(random, text), &copied);
+                text.insert_str(location(random, text), &copied);
             }
             5 => {
                 let other = &self.corpus[random.below(self.corpus.len())];
-                let cut = place(random, other);
+                let cut = location(random, other);
                 text.replace_range(from.., &other[cut..]);
             }
             6 => {
@@ -190,10 +190,13 @@ fn read(text: &str, overrides: &Overrides) {
         Err(faults) => {
             assert!(!faults.is_empty(), "refused without a fault");
             for fault in &faults {
-                let places = fault.place.iter().chain(fault.also.iter().map(|(place, _)| place));
-                for place in places {
-                    assert!(place.source.text.get(place.span.clone()).is_some(), "a fault points outside its text");
-                    let (line, column) = place.line_column();
+                let locations = fault.location.iter().chain(fault.also.iter().map(|(location, _)| location));
+                for location in locations {
+                    assert!(
+                        location.source.text.get(location.span.clone()).is_some(),
+                        "a fault points outside its text"
+                    );
+                    let (line, column) = location.line_column();
                     assert!(line > 0 && column > 0);
                 }
             }

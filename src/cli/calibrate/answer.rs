@@ -1,4 +1,4 @@
-//! What a calibration found, for a reader and for programs.
+//! The result of a calibration, for people and for programs.
 
 use super::Asked;
 use crate::artifact::calibration::{Prediction, Solved};
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// The parameters, what they are predicted to give, and how much that says.
+/// The parameters, the predicted responses, and how reliable both are.
 pub(super) fn text(asked: &Asked, solution: &Artifact) -> String {
     let mut text = format!("{}\n\n", shown(&parameters(solution)));
     if let Some(prediction) = solution.table("prediction") {
@@ -21,14 +21,14 @@ pub(super) fn text(asked: &Asked, solution: &Artifact) -> String {
         let _ = writeln!(text, "{}\n", shown(&Table { about: String::new(), columns }));
         text.push_str(&Prediction::from_table(prediction).map_or_else(|_| String::new(), |found| warnings(&found)));
     }
-    text.push_str(&remarks(asked, solution));
+    text.push_str(&notes(asked, solution));
     text
 }
 
 /// A deviation below this, in percent, is rounding and shown as none.
 const NOTHING: f64 = 1e-6;
 
-/// One row per parameter: its value, what it is while no response differs, and whether the targets determine it.
+/// One row per parameter: its value, its range over equally good solutions, and whether the targets determine it.
 fn parameters(solution: &Artifact) -> Table {
     let known = table(solution, "parameters");
     let columns = ["factor", "value", "unit", "low", "high", "known"];
@@ -59,8 +59,8 @@ fn warnings(prediction: &Prediction) -> String {
 /// A deviation up to this, in percent, is no conflict between targets.
 const MET: f64 = 0.1;
 
-/// How good the solution is, and how far it is the only one.
-fn remarks(asked: &Asked, solution: &Artifact) -> String {
+/// How good the solution is, and whether it is unique.
+fn notes(asked: &Asked, solution: &Artifact) -> String {
     let stored = table(solution, "solution");
     let Ok(Solved { misfit, evaluations, stop, free, .. }) = Solved::from_table(&stored) else { return String::new() };
     let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
@@ -85,7 +85,7 @@ fn remarks(asked: &Asked, solution: &Artifact) -> String {
     text
 }
 
-/// What the fresh specimens gave.
+/// The results on fresh specimens.
 pub(super) fn verified(verification: &Artifact) -> String {
     format!("\n{}\n", shown(&table(verification, "summary")))
 }

@@ -2,7 +2,7 @@
 
 use super::super::Exit;
 use super::super::common::{Campaign, Common, system};
-use super::super::progress::place;
+use super::super::progress::task_name;
 use super::super::run::interruption;
 use crate::exec::cores;
 use crate::run::{Audited, audit, decide};
@@ -113,7 +113,7 @@ impl Audit {
         let audited = audit(&report, &store, self.sample, cores(), &stop);
         let audited = audited.map_err(|why| system(&std::io::Error::other(why)))?;
         for Audited { stage, row, stored, computed } in &audited {
-            let name = place(&workflow.stages[*stage].name, *row);
+            let name = task_name(&workflow.stages[*stage].name, *row);
             match computed {
                 Ok(content) if content == stored => out!("{name}: computed again, equal to the last bit"),
                 Ok(content) => {

@@ -62,7 +62,7 @@ enum Either {
     Many(Vec<f64>),
 }
 
-fn told<T: for<'de> Deserialize<'de>>(text: &str) -> Vec<String> {
+fn faults_of<T: for<'de> Deserialize<'de>>(text: &str) -> Vec<String> {
     let mut sources = Sources(Vec::new());
     sources.add("w.toml", text);
     let (tree, mut faults) = syntax::tree(&sources, 0);
@@ -70,7 +70,7 @@ fn told<T: for<'de> Deserialize<'de>>(text: &str) -> Vec<String> {
     if let Some(mut tree) = tree {
         read(&mut tree, &sources, &mut faults, known, |reader| T::deserialize(reader));
     }
-    faults.sort_by_key(|fault| fault.place.as_ref().map(|place| place.span.start));
+    faults.sort_by_key(|fault| fault.location.as_ref().map(|location| location.span.start));
     let more = |text: &Option<String>| text.as_ref().map(|text| format!(" | {text}")).unwrap_or_default();
     faults.iter().map(|fault| format!("{fault}{}{}", more(&fault.label), more(&fault.hint))).collect()
 }
@@ -79,16 +79,16 @@ fn told<T: for<'de> Deserialize<'de>>(text: &str) -> Vec<String> {
 fn good_values_have_no_fault() {
     let text =
         "a = 1\nb = '1 mm'\nc = [1, 2]\ne = 'least-squares'\nf = { k = 1, l = 2.5 }\nd = { x = true, y = '1 Pa' }";
-    assert_eq!(told::<Everything>(text), [""; 0]);
+    assert_eq!(faults_of::<Everything>(text), [""; 0]);
     let text = "a = 1\nb = '1 mm'\nc = []\nf = {}\n[e]\nridge = { lambda = 1 }";
-    assert_eq!(told::<Everything>(text), [""; 0]);
+    assert_eq!(faults_of::<Everything>(text), [""; 0]);
     let text =
         "name = 'n'\nmethod = 'genetic'\npopulation = 3\nrate = 0.5\nlaw = { law = 'linear', stiffness = '1 Pa' }";
-    assert_eq!(told::<Copied>(&format!("{text}\neither = [1]")), [""; 0]);
+    assert_eq!(faults_of::<Copied>(&format!("{text}\neither = [1]")), [""; 0]);
 }
 
 #[test]
-fn every_fault_is_told_at_its_place() {
+fn every_fault_is_reported_at_its_location() {
     let text = "a = 'x'\nb = 5\nc = [1, -2, 2.5, true]\nd = { x = 1, z = 2 }\ne = 'least-square'\nf = { k = '1' }\ng = [1]\nh = 1";
     let expected = [
         "w.toml:1:5: wanted a number, found the text \"x\"",
@@ -104,13 +104,13 @@ fn every_fault_is_told_at_its_place() {
         "w.toml:7:5: wanted a list of 2 values, found a list of 1 value",
         "w.toml:8:1: unknown key `h` | known keys: `a`, `b`, `c`, `d`, `e`, `f`, `g`",
     ];
-    assert_eq!(told::<Everything>(text), expected);
+    assert_eq!(faults_of::<Everything>(text), expected);
 }
 
 #[test]
-fn all_missing_keys_are_told() {
+fn all_missing_keys_are_reported() {
     let missing = |key: &str| format!("w.toml:1:1: missing key `{key}` | `{key}` is needed here");
-    assert_eq!(told::<Everything>(""), ["a", "b", "c", "e", "f"].map(missing));
+    assert_eq!(faults_of::<Everything>(""), ["a", "b", "c", "e", "f"].map(missing));
 }
 
 #[test]
@@ -122,22 +122,22 @@ fn faults_in_copied_tables_are_told_at_their_place_too() {
         "w.toml:4:37: `mm` is not a unit of stress or modulus; write for example \"16 GPa\"",
         "w.toml:5:10: wanted a value of another form, found true",
     ];
-    assert_eq!(told::<Copied>(text), expected);
+    assert_eq!(faults_of::<Copied>(text), expected);
     let text = text.replace("genetik", "genetic").replace("3", "'n'");
     let expected = [
         "w.toml:3:14: wanted a whole number from 0 to 4294967295, found the text \"many\"",
         "w.toml:4:37: `mm` is not a unit of stress or modulus; write for example \"16 GPa\"",
         "w.toml:5:10: wanted a value of another form, found true",
     ];
-    assert_eq!(told::<Copied>(&text), expected);
+    assert_eq!(faults_of::<Copied>(&text), expected);
 }
 
 #[test]
-fn unknown_keys_of_copied_tables_are_told() {
+fn unknown_keys_of_copied_tables_are_reported() {
     let text = "name = 'n'\nmethod = 'genetic'\npopulation = 3\nrat = 0.5\nlaw = { law = 'linear', stiffness = '1 Pa', x = 1 }";
     let expected = [
         "w.toml:4:1: unknown key `rat` | did you mean `rate`? | known keys: `name`, `method`, `rate`",
         "w.toml:5:45: unknown key `x`",
     ];
-    assert_eq!(told::<Copied>(text), expected);
+    assert_eq!(faults_of::<Copied>(text), expected);
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// A material: the entries with their values.
 #[derive(Serialize)]
-pub(super) struct Told {
+pub(super) struct Values {
     name: String,
     entries: Vec<Entry>,
 }
@@ -23,7 +23,7 @@ struct Entry {
 }
 
 /// The material of this name; none when a stage gives it.
-pub(super) fn told(context: &Context, name: &str) -> Option<Told> {
+pub(super) fn values(context: &Context, name: &str) -> Option<Values> {
     let material = context.materials.get(name)?;
     let values = material.resolve_alone();
     let entry = |(own, entry): (&String, &crate::stage::material::Entry)| {
@@ -38,5 +38,5 @@ pub(super) fn told(context: &Context, name: &str) -> Option<Told> {
             values: values.iter().filter_map(of).collect(),
         }
     };
-    Some(Told { name: name.to_owned(), entries: material.entries.iter().map(entry).collect() })
+    Some(Values { name: name.to_owned(), entries: material.entries.iter().map(entry).collect() })
 }

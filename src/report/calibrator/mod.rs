@@ -32,13 +32,13 @@ pub(super) const SCRIPT: &str = concat!(
 
 /// Input of the page: the calibration, and where its parameters belong in the workflow.
 #[derive(Serialize)]
-struct Told<'a> {
+struct Shown<'a> {
     #[serde(flatten)]
     instrument: &'a Instrument,
     title: &'a str,
     file: &'a str,
     stage: &'a str,
-    materials: Vec<material::Told>,
+    materials: Vec<material::Values>,
 }
 
 /// The calibrator of a stage; none when it is no calibration on surfaces, or these have no result yet.
@@ -49,32 +49,32 @@ pub(super) fn calibrator(paper: &Paper, part: &Part) -> Result<Option<Markup>, S
     if part.kind != Calibrate::NAME {
         return Ok(None);
     }
-    let Some(&(_, place)) = part.inputs.iter().find(|(port, _)| port == "surfaces") else { return Ok(None) };
-    let Some(surfaces) = paper.parts[place].artifact() else { return Ok(None) };
+    let Some(&(_, index)) = part.inputs.iter().find(|(port, _)| port == "surfaces") else { return Ok(None) };
+    let Some(surfaces) = paper.parts[index].artifact() else { return Ok(None) };
     let Some(found) = instrument(&part.settings, &paper.context, surfaces)? else { return Ok(None) };
     if found.parameters.is_empty() || found.responses.is_empty() {
         return Ok(None);
     }
-    let materials = materials(paper, place);
-    let told = Told {
+    let materials = materials(paper, index);
+    let shown = Shown {
         instrument: &found,
         title: &paper.title,
         file: &paper.file,
         stage: &part.name,
-        materials: materials.iter().filter_map(|name| material::told(&paper.context, name)).collect(),
+        materials: materials.iter().filter_map(|name| material::values(&paper.context, name)).collect(),
     };
-    Ok(Some(markup(&told, &paper.context)))
+    Ok(Some(markup(&shown, &paper.context)))
 }
 
 /// The materials of the runs that the surfaces were fitted to, each once.
 fn materials(paper: &Paper, surfaces: usize) -> Vec<String> {
     let (mut open, mut seen, mut found) = (vec![surfaces], Vec::new(), Vec::new());
-    while let Some(place) = open.pop() {
-        if seen.contains(&place) {
+    while let Some(index) = open.pop() {
+        if seen.contains(&index) {
             continue;
         }
-        seen.push(place);
-        let part = &paper.parts[place];
+        seen.push(index);
+        let part = &paper.parts[index];
         match &part.settings["material"] {
             Value::String(name) if !found.contains(name) => found.push(name.clone()),
             _ => {}
@@ -85,11 +85,11 @@ fn materials(paper: &Paper, surfaces: usize) -> Vec<String> {
     found
 }
 
-fn markup(told: &Told, context: &Context) -> Markup {
-    let id = |what: &str| format!("{what}-{}", told.stage);
+fn markup(shown: &Shown, context: &Context) -> Markup {
+    let id = |what: &str| format!("{what}-{}", shown.stage);
     // `<` cannot occur in it: no text ends the element.
-    let data = serde_json::to_string(told).unwrap_or_default().replace('<', "\\u003c");
-    let Instrument { parameters, responses, sets, .. } = told.instrument;
+    let data = serde_json::to_string(shown).unwrap_or_default().replace('<', "\\u003c");
+    let Instrument { parameters, responses, sets, .. } = shown.instrument;
     html! {
         div.calibrator id=(id("calibrator")) {
             script type="application/json" class="instrument" { (PreEscaped(data)) }
@@ -104,7 +104,7 @@ fn markup(told: &Told, context: &Context) -> Markup {
                             option value="" { "own" }
                         } } }
                     }
-                    @for (i, response) in responses.iter().enumerate() { (aim(told, context, i, response)) }
+                    @for (i, response) in responses.iter().enumerate() { (aim(shown, context, i, response)) }
                     p.actions {
                         button.solve type="button" { "Find parameters" }
                         button.other type="button" disabled { "Another equally good one" }
@@ -114,7 +114,7 @@ fn markup(told: &Told, context: &Context) -> Markup {
                 section.pane.knobs aria-labelledby=(id("knobs")) {
                     h3 id=(id("knobs")) { "Parameters" }
                     p.note { "Move them to see what the material would show. What is held stays as it is when parameters are sought." }
-                    @for (i, parameter) in parameters.iter().enumerate() { (knob(told, context, i, parameter)) }
+                    @for (i, parameter) in parameters.iter().enumerate() { (knob(shown, context, i, parameter)) }
                     p.said role="status" aria-live="polite" {}
                 }
             }
@@ -162,8 +162,8 @@ fn unit(unit: &str) -> Markup {
     html! { span.unit { @if !unit.is_empty() { (symbol::unit(unit)) } } }
 }
 
-fn aim(told: &Told, context: &Context, index: usize, response: &Surface) -> Markup {
-    let id = format!("aim-{}-{index}", told.stage);
+fn aim(shown: &Shown, context: &Context, index: usize, response: &Surface) -> Markup {
+    let id = format!("aim-{}-{index}", shown.stage);
     html! {
         div.aim data-response=(index) {
             label.head for=(id) { (name(context, &response.name)) }
@@ -178,8 +178,8 @@ fn aim(told: &Told, context: &Context, index: usize, response: &Surface) -> Mark
     }
 }
 
-fn knob(told: &Told, context: &Context, index: usize, parameter: &Parameter) -> Markup {
-    let id = format!("knob-{}-{index}", told.stage);
+fn knob(shown: &Shown, context: &Context, index: usize, parameter: &Parameter) -> Markup {
+    let id = format!("knob-{}-{index}", shown.stage);
     let Parameter { low, high, unit: own, .. } = parameter;
     html! {
         div.knob data-parameter=(index) {

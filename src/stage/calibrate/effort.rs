@@ -16,8 +16,14 @@ pub(super) struct Effort {
 }
 
 impl Effort {
-    /// From the history of one search, and what it recommended after every evaluation.
-    pub(super) fn of(problem: &Problem, lines: &[Line], recommended: &[Option<Recommendation>]) -> Self {
+    /// From the history of one search, what it recommended once the batch of each evaluation was known, and the number of
+    /// evaluations after each batch: a recommendation costs its whole batch.
+    pub(super) fn of(
+        problem: &Problem,
+        lines: &[Line],
+        recommended: &[Option<Recommendation>],
+        ends: &[usize],
+    ) -> Self {
         let worst = |responses: &[f64]| {
             let deviations = problem.misfit.deviations(responses);
             deviations.iter().fold(0.0_f64, |worst, d| if d.is_nan() { f64::INFINITY } else { worst.max(d.abs()) })
@@ -31,7 +37,8 @@ impl Effort {
         let first = |level: f64| seen.iter().position(|worst| *worst <= level).map(|i| lines[i].evaluation);
         let stays = |level: f64| {
             let last = expected.iter().rposition(|worst| *worst > level).map_or(0, |i| i + 1);
-            (last < expected.len()).then_some(last + 1)
+            let batch = || ends.iter().copied().find(|end| *end > last);
+            if last < expected.len() { batch() } else { None }
         };
         Self { seen: LEVELS.map(first), settled: LEVELS.map(stays) }
     }
@@ -71,8 +78,12 @@ mod tests {
             Some(Recommendation { point: vec![0.5], responses, misfit: worst })
         };
         let recommended = [None, own(0.3), own(0.04), own(0.07), own(0.03)];
-        let effort = Effort::of(&problem, &lines, &recommended);
+        let effort = Effort::of(&problem, &lines, &recommended, &[1, 2, 3, 4, 5]);
         assert_eq!(effort.seen, [Some(3), Some(4), None]);
         assert_eq!(effort.settled, [Some(3), Some(5), None]);
+        // Two batches, of three and two evaluations.
+        let recommended = [own(0.08), own(0.08), own(0.08), own(0.01), own(0.01)];
+        let effort = Effort::of(&problem, &lines, &recommended, &[3, 5]);
+        assert_eq!(effort.settled, [Some(3), Some(5), Some(5)]);
     }
 }

@@ -277,7 +277,7 @@ pub(super) fn runs(
 
 /// How many of the runs that a search learns from are not valid, and what becomes of them.
 pub(super) fn not_valid(artifact: &Artifact, invalid: Invalid) -> Result<Option<String>, StageError> {
-    Ok(invalid.judge(Results::table(artifact)?)?.said())
+    Ok(invalid.judge(Results::table(artifact)?)?.sentence())
 }
 
 fn factor_values(table: &Table, factor: &FactorParam) -> Result<Vec<f64>, StageError> {

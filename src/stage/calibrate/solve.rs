@@ -142,7 +142,7 @@ fn on_surfaces(
     let (expected, misfit): (Vec<Interval>, f64) =
         (responses.iter().map(exact).collect(), problem.misfit.of(&responses));
     let State { evaluations, failed, .. } = state;
-    let effort = Effort::of(&problem, &history, &[]);
+    let effort = Effort::of(&problem, &history, &[], &[]);
     let (coarse, observed, scatter) = (0, None, vec![f64::NAN; expected.len()]);
     let (extents, unknown) = (None, String::new());
     Ok(Solved {
@@ -172,15 +172,18 @@ struct Replayed {
     stop: Stop,
     state: State,
     recommended: Vec<Option<Recommendation>>,
+    /// Evaluations after each batch.
+    ends: Vec<usize>,
 }
 
 /// Replays a finished search.
 fn replayed(search: &mut Search, told: &[Told]) -> Result<Replayed, StageError> {
     let runs: Vec<Run> = told.iter().map(Told::run).collect();
-    let mut recommended = Vec::new();
+    let (mut recommended, mut ends) = (Vec::new(), Vec::new());
     let step = replay(search, &runs, |search| {
         let State { evaluations, recommended: own, .. } = search.state();
         recommended.resize(evaluations, own);
+        ends.push(evaluations);
     });
     let Next::Stop(stop, state) = step.map_err(|fault| StageError::new(fault.to_string()))? else {
         return Err(StageError::new("the simulations of this calibration are not complete"));
@@ -192,7 +195,8 @@ fn replayed(search: &mut Search, told: &[Told]) -> Result<Replayed, StageError> 
     }
     // The last batch can be cut short by the budget.
     recommended.resize(runs.len(), state.recommended.clone());
-    Ok(Replayed { stop, state, recommended })
+    ends.push(runs.len());
+    Ok(Replayed { stop, state, recommended, ends })
 }
 
 /// Replays the finished simulations of one set.
@@ -216,9 +220,9 @@ fn simulated(
         }
     };
     let mut search = Search::new(&problem, &method, &limits, seed, &knowledge);
-    let Replayed { stop, state, recommended } = replayed(&mut search, runs)?;
+    let Replayed { stop, state, recommended, ends } = replayed(&mut search, runs)?;
     let own = history(&problem, runs, &recommended, false);
-    let effort = Effort::of(&problem, &own, &recommended);
+    let effort = Effort::of(&problem, &own, &recommended, &ends);
     lines.extend(own);
     let State { evaluations, failed, recommended, best } = state;
     let mut recommended = recommended.ok_or_else(|| StageError::new("no run gave responses"))?;

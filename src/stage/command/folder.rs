@@ -148,8 +148,12 @@ fn filled(template: &[u8], file: &str, job: &Job, params: &Params) -> Result<Vec
         .map_err(|error| StageError { hint: error.hint, ..fail(&error.message) })
 }
 
-/// Bytes as text: what is no UTF-8 as `\xE9`.
+/// Bytes as text: UTF-16 by its mark, as shells of Windows write logs; of all else what is no UTF-8 as `\xE9`.
 fn readable(bytes: &[u8]) -> String {
+    if let Some((encoding, mark)) = encoding_rs::Encoding::for_bom(bytes).filter(|(own, _)| *own != encoding_rs::UTF_8)
+    {
+        return encoding.decode_without_bom_handling(&bytes[mark..]).0.into_owned();
+    }
     let mut text = String::with_capacity(bytes.len());
     for chunk in bytes.utf8_chunks() {
         text.push_str(chunk.valid());
@@ -181,6 +185,8 @@ mod tests {
     fn foreign_bytes_are_shown_and_cost_nothing_else() {
         assert_eq!(readable(b"Gr\xf6\xdfe fertig\nUCS = 35.5"), "Gr\\xF6\\xDFe fertig\nUCS = 35.5");
         assert_eq!(readable("Größe".as_bytes()), "Größe");
+        let wide: Vec<u8> = "\u{feff}UCS = 35.5 °\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(readable(&wide), "UCS = 35.5 °\n");
         assert_eq!(shown("10 %\r20 %\r\u{1b}[31mred\u{7}"), "[31mred");
         assert_eq!(shown(&"é".repeat(1000)).chars().count(), 401);
     }

@@ -7,26 +7,35 @@
 //! the time limit is not.
 //!
 //! A template names values in double braces: `{{mortar.Ec}}` (parameter, SI), `{{Ec}}` (factor, in its unit),
-//! `{{seed}}`, `{{replicate}}`.
+//! `{{seed}}`, `{{replicate}}`. The seed differs from row to row and from replicate to replicate and follows from the
+//! workflow's; the number of the replicate is the same in all rows, for programs that make the specimen themselves and
+//! shall compare rows on the same one.
+//!
+//! Numbers are read as C and Fortran write them. A value that the program itself calls `NaN` (or `null` in JSON) is a
+//! missing response, said with the run; a run that leaves no value at all has failed.
 //!
 //! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
 //! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
-//! Programs speak in any encoding: bytes of a text file that are not UTF-8 are read as `\\xE9`.
+//! Programs speak in any encoding: a text file with the mark of UTF-16 is read as that, and bytes of others that are not
+//! UTF-8 as `\\xE9`.
 //! Running out of time or being stopped is never recorded, because it says nothing about the model.
 
 mod folder;
 pub mod leftover;
+mod number;
 mod read;
 mod template;
 
 use super::beside::Beside;
 use super::rows::{self, GATHER};
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
+    AtOnce, Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError,
+    Step, Task, Work,
 };
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use crate::unit;
+use math::random::Stream;
 use read::Read;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -58,6 +67,9 @@ pub struct Command {
     pub environment: BTreeMap<String, String>,
     /// A run that takes longer is ended and has failed.
     pub time_limit: Option<unit::Time>,
+    /// Most runs of the program at once, such as the number of its licences; as many as `--jobs` allows when not given.
+    /// Stages that run the same program share the number, and such runs stay on this machine.
+    pub at_once: Option<usize>,
     /// Whether a failed run stops the campaign or is recorded with its reason.
     #[serde(default)]
     pub on_failure: OnFailure,
@@ -124,6 +136,10 @@ impl Stage for Command {
             let message = format!("a run cannot be ended after {} s", limit.get());
             found.push(Complaint::new("time_limit", message).hint("give a time above 0, such as \"30 min\""));
         }
+        if self.at_once == Some(0) {
+            let message = "no run could ever start";
+            found.push(Complaint::new("at_once", message).hint("give the number of licences: at_once = 1"));
+        }
         let nul = |text: &String| text.contains('\0');
         if self.run.iter().chain(self.environment.values()).any(nul) {
             found.push(Complaint::new("run", "no program takes an argument or a variable with a zero byte"));
@@ -181,7 +197,10 @@ impl Stage for Command {
     }
 
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
-        let values = rows::values(self.material.as_ref(), point, known.context)?;
+        let mut values = rows::values(self.material.as_ref(), point, known.context)?;
+        // A template may name a factor that sets nothing of a material.
+        values.extend(point.iter().map(|(name, value)| (name.clone(), *value)));
+        let seed = row_seed(known.context.seed, &values, number);
         let params = Params {
             run: self.run.clone(),
             shell: self.shell,
@@ -191,13 +210,14 @@ impl Stage for Command {
             values,
             replicate: number,
         };
-        let mut task = Task::new("command", json!(params)).seed(known.context.seed);
+        let mut task = Task::new("command", json!(params)).seed(seed);
         for (kind, files) in [("file", &self.files), ("template", &self.templates)] {
             for (name, path) in files {
                 task.files.push(known.library.file(&format!("{kind}:{name}"), path)?);
             }
         }
         task.time_limit = self.time_limit.map(unit::Quantity::get);
+        task.at_once = self.at_once.map(|most| AtOnce { program: self.run[0].clone(), most });
         Ok(task)
     }
 }
@@ -207,7 +227,8 @@ impl Kind for Command {
     const ABOUT: &'static str = "an external program, once or per design row";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
-    const WORKS: &'static [Work] = &[Work { name: "command", version: 1, run: execute }, GATHER];
+    // Version 2: Fortran's numbers and missing values are read; the seed is the row's own.
+    const WORKS: &'static [Work] = &[Work { name: "command", version: 2, run: execute }, GATHER];
     const FAR: Option<&'static str> = Some("command");
 }
 
@@ -219,7 +240,7 @@ impl Command {
         material.flat_map(|material| material.paths()).chain(names).collect()
     }
 
-    /// Remarks on words of the command that name files beside the workflow, or by their whole path: they are in no key, so
+    /// Warnings about words of the command that name files beside the workflow, or by their whole path: they are in no key, so
     /// that a result stays as it was when they change.
     fn outside(&self, found: &mut Beside) {
         let words: Vec<&str> = match self.shell {
@@ -250,7 +271,7 @@ impl Command {
             let hint = format!(
                 "copy it with `files = {{ \"{name}\" = \"{word}\" }}`, or say `flow run … --again STAGE` after a change"
             );
-            found.remarks.push(Complaint::new("run", message).hint(hint));
+            found.warnings.push(Complaint::new("run", message).hint(hint));
         }
     }
 }
@@ -264,19 +285,56 @@ fn placeholder<'a>(text: &'a str, values: &[String]) -> Option<&'a str> {
     within.find(|name| values.iter().any(|value| value == name.trim()))
 }
 
+/// Largest seed: the generators of some engines take no larger one (LAMMPS: 900,000,000), and none takes 0.
+const LARGEST_SEED: usize = 900_000_000;
+
+/// The seed that templates of a run may name, from 1 on: it follows from the workflow's, the values and the replicate.
+fn row_seed(seed: u64, values: &BTreeMap<String, f64>, replicate: u64) -> u64 {
+    let mut stream = Stream::new(seed, &format!("command {}", json!(values)), replicate);
+    1 + stream.below(LARGEST_SEED) as u64
+}
+
 fn execute(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let folder = folder::Folder::fill(job, &params)?;
     let outcome = match folder.run(job, &params)? {
-        Ok(()) => params.read.iter().map(|(name, read)| Ok((name, read.value(&folder)?, read.unit()))).collect(),
+        Ok(()) => responses(&params.read, &folder),
         Err(reason) => Err(reason),
     };
-    let responses: Vec<(&String, f64, &str)> = match (outcome, params.on_failure) {
-        (Ok(responses), _) => responses,
+    let (responses, missing) = match (outcome, params.on_failure) {
+        (Ok(found), _) => found,
         (Err(reason), OnFailure::Record) => return Ok(Run::plain(&reason, Responses::default()).to_artifact()),
         (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
     };
-    let responses: Vec<(&str, f64, &str)> =
-        responses.iter().map(|(name, v, unit)| (name.as_str(), *v, *unit)).collect();
-    Ok(Run::plain("", Responses::of(&responses)).to_artifact())
+    missing.iter().for_each(|words| (job.say)(Progress::warning(words)));
+    let warnings = (!missing.is_empty()).then_some(missing);
+    Ok(Run { warnings, ..Run::plain("", responses) }.to_artifact())
+}
+
+/// What a program left: the responses, and words on those that have no value.
+fn responses(read: &BTreeMap<String, Read>, folder: &folder::Folder) -> Result<(Responses, Vec<String>), String> {
+    let (mut found, mut missing) = (Vec::new(), Vec::new());
+    for (name, read) in read {
+        let value = read.value(folder)?.unwrap_or_else(|why| {
+            missing.push(format!("`{name}` is missing: {why}"));
+            f64::NAN
+        });
+        found.push((name.as_str(), value, read.unit()));
+    }
+    if missing.len() == found.len() { Err(missing.join("; ")) } else { Ok((Responses::of(&found), missing)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_seed_of_a_run_is_its_own_and_every_engine_takes_it() {
+        let values = |ec: f64| BTreeMap::from([("rock.Ec".to_owned(), ec)]);
+        let all = [(7, 1.0, 1), (7, 2.0, 1), (7, 1.0, 2), (8, 1.0, 1)];
+        let seeds: BTreeSet<u64> = all.into_iter().map(|(seed, ec, run)| row_seed(seed, &values(ec), run)).collect();
+        assert_eq!(seeds.len(), all.len());
+        assert!(seeds.iter().all(|seed| (1..=900_000_000).contains(seed)), "{seeds:?}");
+        assert_eq!(row_seed(7, &values(1.0), 1), row_seed(7, &values(1.0), 1));
+    }
 }

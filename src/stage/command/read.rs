@@ -1,6 +1,7 @@
 //! How a response is read from what a program left.
 
 use super::folder::{Folder, is_plain};
+use super::number::{Number, number};
 use crate::stage::sheet::Sheet;
 use crate::stage::{Complaint, Context, rows};
 use regex::Regex;
@@ -14,18 +15,71 @@ use serde_json::Value;
 pub struct Read {
     /// The file in the run's folder; `stdout` and `stderr` hold what the program printed.
     file: String,
-    /// Column of a CSV file with a first line of names; the last row counts.
+    /// Column of a CSV file with a first line of names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     column: Option<String>,
     /// Pointer into a JSON file, such as `/result/UCS`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pointer: Option<String>,
-    /// Regular expression whose first group is the number; the last match counts.
+    /// Regular expression whose first group is the number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pattern: Option<String>,
+    /// Which row of the column, or which match of the pattern, counts.
+    #[serde(default, skip_serializing_if = "Take::is_default")]
+    take: Take,
     /// Unit of the number; none for a pure number.
     #[serde(default)]
     unit: String,
+}
+
+/// Which of several numbers is the response.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Take {
+    /// The last: what a program prints at the end of a run.
+    #[default]
+    Last,
+    /// The first.
+    First,
+    /// The smallest.
+    Minimum,
+    /// The largest, such as the peak of a history of stress.
+    Maximum,
+    /// The mean of all.
+    Mean,
+}
+
+impl Take {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The number among these texts, in their order; there is at least one. Missing values are passed over unless the
+    /// first or the last is wanted.
+    fn of(self, texts: &[String]) -> Result<Number, String> {
+        let read = |text: &String| number(text).map_err(|why| format!("`{text}` {why}"));
+        let ends = match self {
+            Self::Last => texts.last(),
+            Self::First => texts.first(),
+            Self::Minimum | Self::Maximum | Self::Mean => None,
+        };
+        if let Some(text) = ends {
+            return read(text);
+        }
+        let mut found = Vec::with_capacity(texts.len());
+        for text in texts {
+            if let Number::Finite(value) = read(text)? {
+                found.push(value);
+            }
+        }
+        let count = found.len() as f64;
+        let value = match self {
+            Self::Minimum => found.into_iter().reduce(f64::min),
+            Self::Mean => found.into_iter().reduce(|a, b| a + b).map(|sum| sum / count),
+            Self::Maximum | Self::Last | Self::First => found.into_iter().reduce(f64::max),
+        };
+        Ok(value.map_or(Number::Missing, Number::Finite))
+    }
 }
 
 impl Read {
@@ -47,6 +101,10 @@ impl Read {
             found.push(Complaint::new(&at(""), format!("{ways} ways to read `{name}`, not one")).hint(hint));
         }
         found.extend(rows::check_response(&at("unit"), name, &self.unit, context));
+        if self.pointer.is_some() && !self.take.is_default() {
+            let message = "a pointer names one number, so there is nothing to choose from";
+            found.push(Complaint::new(&at("take"), message).hint("leave `take` out, or read a column or a pattern"));
+        }
         match self.pattern.as_deref().map(Regex::new) {
             Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
             Some(Ok(regex)) if regex.captures_len() != 2 => {
@@ -58,59 +116,132 @@ impl Read {
         found
     }
 
-    /// The number, in the unit of this response.
-    pub(super) fn value(&self, folder: &Folder) -> Result<f64, String> {
+    /// The number, in the unit of this response, or why it has no value although the program ended well.
+    ///
+    /// # Errors
+    /// What is wrong with the file or the number.
+    pub(super) fn value(&self, folder: &Folder) -> Result<Result<f64, String>, String> {
         let text = folder.text(&self.file)?;
-        let number = if let Some(column) = &self.column {
-            from_csv(&text, column)
+        let found = if let Some(column) = &self.column {
+            from_csv(&text, column).and_then(|texts| self.take.of(&texts))
         } else if let Some(pointer) = &self.pointer {
             from_json(&text, pointer)
         } else {
-            from_text(&text, self.pattern.as_deref().unwrap_or_default())
+            from_text(&text, self.pattern.as_deref().unwrap_or_default()).and_then(|texts| self.take.of(&texts))
         };
-        let number = number.map_err(|why| format!("`{}`: {why}", self.file))?;
-        let value: f64 = number.trim().parse().map_err(|_| format!("`{}`: `{number}` is not a number", self.file))?;
-        if value.is_finite() { Ok(value) } else { Err(format!("`{}`: `{number}` is not a finite number", self.file)) }
+        match found.map_err(|why| format!("`{}`: {why}", self.file))? {
+            Number::Finite(value) => Ok(Ok(value)),
+            Number::Missing => Ok(Err(format!("the program left no value for it in `{}`", self.file))),
+        }
     }
 }
 
-fn from_csv(text: &str, column: &str) -> Result<String, String> {
+/// The cells of a column; there is at least one.
+fn from_csv(text: &str, column: &str) -> Result<Vec<String>, String> {
     let sheet = Sheet::read(text.as_bytes()).map_err(|e| e.to_string())?;
     let place =
         sheet.place(column).ok_or_else(|| format!("no column `{column}`; it has {}", sheet.heads.join(", ")))?;
     if sheet.heads.iter().filter(|head| *head == column).count() > 1 {
         return Err(format!("two columns are called `{column}`"));
     }
-    sheet.columns[place].last().cloned().ok_or_else(|| "no rows".to_owned())
+    if sheet.rows() == 0 { Err("no rows".to_owned()) } else { Ok(sheet.columns[place].clone()) }
 }
 
-fn from_json(text: &str, pointer: &str) -> Result<String, String> {
-    let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+/// The number at a pointer; `null`, and the `NaN` that many programs write although JSON has none, are missing values.
+fn from_json(text: &str, pointer: &str) -> Result<Number, String> {
+    let text = without_nan(text);
+    let value: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
     match value.pointer(pointer) {
-        Some(Value::Number(number)) => Ok(number.to_string()),
+        Some(Value::Number(found)) => {
+            let found = found.to_string();
+            number(&found).map_err(|why| format!("`{found}` {why}"))
+        }
+        Some(Value::Null) => Ok(Number::Missing),
+        Some(Value::String(word)) => number(word).map_err(|why| format!("`{pointer}`: `{word}` {why}")),
         Some(other) => Err(format!("`{pointer}` is `{other}`, not a number")),
         None => Err(format!("nothing at `{pointer}`")),
     }
 }
 
-fn from_text(text: &str, pattern: &str) -> Result<String, String> {
+/// The text with `null` for each bare `NaN`, and with infinities in quotes, where they are refused by name.
+fn without_nan(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let (mut rest, mut quoted) = (text, false);
+    while let Some(c) = rest.chars().next() {
+        let bare = |word: &str| !quoted && rest.starts_with(word);
+        let (taken, written) = if quoted && c == '\\' {
+            let taken = rest.chars().take(2).map(char::len_utf8).sum();
+            (taken, &rest[..taken])
+        } else if bare("NaN") {
+            (3, "null")
+        } else if bare("-Infinity") {
+            (9, "\"-Infinity\"")
+        } else if bare("Infinity") {
+            (8, "\"Infinity\"")
+        } else {
+            (c.len_utf8(), &rest[..c.len_utf8()])
+        };
+        quoted ^= c == '"';
+        out.push_str(written);
+        rest = &rest[taken..];
+    }
+    out
+}
+
+/// The numbers that a pattern finds; there is at least one.
+fn from_text(text: &str, pattern: &str) -> Result<Vec<String>, String> {
     let regex = Regex::new(pattern).map_err(|e| e.to_string())?;
     // A pattern such as `(.*)` matches the empty end of the text too.
-    let found =
-        regex.captures_iter(text).filter_map(|all| Some(all.get(1)?.as_str())).filter(|group| !group.is_empty());
-    found.last().map(str::to_owned).ok_or_else(|| format!("nothing matches `{pattern}`"))
+    let groups = regex.captures_iter(text).filter_map(|all| Some(all.get(1)?.as_str()));
+    let found: Vec<String> = groups.filter(|group| !group.is_empty()).map(str::to_owned).collect();
+    if found.is_empty() { Err(format!("nothing matches `{pattern}`")) } else { Ok(found) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn csv(text: &str, take: Take) -> Result<Number, String> {
+        from_csv(text, "UCS").and_then(|texts| take.of(&texts))
+    }
+
+    fn text(text: &str, pattern: &str) -> Result<Number, String> {
+        from_text(text, pattern).and_then(|texts| Take::Last.of(&texts))
+    }
+
     #[test]
     fn numbers_are_found_in_each_form() {
-        assert_eq!(from_csv("a, UCS\n1, 2\n3, 4.5\n", "UCS"), Ok("4.5".to_owned()));
-        assert_eq!(from_json(r#"{"r": [1, {"UCS": 3e7}]}"#, "/r/1/UCS"), Ok("30000000.0".to_owned()));
-        assert_eq!(from_text("UCS = 1\nUCS = 2\n", r"UCS = (\S+)"), Ok("2".to_owned()));
-        assert_eq!(from_text("35.5\n", "(.*)"), Ok("35.5".to_owned()));
+        assert_eq!(csv("a, UCS\n1, 2\n3, 4.5\n", Take::Last), Ok(Number::Finite(4.5)));
+        assert_eq!(from_json(r#"{"r": [1, {"UCS": 3e7}]}"#, "/r/1/UCS"), Ok(Number::Finite(3e7)));
+        assert_eq!(text("UCS = 1\nUCS = 2\n", r"UCS = (\S+)"), Ok(Number::Finite(2.0)));
+        assert_eq!(text("UCS = 1.0D+03 \n", r"UCS = (\S+)"), Ok(Number::Finite(1000.0)));
+        assert_eq!(text("35.5\n", "(.*)"), Ok(Number::Finite(35.5)));
+    }
+
+    #[test]
+    fn a_history_gives_its_ends_its_extremes_and_its_mean() {
+        let history = "t,UCS\n1,2.0\n2,NaN\n3,8.0d0\n4,5.0\n";
+        let of = |take| csv(history, take);
+        assert_eq!(of(Take::First), Ok(Number::Finite(2.0)));
+        assert_eq!(of(Take::Last), Ok(Number::Finite(5.0)));
+        assert_eq!(of(Take::Minimum), Ok(Number::Finite(2.0)));
+        assert_eq!(of(Take::Maximum), Ok(Number::Finite(8.0)));
+        assert_eq!(of(Take::Mean), Ok(Number::Finite(5.0)));
+        assert_eq!(csv("UCS\nNaN\n\"\"\n", Take::Maximum).unwrap_err(), "`` is not a number");
+        assert_eq!(csv("UCS\nNaN\n", Take::Maximum), Ok(Number::Missing));
+    }
+
+    #[test]
+    fn a_nan_in_json_costs_only_its_own_value() {
+        let json =
+            r#"{"nu": NaN, "E": 3e9, "note \"NaN": "NaN \\", "s": [-Infinity, NaN], "none": null, "D": "1.5D2"}"#;
+        assert_eq!(from_json(json, "/nu"), Ok(Number::Missing));
+        assert_eq!(from_json(json, "/none"), Ok(Number::Missing));
+        assert_eq!(from_json(json, "/E"), Ok(Number::Finite(3e9)));
+        assert_eq!(from_json(json, "/D"), Ok(Number::Finite(150.0)));
+        assert_eq!(from_json(json, "/s/1"), Ok(Number::Missing));
+        assert!(from_json(json, "/s/0").unwrap_err().contains("`-Infinity` is not a finite number"));
+        assert!(without_nan(json).contains(r#""note \"NaN": "NaN \\""#));
     }
 
     #[test]

@@ -100,8 +100,10 @@ fn chosen_rows(table: &Table, plot: &Plot, invalid: Invalid) -> Result<Vec<usize
         return Err(StageError::new("no row has the values that `where` asks for"));
     }
     rows.retain(|&row| !judged.leaves_out(row));
-    if let (true, Some(said)) = (rows.is_empty(), judged.said()) {
-        return Err(StageError::new(format!("no run is left to draw: {said}")).hint("invalid = \"keep\" draws them"));
+    if let (true, Some(sentence)) = (rows.is_empty(), judged.sentence()) {
+        return Err(
+            StageError::new(format!("no run is left to draw: {sentence}")).hint("invalid = \"keep\" draws them")
+        );
     }
     Ok(rows)
 }

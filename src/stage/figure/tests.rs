@@ -7,7 +7,7 @@ use crate::artifact::range::{LevelValues, Levels, Range, Ranges};
 use crate::artifact::run::{CrackMode, Cracks, Curve, Forces, Responses, Run, States};
 use crate::artifact::specimen::Specimen;
 use crate::artifact::statistics::{
-    Anova, Coefficients, Domains, Effects, Fits, Limits, Paths, PrincipalAxes, Remarks, Residuals, Screening,
+    Anova, Coefficients, Domains, Effects, Fits, Limits, NoteTable, Paths, PrincipalAxes, Residuals, Screening,
     Selections, Stationary, Surfaces, Variances,
 };
 use crate::artifact::{ContentHash, Group, Node, Numbered, Values};

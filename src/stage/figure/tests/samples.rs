@@ -14,7 +14,7 @@ pub(super) fn range_analysis() -> Artifact {
     };
     let level = Numbered(vec![vec![10.0, 0.5, 1.0], vec![20.0, 1.0, 2.0], vec![f64::NAN, 1.5, 3.0]]);
     let levels = LevelValues { factor, unit: words(["GPa", "", ""]), level: Levels::Numbers(level) };
-    Range { range, levels, notes: Remarks::default(), not_valid: None }.to_artifact()
+    Range { range, levels, notes: NoteTable::default(), not_valid: None }.to_artifact()
 }
 
 pub(super) fn results(shift: f64) -> Artifact {
@@ -119,7 +119,7 @@ pub(super) fn surfaces() -> Artifact {
         path: Paths::default(),
         domain,
         selection: Selections::default(),
-        notes: Remarks::default(),
+        notes: NoteTable::default(),
         models: BTreeMap::new(),
         with_constant: None,
         predictions: None,
@@ -168,7 +168,7 @@ pub(super) fn screening() -> Artifact {
         simultaneous: vec![f64::NAN],
         critical: vec![f64::NAN],
     };
-    let (fit, notes) = (Fits::default(), Remarks::default());
+    let (fit, notes) = (Fits::default(), NoteTable::default());
     Screening { effects, limits, fit, notes, residuals: residuals(), not_valid: None }.to_artifact()
 }
 
@@ -186,7 +186,7 @@ pub(super) fn anova() -> Artifact {
         omega2: vec![f64::NAN; 4],
         ..Variances::default()
     };
-    Anova { anova, fit: Fits::default(), notes: Remarks::default(), residuals: residuals(), not_valid: None }
+    Anova { anova, fit: Fits::default(), notes: NoteTable::default(), residuals: residuals(), not_valid: None }
         .to_artifact()
 }
 

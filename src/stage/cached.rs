@@ -1,59 +1,59 @@
-//! What is remembered of the runs of a fan-out, so that a design with one new row does not look at ten thousand old ones.
+//! Runs of earlier campaigns, so that a design with one new row does not look at ten thousand old ones.
 //!
-//! A run is a function of its point, its replicate, and of what all rows share. While the shared part is as it was, the
-//! runner knows the key and the result of an old row without making its task, and a [`Brief`] of it: all that gathering
-//! takes from a run. Briefs only spare work: with them, without them or with some, the gathered table is the same.
+//! A run is a function of its point, its replicate, and of what all rows share. While the shared part is unchanged, the
+//! runner knows the key and the result of an old row without making its task, and a [`RunSummary`]: all that gathering takes
+//! from a run. Summaries only save work: the gathered table is the same with them and without them.
 
 use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
 use std::borrow::Cow;
 
-/// A run that was made before and need not be looked at again.
+/// A run of an earlier campaign.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kept<'a> {
+pub struct CachedRun<'a> {
     /// Key of its task.
     pub key: Key,
     /// Its result.
     pub content: ContentHash,
     /// What gathering takes from it.
-    pub brief: Brief<'a>,
+    pub summary: RunSummary<'a>,
 }
 
-/// The kept runs among the inputs of a gathering task.
+/// The cached runs among the inputs of a gathering task.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct KeptRuns {
-    /// Of each: its place among the inputs, design row, key of its task, and result.
+pub struct CachedRuns {
+    /// Of each run: its index among the inputs, design row, key of its task, and result.
     pub runs: Vec<(usize, usize, Key, ContentHash)>,
-    /// Their briefs, in the same order.
-    pub briefs: Briefs,
+    /// Their summaries, in the same order.
+    pub summaries: RunSummaries,
 }
 
-impl KeptRuns {
-    /// None yet, with room for so many.
+impl CachedRuns {
+    /// An empty list with room for `count` runs.
     pub fn with_room(count: usize) -> Self {
-        let briefs = Briefs { runs: Vec::with_capacity(count), ..Briefs::default() };
-        Self { runs: Vec::with_capacity(count), briefs }
+        let summaries = RunSummaries { runs: Vec::with_capacity(count), ..RunSummaries::default() };
+        Self { runs: Vec::with_capacity(count), summaries }
     }
 
-    /// Adds the run at a place among the inputs.
-    pub fn push(&mut self, place: usize, row: usize, kept: Kept<'_>) {
-        self.runs.push((place, row, kept.key, kept.content));
-        self.briefs.push(kept.brief);
+    /// Adds the run at an index among the inputs.
+    pub fn push(&mut self, index: usize, row: usize, cached: CachedRun<'_>) {
+        self.runs.push((index, row, cached.key, cached.content));
+        self.summaries.push(cached.summary);
     }
 }
 
 /// Failure, validity and cautions of a run, as its [`Outcome`] has them.
 type Verdict = (String, Option<String>, String);
 
-/// What is said of a run, and name, unit and value of each response.
+/// Failure and validity of a run, and name, unit and value of each response.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Brief<'a> {
+pub struct RunSummary<'a> {
     verdict: &'a Verdict,
     names: &'a [(String, String)],
     values: &'a [f64],
 }
 
-impl<'a> Brief<'a> {
+impl<'a> RunSummary<'a> {
     /// As gathering sees a run.
     pub(super) fn responses(&self) -> Outcome<'a> {
         let found = self.names.iter().zip(self.values);
@@ -67,9 +67,9 @@ impl<'a> Brief<'a> {
     }
 }
 
-/// Briefs of many runs. Runs of one simulator have the same few verdicts and names of responses, so these stand once.
+/// Summaries of many runs. Runs of one simulator share a few verdicts and names of responses, so each is stored once.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Briefs {
+pub struct RunSummaries {
     verdicts: Vec<Verdict>,
     /// Names and units of the responses that some run has.
     shapes: Vec<Vec<(String, String)>>,
@@ -78,7 +78,7 @@ pub struct Briefs {
     values: Vec<f64>,
 }
 
-impl Briefs {
+impl RunSummaries {
     /// Number of runs.
     pub fn len(&self) -> usize {
         self.runs.len()
@@ -90,11 +90,11 @@ impl Briefs {
     }
 
     /// Adds a run.
-    pub fn push(&mut self, brief: Brief<'_>) {
-        let verdict = place_of(&mut self.verdicts, |known| known == brief.verdict, || brief.verdict.clone());
-        let shape = place_of(&mut self.shapes, |known| known == brief.names, || brief.names.to_vec());
+    pub fn push(&mut self, summary: RunSummary<'_>) {
+        let verdict = index_of(&mut self.verdicts, |known| known == summary.verdict, || summary.verdict.clone());
+        let shape = index_of(&mut self.shapes, |known| known == summary.names, || summary.names.to_vec());
         self.runs.push([verdict, shape, self.values.len() as u32]);
-        self.values.extend_from_slice(brief.values);
+        self.values.extend_from_slice(summary.values);
     }
 
     /// Adds a run as its artifact holds it; false when it holds no responses.
@@ -103,23 +103,23 @@ impl Briefs {
         let names: Vec<_> = responses.iter().map(|(name, _, unit)| ((*name).to_owned(), (*unit).to_owned())).collect();
         let values: Vec<f64> = responses.iter().map(|(_, value, _)| *value).collect();
         let verdict = (failure.to_owned(), validity.map(Cow::into_owned), cautions.into_owned());
-        self.push(Brief { verdict: &verdict, names: &names, values: &values });
+        self.push(RunSummary { verdict: &verdict, names: &names, values: &values });
         true
     }
 
     /// One run.
-    pub fn get(&self, run: usize) -> Option<Brief<'_>> {
+    pub fn get(&self, run: usize) -> Option<RunSummary<'_>> {
         let [verdict, shape, first] = self.runs.get(run)?.map(|number| number as usize);
         let (verdict, names) = (self.verdicts.get(verdict)?, self.shapes.get(shape)?);
-        Some(Brief { verdict, names, values: self.values.get(first..first + names.len())? })
+        Some(RunSummary { verdict, names, values: self.values.get(first..first + names.len())? })
     }
 
-    /// As the input `kept` of a job, with the place of each run among the inputs.
-    pub fn artifact(&self, places: &[usize]) -> Artifact {
-        let places = places.iter().map(|place| *place as i64).collect();
-        let places = Table::default().ints_column("place", "", places);
-        let briefs = Node::Bytes(self.to_bytes());
-        Artifact::new("kept", 1, Group::new().with("places", Node::Table(places)).with("briefs", briefs))
+    /// The input `cached` of a job, with the index of each run among the inputs.
+    pub fn artifact(&self, indices: &[usize]) -> Artifact {
+        let indices = indices.iter().map(|index| *index as i64).collect();
+        let indices = Table::default().ints_column("index", "", indices);
+        let summaries = Node::Bytes(self.to_bytes());
+        Artifact::new("cached", 1, Group::new().with("indices", Node::Table(indices)).with("summaries", summaries))
     }
 
     /// Length, texts as JSON, three numbers for each run, values; little-endian.
@@ -134,7 +134,7 @@ impl Briefs {
         bytes
     }
 
-    /// Reads what [`Briefs::to_bytes`] wrote.
+    /// Reads what [`RunSummaries::to_bytes`] wrote.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let mut rest = bytes;
         let mut take = |length: usize| {
@@ -153,8 +153,8 @@ impl Briefs {
     }
 }
 
-/// Where the value stands in the list; it is added when it does not. The last one added is the likeliest.
-fn place_of<T>(list: &mut Vec<T>, is: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> u32 {
+/// Index of the value in the list, to which it is added when it is new. The last value is the likeliest.
+fn index_of<T>(list: &mut Vec<T>, is: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> u32 {
     let found = list.iter().rposition(is).unwrap_or_else(|| {
         list.push(make());
         list.len() - 1
@@ -182,16 +182,16 @@ mod tests {
             Run { validity: Some("rotation".to_owned()), ..Run::plain("", Responses::of(&[("E", 2.5, "GPa")])) }
                 .to_artifact(),
         ];
-        let mut briefs = Briefs::default();
-        assert!(runs.iter().all(|run| briefs.push_run(run)));
-        assert!(!briefs.push_run(&Artifact::of(ArtifactKind::RUN, Group::new())));
-        let bytes = briefs.to_bytes();
-        let back = Briefs::from_bytes(&bytes).unwrap();
+        let mut summaries = RunSummaries::default();
+        assert!(runs.iter().all(|run| summaries.push_run(run)));
+        assert!(!summaries.push_run(&Artifact::of(ArtifactKind::RUN, Group::new())));
+        let bytes = summaries.to_bytes();
+        let back = RunSummaries::from_bytes(&bytes).unwrap();
         assert_eq!((back.len(), back.shapes.len(), back.verdicts.len()), (5, 3, 3));
         for (number, run) in runs.iter().enumerate() {
             assert_eq!(back.get(number).unwrap().responses(), Run::outcome(run).unwrap());
         }
         assert_eq!(back.get(5), None);
-        assert!((0..bytes.len()).all(|end| Briefs::from_bytes(&bytes[..end]).is_none_or(|cut| cut != back)));
+        assert!((0..bytes.len()).all(|end| RunSummaries::from_bytes(&bytes[..end]).is_none_or(|cut| cut != back)));
     }
 }

@@ -1,4 +1,4 @@
-//! The record that each campaign leaves, and what earlier ones tell: reasons of reruns and durations.
+//! The campaign record that each run leaves, and what earlier records give: reasons of reruns, and durations.
 
 use super::{Report, StageReport, StageStatus, TaskReport, remembered};
 use crate::plan::Workflow;
@@ -7,7 +7,7 @@ use crate::store::{Campaign, StageRun, Store, StoreError};
 use std::collections::HashMap;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Writes what became of a campaign into the store.
+/// Writes the record of a campaign into the store.
 ///
 /// # Errors
 /// The store cannot be written.
@@ -55,7 +55,7 @@ fn stage_run(workflow: &Workflow, report: &StageReport) -> StageRun {
     }
 }
 
-/// What the last campaigns of the same workflow tell about each stage.
+/// The last campaigns of the same workflow, by stage.
 pub struct Past<'a> {
     store: &'a Store,
     /// By stage: key of the last memo.
@@ -126,5 +126,5 @@ impl<'a> Past<'a> {
     }
 }
 
-/// So many earlier runs, or tasks of one row, are looked at.
+/// Number of earlier campaigns, or of tasks of one row, that are compared.
 const LOOK_BACK: usize = 20;

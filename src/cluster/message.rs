@@ -1,12 +1,12 @@
-//! What a worker writes into its report, one line of JSON each.
+//! The messages that a worker writes into its report, one line of JSON each.
 
 use serde::{Deserialize, Serialize};
 
 /// One line of a report. Tasks are numbered through all lists of a queue, from 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "said", rename_all = "kebab-case")]
-pub enum Said {
-    /// The worker is there.
+#[serde(tag = "message", rename_all = "kebab-case")]
+pub enum Message {
+    /// The worker has started.
     Started {
         /// Which submission of the queue it belongs to.
         round: usize,
@@ -22,7 +22,7 @@ pub enum Said {
         /// The task.
         task: usize,
     },
-    /// A task says where it stands.
+    /// A task reports its progress.
     Stands {
         /// The task.
         task: usize,
@@ -70,7 +70,7 @@ pub enum Said {
         /// Why.
         why: String,
     },
-    /// The worker has ended by itself.
+    /// The worker has ended in order.
     Ended {
         /// What was wrong with its machine or the store; nothing when all was well.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -92,13 +92,13 @@ pub enum Cause {
     Store,
 }
 
-impl Said {
+impl Message {
     /// The line of a report.
     pub fn to_text(&self) -> String {
         serde_json::to_string(self).unwrap_or_else(|error| panic!("BUG: a report that is no JSON: {error}"))
     }
 
-    /// The task that it speaks of.
+    /// The task that it is about.
     pub fn task(&self) -> Option<usize> {
         match self {
             Self::Begun { task }
@@ -112,7 +112,7 @@ impl Said {
         }
     }
 
-    /// What a line says; a line that cannot be read says nothing.
+    /// Reads a line; `None` when it is no message.
     pub fn read(line: &str) -> Option<Self> {
         serde_json::from_str(line).ok()
     }
@@ -124,16 +124,16 @@ mod tests {
 
     #[test]
     fn reports_read_as_they_were_written_and_nonsense_says_nothing() {
-        for said in [
-            Said::Started { round: 1, index: 2, machine: "n1".to_owned(), program: "ab".to_owned() },
-            Said::Stands { task: 3, fraction: Some(0.5), note: "ε \"1\"\n".to_owned(), warning: false },
-            Said::Stopped { task: 3, cause: Cause::WholeTime },
-            Said::Ended { fault: None },
+        for message in [
+            Message::Started { round: 1, index: 2, machine: "n1".to_owned(), program: "ab".to_owned() },
+            Message::Stands { task: 3, fraction: Some(0.5), note: "ε \"1\"\n".to_owned(), warning: false },
+            Message::Stopped { task: 3, cause: Cause::WholeTime },
+            Message::Ended { fault: None },
         ] {
-            assert!(!said.to_text().contains('\n'));
-            assert_eq!(Said::read(&said.to_text()), Some(said));
+            assert!(!message.to_text().contains('\n'));
+            assert_eq!(Message::read(&message.to_text()), Some(message));
         }
-        assert_eq!(Said::read("{\"said\":\"begun\"}"), None);
-        assert_eq!(Said::read("\0\0\0"), None);
+        assert_eq!(Message::read("{\"message\":\"begun\"}"), None);
+        assert_eq!(Message::read("\0\0\0"), None);
     }
 }
