@@ -31,7 +31,6 @@ fn cases() -> Vec<Case> {
     plane(&mut cases);
     tumbling(&mut cases);
     stone(&mut cases);
-    heap(&mut cases);
     precessing(&mut cases);
     cases
 }
@@ -206,43 +205,6 @@ fn stone(cases: &mut Vec<Case>) {
         cases.push(Case::new(label, "0", 0.0, worst, near));
     }
     cases.push(Case::new("3D: change of its spin on the way", "asymmetric", 0.1, turned, Near::Above));
-}
-
-/// Eight stones that have come to rest on a floor are let go without damping: for 20,000 steps they lose and gain no energy, and
-/// the floor carries their weight.
-fn heap(cases: &mut Vec<Case>) {
-    let law = Interaction::unbonded(Linear::direct(1e7, 5e6, 0.5));
-    let (mut particles, mut clumps) = (Vec::new(), Vec::new());
-    for k in 0..8 {
-        let place = [0.03 * (k % 2) as f64, 0.0102 + 0.03 * (k / 4) as f64, 0.03 * (k / 2 % 2) as f64];
-        let turned = |[x, y, z]: [f64; 3]| place.plus(if k / 4 == 0 { [x, y, z] } else { [z, y, x] });
-        let first = particles.len();
-        for (x, r) in [([0.0; 3], 1e-2), ([9e-3, 1e-3, 0.0], 8e-3), ([3e-3, 4e-3, 6e-3], 6e-3)] {
-            particles.push(Particle::<D3>::ball(turned(x), r, 2700.0, GRAIN));
-        }
-        clumps.push(Clump::of(&particles, &[first, first + 1, first + 2], 2700.0).unwrap());
-    }
-    let weight: f64 = clumps.iter().map(|clump| 9.81 * clump.mass).sum();
-    let settings = Settings { gravity: [0.0, -9.81, 0.0], ..Settings::default() };
-    let mut engine = Engine::new(&Model { clumps, ..model(particles, vec![floor()], law, settings) }).unwrap();
-    while measure::unbalanced_ratio(&engine) > 1e-9 || engine.steps() < 20_000 {
-        engine.advance(1000).unwrap();
-        assert!(engine.steps() < 1_000_000, "the heap does not come to rest");
-    }
-    engine.calm();
-    engine.set_damping(0.0).unwrap();
-    engine.keep_books();
-    let stored = |energy: measure::Energy| energy.kinetic + energy.spring + energy.potential;
-    let before = measure::energy(&engine);
-    engine.advance(20_000).unwrap();
-    let after = measure::energy(&engine);
-    let near = Near::Absolute(1e-6);
-    let drift = (stored(after) - stored(before)) / before.spring;
-    cases.push(Case::new("3D: energy that a heap at rest loses, over that of its springs", "0", 0.0, drift, near));
-    let spent = (after.slip + after.damping) / before.spring;
-    cases.push(Case::new("3D: energy that friction takes from it", "0", 0.0, spent, near));
-    let carried = -engine.wall_force(0)[1] / weight;
-    cases.push(Case::new("3D: load of the floor over its weight", "1", 1.0, carried, near));
 }
 
 /// A symmetric top: in a time t the spin turns about the momentum by L t/I₁.
