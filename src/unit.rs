@@ -152,8 +152,18 @@ const SYMBOLS: &[(&str, f64, Dimension, bool)] = &[
     ("1", 1.0, Dimension::NONE, false),
 ];
 
-const PREFIXES: &[(&str, f64)] =
-    &[("G", 1e9), ("M", 1e6), ("k", 1e3), ("c", 1e-2), ("m", 1e-3), ("µ", 1e-6), ("u", 1e-6), ("n", 1e-9)];
+/// The sign of a millionth is written as `u` too, and as the Greek letter, which looks the same and is another character.
+const PREFIXES: &[(&str, f64)] = &[
+    ("G", 1e9),
+    ("M", 1e6),
+    ("k", 1e3),
+    ("c", 1e-2),
+    ("m", 1e-3),
+    ("\u{b5}", 1e-6),
+    ("\u{3bc}", 1e-6),
+    ("u", 1e-6),
+    ("n", 1e-9),
+];
 
 impl Unit {
     /// Reads a unit such as `GPa`, `m/s`, `kg/m^3` or `MPa*m^0.5`; the empty text is the pure number.

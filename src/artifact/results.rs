@@ -16,9 +16,9 @@ crate::artifact! {
 }
 
 /// The columns with the reasons.
-const FAILURE: &str = "failure";
-const VALIDITY: &str = "validity";
-const CAUTIONS: &str = "cautions";
+pub(super) const FAILURE: &str = "failure";
+pub(super) const VALIDITY: &str = "validity";
+pub(super) const CAUTIONS: &str = "cautions";
 
 /// What is said of each run of a simulator; an empty text where there is nothing to say.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -36,5 +36,7 @@ crate::artifact! {
         pub quality: Table, "";
         /// what should be known before its results are believed
         pub warnings: Vec<String>, "";
+        /// why it could not be made: there are no balls then; absent where there are
+        pub failure: Option<String>, "";
     }
 }

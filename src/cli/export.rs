@@ -14,7 +14,7 @@ use crate::stage::{self, specimen};
 use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
 use dem::genesis::specimen::Specimen;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.
@@ -69,20 +69,25 @@ impl Export {
         let memos = asked.iter().all(|(_, row)| row.is_none());
         let report = decide(&workflow, &store, &names, memos);
         let (chosen, missing) = choose(&workflow, &report, &asked);
-        std::fs::create_dir_all(&self.folder).map_err(|e| system(&e))?;
+        let unwritten = |path: &Path, error: std::io::Error| {
+            err!("error: {}: {error}", path.display());
+            Exit::System
+        };
+        std::fs::create_dir_all(&self.folder).map_err(|e| unwritten(&self.folder, e))?;
         let mut written = 0;
         for one in &chosen {
             let artifact = store.get(&one.object.content).map_err(|e| system(&e))?;
-            let csv = self.to == Form::Csv;
-            let artifact = if csv { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
+            let read = matches!(self.to, Form::Files | Form::Csv);
+            let artifact = if read { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
             let files = self.files(&store, one, &artifact).map_err(|why| {
                 err!("error: {}: {why}", one.name);
                 Exit::BadInput
             })?;
             for (name, bytes) in files {
-                replace(&self.folder.join(&name), &bytes).map_err(|e| system(&e))?;
+                let path = self.folder.join(name);
+                replace(&path, &bytes).map_err(|e| unwritten(&path, e))?;
                 if !self.campaign.common.quiet {
-                    out!("{}", self.folder.join(name).display());
+                    out!("{}", path.display());
                 }
                 written += 1;
             }

@@ -28,6 +28,7 @@ mod work;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Numerical-experiment campaigns with bonded-particle models, from one TOML file.
 #[derive(Parser)]
@@ -89,6 +90,9 @@ pub enum Exit {
 
 /// Reads the command line and executes it.
 pub fn main() -> ExitCode {
+    // A file beyond the limit of the user (`ulimit -f`) is an error of the write, which is told, and not the end of the
+    // process. Where the signal cannot be taken it ends it, as it would have.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     ExitCode::from(execute(std::env::args_os()) as u8)
 }
 

@@ -32,6 +32,7 @@ const SHIPPED: &[Shipped] = &[
     Shipped { name: "concrete", text: include_str!("../../workflows/concrete.toml"), files: &[] },
     Shipped { name: "c30", text: include_str!("../../workflows/c30.toml"), files: SU2021 },
     Shipped { name: "rcc", text: include_str!("../../workflows/rcc.toml"), files: RCC },
+    Shipped { name: "brazilian", text: include_str!("../../workflows/brazilian.toml"), files: &[] },
     Shipped { name: "calibrate", text: include_str!("../../workflows/calibrate.toml"), files: &[] },
     Shipped { name: "su2021-published", text: include_str!("../../workflows/su2021-published.toml"), files: SU2021 },
 ];

@@ -238,7 +238,14 @@ const MOST_COLUMNS: usize = 200;
 
 /// A cell for a terminal: characters that steer it, which a log or a file may hold, are shown as signs.
 fn on_screen(cell: &str) -> String {
-    cell.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+    cell.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
+}
+
+/// Characters that steer the terminal, or change what is read: control characters, and those without width that turn the
+/// direction of the text around or hide in it.
+fn steers(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 pub(super) fn text(table: &Table) -> String {

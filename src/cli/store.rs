@@ -69,7 +69,13 @@ impl StoreCommand {
         done.unwrap_or_else(|exit| exit)
     }
 
+    /// The store, which must be there: a slip in its name would find an empty one sound.
     fn open(&self) -> Result<Store, Exit> {
+        let folder = &self.common.store;
+        if !folder.exists() {
+            err!("error: there is no store at {}; name its folder with `--store`", folder.display());
+            return Err(Exit::System);
+        }
         self.common.open()
     }
 

@@ -99,6 +99,7 @@ pub mod space;
 pub mod strength;
 
 mod union;
+mod words;
 
 pub use boundary::{Cell, Motion, Servo, Wall};
 pub use contact::{Contact, Other};

@@ -154,9 +154,9 @@ impl Factor {
                 let words: Vec<u64> = levels.iter().map(|value| (value + 0.0).to_bits()).collect();
                 let again =
                     occurrences(&words, 1, words.len()).into_iter().enumerate().filter(|(_, number)| *number > 1);
-                for (place, _) in again.filter(|(place, _)| !levels[*place].is_nan()) {
-                    let first = words.iter().position(|word| *word == words[place]).unwrap_or(place);
-                    let (value, first, second) = (levels[place], first + 1, place + 1);
+                for (position, _) in again.filter(|(position, _)| !levels[*position].is_nan()) {
+                    let first = words.iter().position(|word| *word == words[position]).unwrap_or(position);
+                    let (value, first, second) = (levels[position], first + 1, position + 1);
                     faults.push(Fault::DuplicateLevel { factor: factor(), value, first, second });
                 }
             }

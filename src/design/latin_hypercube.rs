@@ -9,7 +9,7 @@
 
 use super::coding::Factor;
 use super::error::Fault;
-use super::sobol::{check_runs, place};
+use super::sobol::{check_runs, position};
 use super::table::{PointType, Points};
 use super::{Design, Stream, is_default};
 use math::elementary::{exp, ln};
@@ -93,8 +93,9 @@ impl Design for LatinHypercube {
         };
         let mut rows = Vec::with_capacity(n);
         for run in 0..n {
-            let places = factors.iter().zip(&columns).map(|(f, c)| place(f, (c[run] as f64 + within()) / n as f64));
-            rows.push((places.collect(), PointType::Sample));
+            let positions =
+                factors.iter().zip(&columns).map(|(f, c)| position(f, (c[run] as f64 + within()) / n as f64));
+            rows.push((positions.collect(), PointType::Sample));
         }
         let how = match self.criterion {
             Criterion::Maximin => "maximin",

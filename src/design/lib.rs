@@ -23,7 +23,7 @@ pub mod table;
 pub use coding::{Domain, Factor};
 pub use error::{DesignError, Fault};
 pub use report::{Report, report};
-pub use table::{DesignTable, Layout, Order, Place, PointType, Points};
+pub use table::{DesignTable, Layout, Order, PointType, Points, Position};
 
 use math::random::Stream;
 use serde::{Deserialize, Serialize};

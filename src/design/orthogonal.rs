@@ -24,7 +24,7 @@ mod tests;
 
 use super::coding::Factor;
 use super::error::Fault;
-use super::table::{Place, PointType, Points};
+use super::table::{PointType, Points, Position};
 use super::{Design, Stream};
 use array::Array;
 use catalogue::{STRENGTH_THREE, STRENGTH_TWO, splits};
@@ -183,14 +183,14 @@ impl Design for Orthogonal {
             return Err(faults);
         }
         let doubled = self.doubled.unwrap_or(1) - 1;
-        let place = |run: usize, f: &Factor, c: &usize| {
+        let position = |run: usize, f: &Factor, c: &usize| {
             let (level, count) = (table.array.columns[*c].cells[run], f.level_count());
             // surplus levels are dealt out one by one, from the doubled level on
-            Place::Level(if level < count { level } else { (doubled + level - count) % count })
+            Position::Level(if level < count { level } else { (doubled + level - count) % count })
         };
         let row = |run: usize| {
-            let places = factors.iter().zip(&columns).map(|(f, c)| place(run, f, c)).collect();
-            (places, PointType::Grid)
+            let positions = factors.iter().zip(&columns).map(|(f, c)| position(run, f, c)).collect();
+            (positions, PointType::Grid)
         };
         let numbers: Vec<String> = columns.iter().map(|c| (c + 1).to_string()).collect();
         let merging = match merged.first() {

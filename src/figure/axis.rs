@@ -100,7 +100,12 @@ impl Axis {
         }
         let number = fixed(base.abs(), decimals(place));
         let short = number.trim_end_matches('0').trim_end_matches('.');
-        let number = if number.contains('.') { short.to_owned() } else { number };
+        let zeros = number.len() - number.trim_end_matches('0').len();
+        let number = match number.contains('.') {
+            true => short.to_owned(),
+            false if number.len() > LONGEST => format!("{}×$10^{{{zeros}}}$", &number[..number.len() - zeros]),
+            false => number,
+        };
         let above = match (base == 0.0, base > 0.0, number) {
             (true, ..) => String::new(),
             (_, true, number) => format!("+{number}"),

@@ -10,6 +10,8 @@ use super::text::{CAP_HEIGHT, Line, plain_text};
 const TICK: f64 = 0.8;
 const GAP: f64 = 0.9;
 const TITLE_GAP: f64 = 1.5;
+/// What a title that is as long as the page leaves of it, in mm.
+pub(super) const RIM: f64 = 1.0;
 
 /// A plot area with its axes.
 #[derive(Clone, Debug)]
@@ -160,12 +162,15 @@ impl Panel {
             let labels =
                 if self.x.ticks.iter().any(|t| !t.label.is_empty()) { GAP + CAP_HEIGHT * size + below } else { 0.0 };
             let baseline = y0 + TICK + labels + TITLE_GAP + 0.72 * size;
-            let room = self.area.width() + 1.6 * self.left.min(self.area.width() / 3.0);
-            scene.text(within(&self.x.title(), size, room), [cx, baseline], Anchor::Middle, 0.0, INK);
+            let room = (self.area.width() + 1.6 * self.left.min(self.area.width() / 3.0)).min(scene.width - RIM);
+            let title = within(&self.x.title(), size, room);
+            let x = on_page(cx, title.width, scene.width);
+            scene.text(title, [x, baseline], Anchor::Middle, 0.0, INK);
         }
         if !self.y.label.is_empty() {
-            let line = within(&self.y.title(), size, self.area.height() + 4.0 * size);
-            scene.text(line, [x0 - self.left + 0.75 * size, cy], Anchor::Middle, 90.0, INK);
+            let title = within(&self.y.title(), size, (self.area.height() + 4.0 * size).min(scene.height - RIM));
+            let y = on_page(cy, title.width, scene.height);
+            scene.text(title, [x0 - self.left + 0.75 * size, y], Anchor::Middle, 90.0, INK);
         }
     }
 
@@ -209,6 +214,12 @@ impl Panel {
     }
 }
 
+/// The middle of a text of a given length, moved as little as it must be to lie on a page of a given extent.
+pub(super) fn on_page(middle: f64, length: f64, extent: f64) -> f64 {
+    let half = (length + RIM / 2.0) / 2.0;
+    if 2.0 * half < extent { middle.clamp(half, extent - half) } else { extent / 2.0 }
+}
+
 fn labelled(axis: &Axis) -> impl Iterator<Item = &Tick> {
     axis.ticks.iter().filter(|tick| !tick.label.is_empty())
 }
@@ -225,7 +236,7 @@ fn apart<T>(labels: Vec<(f64, f64, T)>) -> Vec<(f64, f64, T)> {
 }
 
 /// A title that fits into `room`: smaller, down to two thirds, or else cut.
-fn within(title: &str, size: f64, room: f64) -> Line {
+pub(super) fn within(title: &str, size: f64, room: f64) -> Line {
     const SMALLEST: f64 = 0.66;
     let line = Line::new(title, size);
     if line.width <= room || room <= 0.0 {

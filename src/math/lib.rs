@@ -5,9 +5,11 @@
 //! * [`distribution`]: tails and quantiles of F, t and the normal distribution
 //! * [`occurrence`]: which of equal rows each row is
 //! * [`scale`]: whether a range is divided by differences or by ratios
+//! * [`text`]: numbers as people and programs read them back
 
 pub mod distribution;
 pub mod elementary;
 pub mod occurrence;
 pub mod random;
 pub mod scale;
+pub mod text;

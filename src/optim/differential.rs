@@ -266,8 +266,8 @@ impl Differential {
                 if self.archive.len() < trials.len() {
                     self.archive.push(parent.point.clone());
                 } else {
-                    let place = self.random.below(self.archive.len());
-                    self.archive[place].clone_from(&parent.point);
+                    let index = self.random.below(self.archive.len());
+                    self.archive[index].clone_from(&parent.point);
                 }
             }
             *parent = Individual { point: trial.point.clone(), misfit: trial.misfit, f, cr };

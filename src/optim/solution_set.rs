@@ -107,10 +107,10 @@ pub fn explore(
     })
 }
 
-/// Least and greatest value of every response: random places, the best of them refined by descent.
+/// Least and greatest value of every response: random points, the best of them refined by descent.
 fn reach(problem: &Problem, model: &Model, random: &mut Stream) -> Vec<Reach> {
     let domain = &problem.domain;
-    let places: Vec<Vec<f64>> = (0..400).map(|_| domain.sample(random)).collect();
+    let starts: Vec<Vec<f64>> = (0..400).map(|_| domain.sample(random)).collect();
     let targets = problem.misfit.targets().iter().enumerate();
     targets
         .map(|(k, target)| {
@@ -118,18 +118,18 @@ fn reach(problem: &Problem, model: &Model, random: &mut Stream) -> Vec<Reach> {
                 let size = target.value().abs();
                 let scale = if size == 0.0 { sign } else { sign / size };
                 let value = |u: &[f64]| model(&domain.natural(u)).map_or(f64::INFINITY, |y| y[k] * scale);
-                lowest(domain, &places, &value) / scale
+                lowest(domain, &starts, &value) / scale
             };
             Reach { target: target.clone(), low: extreme(1.0), high: extreme(-1.0) }
         })
         .collect()
 }
 
-/// The least value found from the best few of many places.
-fn lowest(domain: &Domain, places: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64) -> f64 {
-    let mut ranked: Vec<(f64, &Vec<f64>)> = places.iter().map(|u| (value(u), u)).collect();
+/// The least value found from the best few of many points.
+fn lowest(domain: &Domain, starts: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let mut ranked: Vec<(f64, &Vec<f64>)> = starts.iter().map(|u| (value(u), u)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let descents = ranked.iter().take(4).map(|(start, place)| descend(domain, place, *start, value).1);
+    let descents = ranked.iter().take(4).map(|(start, from)| descend(domain, from, *start, value).1);
     descents.fold(ranked[0].0, f64::min)
 }
 

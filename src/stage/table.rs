@@ -4,7 +4,7 @@
 //! printed and in which order, `where` which rows. Several stages are stacked, with a column `stage` in front. With
 //! `compare` the numbers of another stage stand beside ours, row by row with equal values in the columns `by`, and the
 //! deviation in per cent after them; with `published` those of a CSV file do. Columns that are factors or responses get
-//! their symbols.
+//! their symbols. `pivot` spreads one column over two others.
 //!
 //! `list` prints what the workflow itself says, instead of a table of a result: `factors` (what each sets, its range and
 //! levels), `materials` (microparameters of the named materials, in the units of the factors), `aggregate` (polygons of a
@@ -14,6 +14,7 @@
 
 mod beside;
 mod list;
+mod pivot;
 mod units;
 mod validity;
 
@@ -29,6 +30,7 @@ use figure::column::{Column, Digits, Values};
 use figure::table::Table as Printed;
 use list::Given;
 pub use list::List;
+pub use pivot::Pivot;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -60,6 +62,9 @@ pub struct Table {
     /// Rows in which these columns have these values.
     #[serde(default, rename = "where")]
     pub only: BTreeMap<String, String>,
+    /// One column spread over two others, instead of `columns`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivot: Option<Pivot>,
     /// A stage whose numbers stand beside ours.
     pub compare: Option<String>,
     /// A CSV file, beside the workflow, whose numbers stand beside ours.
@@ -98,6 +103,8 @@ struct Params {
     columns: Vec<String>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     only: BTreeMap<String, String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pivot: Option<Pivot>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     by: Vec<String>,
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -166,6 +173,10 @@ impl Stage for Table {
             let message = "`by` has no effect without `compare` or `published`";
             found.push(Complaint::new("by", message).hint("leave out `by`"));
         }
+        if self.pivot.is_some() && !self.columns.is_empty() {
+            let complaint = Complaint::new("columns", "`columns` has no effect with `pivot`");
+            found.push(complaint.hint("leave out `columns`: `pivot` says what is printed"));
+        }
         if self.digits.is_some_and(|d| d == 0 || d > 17) {
             found.push(Complaint::new("digits", "a number has 1 to 17 significant digits"));
         }
@@ -193,6 +204,7 @@ impl Stage for Table {
         let given = self.given(known)?;
         let columns = match &given {
             _ if !self.columns.is_empty() => self.columns.clone(),
+            None if self.pivot.is_some() => self.pivot.iter().flat_map(Pivot::names).cloned().collect(),
             Some(given) => given.names(),
             None => {
                 let artifact = known.load(known.one("of")?)?;
@@ -207,6 +219,7 @@ impl Stage for Table {
             table: self.table.clone(),
             columns: self.columns.clone(),
             only: self.only.clone(),
+            pivot: self.pivot.clone(),
             by: self.by.clone(),
             caption: self.caption.clone(),
             label: self.label.clone(),
@@ -313,6 +326,9 @@ fn chosen(
     params: &Params,
     allowed: &dyn Fn(usize) -> bool,
 ) -> Result<Vec<Column>, StageError> {
+    if let Some(pivot) = &params.pivot {
+        return pivot::spread(table, params, pivot, allowed);
+    }
     let all: Vec<String> = table.columns.iter().map(|c| c.name.clone()).collect();
     let names = if params.columns.is_empty() { &all } else { &params.columns };
     named(table, names, params, &chosen_rows(table, params, allowed)?)

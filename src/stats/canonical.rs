@@ -1,4 +1,4 @@
-//! Canonical analysis of a second-order surface: where it is flat, what kind of place that is, and the way up or down.
+//! Canonical analysis of a second-order surface: where it is flat, what kind of point that is, and the way up or down.
 //!
 //! In coded units the surface is `y = b₀ + xᵀb + xᵀBx` with `B` symmetric (half of each interaction on either side).
 //! Stationary point `xₛ = −½ B⁻¹ b`; the eigenvectors of `B` are the principal axes through it and the eigenvalues the
@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// An eigenvalue counts as zero below this share of the largest.
 const FLAT: f64 = 1e-9;
 
-/// What kind of place the stationary point is.
+/// The kind of the stationary point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Nature {
@@ -63,7 +63,7 @@ pub struct Canonical {
     pub natural: Vec<f64>,
     /// The surface there.
     pub value: f64,
-    /// What kind of place it is.
+    /// The kind of the point.
     pub nature: Nature,
     /// Whether it lies in the domain of every factor.
     pub inside: bool,
@@ -132,7 +132,7 @@ pub fn canonical(model: &Model) -> Option<Canonical> {
     } else {
         Nature::Saddle
     };
-    let (natural, inside) = place(model, &coded);
+    let (natural, inside) = located(model, &coded);
     let factors = model.axes.iter().map(|a| a.name.clone()).collect();
     Some(Canonical { factors, value: model.value_coded(&coded), coded, natural, nature, inside, axes })
 }
@@ -151,7 +151,7 @@ pub fn steepest_path(model: &Model, up: bool, radii: &[f64]) -> Option<Vec<PathP
     let axes = eigen(curved);
     let at = |&radius: &f64| {
         let coded = farthest_up(&linear, &axes, radius);
-        let (natural, inside) = place(model, &coded);
+        let (natural, inside) = located(model, &coded);
         PathPoint { radius, value: model.value_coded(&coded), coded, natural, inside }
     };
     Some(radii.iter().map(at).collect())
@@ -197,7 +197,7 @@ fn along_top_axis(mut x: Vec<f64>, axes: &[Principal], top: f64, radius: f64) ->
 }
 
 /// Natural units of a point and whether it lies in the domain.
-fn place(model: &Model, coded: &[f64]) -> (Vec<f64>, bool) {
+fn located(model: &Model, coded: &[f64]) -> (Vec<f64>, bool) {
     let natural: Vec<f64> = model.axes.iter().zip(coded).map(|(axis, &u)| axis.natural(u)).collect();
     let inside = model.axes.iter().zip(&natural).all(|(axis, &x)| axis.holds(x));
     (natural, inside)

@@ -1,5 +1,6 @@
 //! What can be wrong with a table or a model, each fault with the factor, the row and the remedy.
 
+use math::text::typed;
 use std::fmt;
 use thiserror::Error;
 
@@ -32,9 +33,20 @@ pub enum Fault {
         /// What was found.
         value: f64,
     },
+    /// Squares of a column are beyond what numbers of the machine hold.
+    #[error(
+        "`{column}` has values of the size {size}, whose squares no number of the machine holds; take another unit"
+    )]
+    Magnitude {
+        /// The column.
+        column: String,
+        /// Its largest value, or its spread.
+        size: String,
+    },
     /// A value is none of the declared levels of its factor.
     #[error(
-        "row {row}: `{factor}` is {value}, which is none of its levels {levels:?}; correct the row or add the level"
+        "row {row}: `{factor}` is {}, which is none of its levels {}; correct the row or add the level",
+        typed(*value), numbers(levels)
     )]
     UndeclaredLevel {
         /// The factor.
@@ -56,7 +68,8 @@ pub enum Fault {
     },
     /// A value has no logarithm.
     #[error(
-        "row {row}: factor `{factor}` is {value}, which has no logarithm; a logarithmic scale is for values above zero"
+        "row {row}: factor `{factor}` is {}, which has no logarithm; a logarithmic scale is for values above zero",
+        typed(*value)
     )]
     NotPositive {
         /// The factor.
@@ -82,7 +95,7 @@ pub enum Fault {
         missing: usize,
     },
     /// A response never changes.
-    #[error("response `{response}` is {value} in all {rows} usable rows; there is nothing to explain")]
+    #[error("response `{response}` is {} in all {rows} usable rows; there is nothing to explain", typed(*value))]
     ConstantResponse {
         /// The response.
         response: String,
@@ -218,6 +231,16 @@ impl fmt::Display for Faults {
         }
         Ok(())
     }
+}
+
+/// 1, 2.5, 4; the first of many.
+fn numbers(list: &[f64]) -> String {
+    const MOST: usize = 12;
+    let mut all: Vec<String> = list.iter().take(MOST).map(|value| typed(*value)).collect();
+    if list.len() > MOST {
+        all.push("…".to_owned());
+    }
+    all.join(", ")
 }
 
 /// `a`, `b` and `c`.

@@ -99,8 +99,8 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
     let critical = (freedom_of_error > 0).then(|| t_for_coverage(1.0 - alpha, freedom_of_error as f64));
     let effects = (0..size.len()).map(|i| {
         let own = &fitted.natural[i + 1];
-        let place = (size.iter().filter(|s| **s < size[i]).count()
-            + size[..i].iter().filter(|s| **s == size[i]).count()) as f64;
+        let rank = (size.iter().filter(|s| **s < size[i]).count() + size[..i].iter().filter(|s| **s == size[i]).count())
+            as f64;
         let signed = |c: &regression::Coefficient| c.estimate < own.estimate;
         let below = fitted.natural[1..].iter().filter(|c| signed(c)).count()
             + fitted.natural[1..=i].iter().filter(|c| c.estimate == own.estimate).count();
@@ -114,11 +114,11 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
             standardized: own.t,
             significant: own.t.zip(critical).map(|(t, limit)| t.abs() > limit),
             lenth_t: pse.map(|pse| 2.0 * own.estimate / pse),
-            rank: size.len() - place as usize,
+            rank: size.len() - rank as usize,
             share: size[i] * size[i] / squares(0.0),
             cumulative: squares(size[i]) / squares(0.0),
             normal: normal_quantile((below as f64 + 0.5) / m),
-            half_normal: normal_quantile(0.5 + 0.5 * (place + 0.5) / m),
+            half_normal: normal_quantile(0.5 + 0.5 * (rank + 0.5) / m),
             beyond_margin: margin.is_some_and(|limit| size[i] > limit),
             beyond_simultaneous: simultaneous.is_some_and(|limit| size[i] > limit),
         }

@@ -5,7 +5,7 @@
 //! stands beside it.
 
 use crate::interaction::Bond;
-use crate::law::{LEDGER, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
+use crate::law::{ENERGIES, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
 use crate::simd::{Row, WIDEST};
 use crate::space::Space;
 use std::ops::Range;
@@ -96,8 +96,8 @@ pub(crate) struct Chunk {
     pub(crate) rows: Vec<Row>,
     /// Force on the wall, `DIMENSION` rows a block; empty between particles.
     pub(crate) reactions: Vec<Row>,
-    /// What the contacts have spent, `LEDGER` rows a block; empty unless a run keeps the books.
-    pub(crate) ledger: Vec<Row>,
+    /// What the contacts have spent, `ENERGIES` rows a block; empty unless a run tracks its energy.
+    pub(crate) account: Vec<Row>,
 }
 
 /// Contacts of one class: between particles, or with one wall.
@@ -119,7 +119,7 @@ pub(crate) struct Section {
 }
 
 /// Chunk, block and lane of a contact.
-fn place(c: usize) -> (usize, usize, usize) {
+fn locate(c: usize) -> (usize, usize, usize) {
     (c / (CHUNK * WIDEST), c / WIDEST % CHUNK, c % WIDEST)
 }
 
@@ -136,20 +136,20 @@ impl Section {
 
     /// The key of contact `c`.
     pub(crate) fn key(&self, c: usize) -> Key {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         self.rank.key(self.chunks[chunk].ends[block].map(|end| end[lane]))
     }
 
     /// Row `row` of contact `c`.
     pub(crate) fn value<S: Space>(&self, c: usize, row: usize) -> f64 {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         let rows = self.law.rows::<S>();
         if row < rows { self.chunks[chunk].rows[block * rows + row].0[lane] } else { fresh::<S>()[row] }
     }
 
     /// The memory of contact `c`.
     pub(crate) fn memory<S: Space>(&self, c: usize) -> Memory {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         let rows = self.law.rows::<S>();
         let mut memory = fresh::<S>();
         let own = &self.chunks[chunk].rows[block * rows..(block + 1) * rows];
@@ -166,7 +166,7 @@ impl Section {
 
     /// Adds a contact at the end; `room` contacts are expected from here on, this one among them.
     pub(crate) fn push<S: Space>(&mut self, key: Key, memory: &Memory, room: usize) {
-        let (chunk, block, lane) = place(self.count);
+        let (chunk, block, lane) = locate(self.count);
         let rows = self.law.rows::<S>();
         if chunk == self.chunks.len() {
             let blocks = room.div_ceil(WIDEST).clamp(1, CHUNK);
@@ -213,7 +213,7 @@ impl Section {
 
     /// Force of contact `c` on the wall; the third component is 0 in the plane.
     pub(crate) fn reaction<S: Space>(&self, c: usize) -> [f64; 3] {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         let rows = &self.chunks[chunk].reactions[block * S::DIMENSION..];
         std::array::from_fn(|k| if k < S::DIMENSION { rows[k].0[lane] } else { 0.0 })
     }
@@ -221,28 +221,28 @@ impl Section {
     /// Opens the books.
     pub(crate) fn open_ledger(&mut self) {
         for chunk in &mut self.chunks {
-            chunk.ledger = vec![Row::default(); chunk.ends.len() * LEDGER];
+            chunk.account = vec![Row::default(); chunk.ends.len() * ENERGIES];
         }
     }
 
     /// What one contact has spent.
-    pub(crate) fn spent(&self, c: usize) -> [f64; LEDGER] {
-        let (chunk, block, lane) = place(c);
-        std::array::from_fn(|row| self.chunks[chunk].ledger[block * LEDGER + row].0[lane])
+    pub(crate) fn spent(&self, c: usize) -> [f64; ENERGIES] {
+        let (chunk, block, lane) = locate(c);
+        std::array::from_fn(|row| self.chunks[chunk].account[block * ENERGIES + row].0[lane])
     }
 
     /// Writes what one contact has spent.
-    pub(crate) fn book(&mut self, c: usize, spent: [f64; LEDGER]) {
-        let (chunk, block, lane) = place(c);
+    pub(crate) fn set_spent(&mut self, c: usize, spent: [f64; ENERGIES]) {
+        let (chunk, block, lane) = locate(c);
         for (row, energy) in spent.into_iter().enumerate() {
-            self.chunks[chunk].ledger[block * LEDGER + row].0[lane] = energy;
+            self.chunks[chunk].account[block * ENERGIES + row].0[lane] = energy;
         }
     }
 
-    /// Adds one row of the ledger of some contacts to `sum`, one by one: the order of the list decides the bits.
+    /// Adds one row of the account of some contacts to `sum`, one by one: the order of the list decides the bits.
     pub(crate) fn add_spent(&self, row: usize, contacts: Range<usize>, sum: &mut f64) {
-        for (chunk, block, lane) in contacts.map(place) {
-            *sum += self.chunks[chunk].ledger.get(block * LEDGER + row).map_or(0.0, |r| r.0[lane]);
+        for (chunk, block, lane) in contacts.map(locate) {
+            *sum += self.chunks[chunk].account.get(block * ENERGIES + row).map_or(0.0, |r| r.0[lane]);
         }
     }
 }
@@ -280,7 +280,7 @@ impl Reader {
         let memory = section.memory::<S>(*next);
         *next += 1;
         if *next % (CHUNK * WIDEST) == 0 {
-            section.chunks[place(*next - 1).0] = Chunk::default();
+            section.chunks[locate(*next - 1).0] = Chunk::default();
         }
         if *next == section.count {
             self.open();

@@ -42,48 +42,48 @@ impl<S: Space> Engine<S> {
 
     /// Centre of a particle, m.
     pub fn position(&self, particle: usize) -> Vector<S> {
-        self.position_of(self.place[particle] as usize)
+        self.position_of(self.index[particle] as usize)
     }
 
     /// Velocity of a particle, m/s.
     pub fn velocity(&self, particle: usize) -> Vector<S> {
-        body::velocity::<S>(&self.records, self.place[particle] as usize)
+        body::velocity::<S>(&self.records, self.index[particle] as usize)
     }
 
     /// Spin of a particle, rad/s.
     pub fn spin(&self, particle: usize) -> Spin<S> {
-        body::spin::<S>(&self.records, self.place[particle] as usize)
+        body::spin::<S>(&self.records, self.index[particle] as usize)
     }
 
     /// Radius of a particle, m.
     pub fn radius(&self, particle: usize) -> f64 {
-        self.radii[self.place[particle] as usize]
+        self.radii[self.index[particle] as usize]
     }
 
     /// Group of a particle.
     pub fn group(&self, particle: usize) -> Group {
-        self.groups[self.place[particle] as usize]
+        self.groups[self.index[particle] as usize]
     }
 
     /// Mass and inertia that move a ball: its own, or those of [`super::Masses::EqualStep`].
     pub fn moving_mass(&self, particle: usize) -> [f64; 2] {
-        self.moving[self.place[particle] as usize]
+        self.moving[self.index[particle] as usize]
     }
 
     /// Mass of a particle that belongs to no clump, kg.
     pub fn mass(&self, particle: usize) -> f64 {
-        self.masses[self.place[particle] as usize]
+        self.masses[self.index[particle] as usize]
     }
 
     /// The clump of a particle, by its place in the caller's list of clumps.
     pub fn clump_of(&self, particle: usize) -> Option<usize> {
-        let body = self.bodies[self.place[particle] as usize] as usize;
+        let body = self.bodies[self.index[particle] as usize] as usize;
         self.clump_caller.get(body).map(|&clump| clump as usize)
     }
 
     /// A particle as it is now.
     pub fn particle(&self, particle: usize) -> Particle<S> {
-        let p = self.place[particle] as usize;
+        let p = self.index[particle] as usize;
         Particle {
             position: self.position(particle),
             radius: self.radii[p],
@@ -110,7 +110,7 @@ impl<S: Space> Engine<S> {
 
     /// The constant force that [`apply`](Engine::apply) put on the body of a particle, N.
     pub fn applied_force(&self, particle: usize) -> Vector<S> {
-        let p = self.place[particle] as usize;
+        let p = self.index[particle] as usize;
         self.applied.get(&p).map_or(Vector::<S>::zero(), |load| load.0)
     }
 
@@ -126,7 +126,7 @@ impl<S: Space> Engine<S> {
 
     /// Whether a particle's velocity is prescribed.
     pub fn is_fixed(&self, particle: usize) -> bool {
-        self.fixed[self.place[particle] as usize][0]
+        self.fixed[self.index[particle] as usize][0]
     }
 
     fn rigid(&self, clump: usize) -> &Rigid<S> {

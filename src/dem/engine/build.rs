@@ -43,11 +43,11 @@ impl<S: Space> Engine<S> {
 
     fn empty(model: &Model<S>, caller: Vec<u32>, clump_of: &[u32]) -> Self {
         let n = caller.len();
-        let mut place = vec![0; n];
+        let mut index = vec![0; n];
         let mut bodies = vec![0; n];
         let mut single = model.clumps.len() as u32;
         for (p, &id) in caller.iter().enumerate() {
-            place[id as usize] = p as u32;
+            index[id as usize] = p as u32;
             bodies[p] = clump_of[id as usize];
             if bodies[p] == NO_CLUMP {
                 bodies[p] = single;
@@ -60,7 +60,7 @@ impl<S: Space> Engine<S> {
             table: model.contacts.clone(),
             classes: classes::<S>(&model.contacts),
             caller,
-            place,
+            index,
             groups: Vec::with_capacity(n),
             bodies,
             radii: Vec::with_capacity(n),
@@ -94,7 +94,7 @@ impl<S: Space> Engine<S> {
             dt: 0.0,
             step: 0,
             epoch: (0.0, 0),
-            books: None,
+            energy_sums: None,
         }
     }
 
@@ -119,7 +119,7 @@ impl<S: Space> Engine<S> {
 
     fn add_clumps(&mut self, model: &Model<S>) {
         // Pebbles of a clump stand together in the engine's order.
-        let first = |clump: &Clump<S>| clump.pebbles.iter().map(|&id| self.place[id] as usize).min().unwrap_or(0);
+        let first = |clump: &Clump<S>| clump.pebbles.iter().map(|&id| self.index[id] as usize).min().unwrap_or(0);
         let mut order: Vec<(usize, usize)> = model.clumps.iter().map(first).zip(0..).collect();
         order.sort_unstable();
         for (k, &(first, id)) in order.iter().enumerate() {

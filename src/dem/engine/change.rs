@@ -49,15 +49,15 @@ impl<S: Space> Engine<S> {
     }
 
     /// Multiplies the velocity and spin of every body, those that are held among them, and the velocity of every wall but a
-    /// servo's, which sets its own. The books take what that adds to the kinetic energy as given from outside.
+    /// servo's, which sets its own. The energy sums take what that adds to the kinetic energy as given from outside.
     ///
     /// # Errors
     /// A factor that is negative or not finite.
     pub fn scale_motion(&mut self, factor: f64) -> Result<(), Faults> {
         super::validate::check_factor(factor)?;
-        if self.books.is_some() {
+        if self.energy_sums.is_some() {
             let given = (factor * factor - 1.0) * kinetic(self);
-            self.books.iter_mut().for_each(|books| books.bodies[1] += given);
+            self.energy_sums.iter_mut().for_each(|sums| sums.bodies[1] += given);
         }
         for p in (0..self.caller.len()).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
             let (x, v) = (self.position_of(p), crate::body::velocity::<S>(&self.records, p));
@@ -241,10 +241,10 @@ impl<S: Space> Engine<S> {
     /// Threads of a run from now on: at least one, at most one for every 64 particles. Results do not depend on it.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
-        let ledgers = self.ledgers();
+        let accounts = self.accounts();
         self.rewrite(&[], |_, _, _| ());
-        if let Some(ledgers) = ledgers {
-            self.reopen(ledgers);
+        if let Some(accounts) = accounts {
+            self.reopen(accounts);
         }
     }
 

@@ -29,6 +29,7 @@ use super::relax::Until;
 use super::sizes::{GivesWay, Sizes};
 use crate::Watch;
 use crate::space::{D2, Space, Tuple, Vector};
+use crate::words::{Number, Quantity};
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -104,7 +105,8 @@ pub enum PackingError {
     },
     /// Too few balls.
     #[error(
-        "packing: a mean radius of {mean_radius} m gives {count} balls in the specimen; at least 30 are needed, reduce it"
+        "packing: a mean radius of {} gives {count} balls in the specimen; at least 30 are needed, reduce it",
+        Quantity(*.mean_radius, "m")
     )]
     Few {
         /// Mean radius asked for (m).
@@ -114,8 +116,9 @@ pub enum PackingError {
     },
     /// Too many balls.
     #[error(
-        "packing: a mean radius of {mean_radius} m gives {count:.3e} balls in the specimen, which would take about {gigabytes:.0} GB \
-         of memory and {hours:.1} h to pack; at most {MOST_BALLS:e} are packed, enlarge the radius"
+        "packing: a mean radius of {} gives {count:.2e} balls in the specimen, which would take about {} GB of memory and \
+         {} h to pack; at most {MOST_BALLS:e} are packed, enlarge the radius",
+        Quantity(*.mean_radius, "m"), Number(*.gigabytes), Number(*.hours)
     )]
     Many {
         /// Mean radius asked for (m).
@@ -129,8 +132,9 @@ pub enum PackingError {
     },
     /// Balls too large for the vessel.
     #[error(
-        "packing: the largest ball has a diameter of {diameter:.3e} m and the specimen is {narrowest:.3e} m across; at most half of that fits, \
-         reduce the radius or the ratio of radii"
+        "packing: the largest ball has a diameter of {} and the specimen is {} across; at most half of that fits, \
+         reduce the radius or the ratio of radii",
+        Quantity(*.diameter, "m"), Quantity(*.narrowest, "m")
     )]
     Large {
         /// Largest diameter (m).
@@ -192,7 +196,8 @@ pub enum PackingError {
     },
     /// The stress was not reached.
     #[error(
-        "packing: the stress is {reached:.3e} Pa after {scalings} scalings of the radii, not {target:.3e} Pa; widen the tolerance"
+        "packing: the stress is {} after {scalings} scalings of the radii, not {}; widen the tolerance",
+        Quantity(*.reached, "Pa"), Quantity(*.target, "Pa")
     )]
     Unsettled {
         /// Stress asked for (Pa).
@@ -202,6 +207,26 @@ pub enum PackingError {
         /// Scalings spent.
         scalings: usize,
     },
+}
+
+impl PackingError {
+    /// Whether packing came to this, which no look at the settings could foresee: another seed may come to something else.
+    pub fn is_outcome(&self) -> bool {
+        match self {
+            Self::Loose { .. }
+            | Self::Dense { .. }
+            | Self::Escaped { .. }
+            | Self::Restless { .. }
+            | Self::Unsettled { .. } => true,
+            Self::Value { .. }
+            | Self::List { .. }
+            | Self::Few { .. }
+            | Self::Many { .. }
+            | Self::Large { .. }
+            | Self::Dimension { .. }
+            | Self::Stopped => false,
+        }
+    }
 }
 
 /// Most balls that are packed.

@@ -23,6 +23,7 @@ use super::stones::StoneFault;
 use crate::Watch;
 use crate::particle::Group;
 use crate::space::{D2, Space, Vector, flat};
+use crate::words::Quantity;
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -128,7 +129,8 @@ pub enum SpecimenError {
     },
     /// Aggregate larger than the specimen.
     #[error(
-        "aggregate: particles of {size:.3e} m with {gap:.3e} m to the walls do not fit into a specimen {narrowest:.3e} m across"
+        "aggregate: particles of {} with {} to the walls do not fit into a specimen {} across",
+        Quantity(*.size, "m"), Quantity(*.gap, "m"), Quantity(*.narrowest, "m")
     )]
     LargeAggregate {
         /// Largest diameter (m).
@@ -139,8 +141,28 @@ pub enum SpecimenError {
         narrowest: f64,
     },
     /// More polygons than can be placed.
-    #[error("aggregate: {0:.3e} particles are too many; at most {MOST_POLYGONS:e} are placed: take larger sizes")]
+    #[error("aggregate: {0:.2e} particles are too many; at most {MOST_POLYGONS:e} are placed: take larger sizes")]
     ManyAggregate(f64),
+}
+
+impl SpecimenError {
+    /// Whether packing or placing came to this, which no look at the settings could foresee: another seed may come to
+    /// something else.
+    pub fn is_outcome(&self) -> bool {
+        match self {
+            Self::Packing(packing) => packing.is_outcome(),
+            Self::Placement(_) | Self::Stones(StoneFault::NoPlace { .. }) => true,
+            Self::Gradation(_)
+            | Self::Stones(_)
+            | Self::Polygon(_)
+            | Self::Groups(_)
+            | Self::Value { .. }
+            | Self::SolidAggregate
+            | Self::NoAggregate { .. }
+            | Self::LargeAggregate { .. }
+            | Self::ManyAggregate(_) => false,
+        }
+    }
 }
 
 /// Most polygons that are placed.

@@ -6,7 +6,7 @@
 
 use super::linear::{followed, slip_energy};
 use super::{
-    BROKEN, Broken, Constants, DASHPOT, KN, Law, Layout, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear,
+    Account, BROKEN, Broken, Constants, DASHPOT, KN, Law, Layout, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear,
     store_shear,
 };
 use crate::simd::{Lane, Row};
@@ -28,7 +28,7 @@ impl<S: Space> Law<S> for ContactBondLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
         let (zero, infinite) = (L::splat(0.0), L::splat(f64::INFINITY));
         let kn = L::load(&rows[KN], at);
@@ -57,7 +57,7 @@ impl<S: Space> Law<S> for ContactBondLaw {
             let held = L::select(broken, free, reference);
             L::select(before, held, free).store(&mut rows[REFERENCE], at);
         }
-        if ledger.open() {
+        if account.open() {
             // A break spends the pull of the spring and the shear force that is not kept; a slip what friction takes.
             let pull = (-elastic).max(zero);
             let half = L::splat(0.5);
@@ -65,8 +65,8 @@ impl<S: Space> Law<S> for ContactBondLaw {
             let lost = half * (trial.dot(trial) - shear.dot(shear)) / floor(ks);
             let broke = L::select(broken, half * pull * pull / floor(kn) + lost, zero);
             let slip = slip_energy::<S, L>(old, trial, shear, ks);
-            ledger.charge(BROKEN, at, broke);
-            ledger.charge(SLIP, at, L::select(broken, zero, slip));
+            account.charge(BROKEN, at, broke);
+            account.charge(SLIP, at, L::select(broken, zero, slip));
         }
         let breaks = (L::bits(broken) != 0).then(|| {
             L::select(broken, infinite, capacity[0]).store(&mut rows[Rows::<S>::TENSION], at);
@@ -82,8 +82,8 @@ impl<S: Space> Law<S> for ContactBondLaw {
             let shear = touch.slide.times(active * viscous.shear);
             load.normal = load.normal + normal;
             load.shear = load.shear.plus(shear);
-            if ledger.open() {
-                ledger.charge(DASHPOT, at, normal * touch.opening + shear.dot(touch.slide));
+            if account.open() {
+                account.charge(DASHPOT, at, normal * touch.opening + shear.dot(touch.slide));
             }
         }
         (load, breaks)

@@ -17,7 +17,7 @@
 //! There is no linear spring beside the interface. A contact that never had one is linear.
 
 use super::linear::spring;
-use super::{BROKEN, Broken, Constants, KN, Law, Ledger, Memory, Piece, Rows, SLIP, Viscous, load_shear, store_shear};
+use super::{Account, BROKEN, Broken, Constants, KN, Law, Memory, Piece, Rows, SLIP, Viscous, load_shear, store_shear};
 use crate::interaction::Division;
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple, Vector};
@@ -277,7 +277,7 @@ impl<L: Lane> Faces<L> {
         arm: [f64; 2],
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
         sums: &mut Sums<L>,
     ) -> Option<Broken<L>> {
         let (zero, infinite, solid) = (L::splat(0.0), L::splat(f64::INFINITY), S::DIMENSION == 3);
@@ -309,8 +309,8 @@ impl<L: Lane> Faces<L> {
             let limit = L::splat(constants.friction) * (-normal).max(zero);
             let held = limited::<S, L>(trial, limit);
             shear = [0, 1].map(|k| L::select(after, trial[k], held[k]));
-            if ledger.open() {
-                self.charge([old, trial, shear], [before, broken], gap, half, at, ledger);
+            if account.open() {
+                self.charge([old, trial, shear], [before, broken], gap, half, at, account);
             }
         }
         shear[0].store(&mut rows[1], at);
@@ -331,7 +331,7 @@ impl<L: Lane> Faces<L> {
         })
     }
 
-    /// Books what a slip or a break spent; shear forces: before, unlimited, now.
+    /// EnergySums what a slip or a break spent; shear forces: before, unlimited, now.
     #[inline(always)]
     fn charge(
         &self,
@@ -340,17 +340,17 @@ impl<L: Lane> Faces<L> {
         gap: L,
         half: L,
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) {
         let zero = L::splat(0.0);
         let floor = |x: L| x.max(L::splat(f64::MIN_POSITIVE));
         let lost = trial.minus(now);
         let slip = L::splat(0.5) * old.plus(now).dot(lost) / floor(self.ks);
-        ledger.charge(SLIP, at, L::select(before, zero, slip));
+        account.charge(SLIP, at, L::select(before, zero, slip));
         let swing = half * self.tilt[0].abs();
         let normal = self.kn * (square(gap, swing, true) - square(gap, swing, false));
         let shear = L::splat(0.5) * (trial.dot(trial) - now.dot(now)) / floor(self.ks);
-        ledger.charge(BROKEN, at, L::select(broken, normal + shear, zero));
+        account.charge(BROKEN, at, L::select(broken, normal + shear, zero));
     }
 }
 
@@ -392,9 +392,9 @@ impl<S: Space> Law<S> for FlatJointLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
-        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, ledger);
+        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, account);
         let zero = L::splat(0.0);
         let (solid, share) = (S::DIMENSION == 3, L::splat(1.0 / f64::from(constants.layout.count)));
         let radius = L::splat(constants.multiplier) * touch.radius;
@@ -423,7 +423,7 @@ impl<S: Space> Law<S> for FlatJointLaw {
         let mut breaks: Option<Broken<L>> = None;
         let elements = rows[Own::<S>::ELEMENTS..].chunks_exact_mut(Own::<S>::STRIDE);
         for (element, arm) in elements.zip(&constants.layout.arms) {
-            let broken = faces.element::<S>(constants, *arm, element, at, ledger, &mut sums);
+            let broken = faces.element::<S>(constants, *arm, element, at, account, &mut sums);
             breaks = match (breaks, broken) {
                 (Some(a), Some(b)) => {
                     Some(Broken { tension: L::or(a.tension, b.tension), shear: L::or(a.shear, b.shear) })

@@ -163,11 +163,11 @@ pub(crate) struct Broken<L: Lane> {
     pub(crate) shear: L::Mask,
 }
 
-/// What contacts have spent, if a run keeps the books: rows of a block in J.
-pub(crate) struct Ledger<'a>(pub(crate) Option<&'a mut [Row]>);
+/// What contacts have spent, if a run tracks its energy: rows of a block in J.
+pub(crate) struct Account<'a>(pub(crate) Option<&'a mut [Row]>);
 
-/// Rows of a block's ledger.
-pub(crate) const LEDGER: usize = 4;
+/// Rows of a block's account.
+pub(crate) const ENERGIES: usize = 4;
 /// Friction.
 pub(crate) const SLIP: usize = 0;
 /// Dashpots.
@@ -177,8 +177,8 @@ pub(crate) const BROKEN: usize = 2;
 /// Work of a moving wall.
 pub(crate) const BOUNDARY: usize = 3;
 
-impl Ledger<'_> {
-    /// Whether anybody keeps the books.
+impl Account<'_> {
+    /// Whether the run tracks its energy.
     #[inline(always)]
     pub(crate) fn open(&self) -> bool {
         self.0.is_some()
@@ -217,7 +217,7 @@ pub(crate) trait Law<S: Space> {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>);
 }
 

@@ -8,7 +8,7 @@
 //! (both sides multiplied by A). A broken bond vanishes at once; the linear contact stays.
 
 use super::linear::spring;
-use super::{BROKEN, Broken, Constants, Law, Layout, Ledger, Rows, Viscous, load_shear, store_shear};
+use super::{Account, BROKEN, Broken, Constants, Law, Layout, Rows, Viscous, load_shear, store_shear};
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple};
 
@@ -119,9 +119,9 @@ impl<S: Space> Law<S> for ParallelBondLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
-        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, ledger);
+        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, account);
         let radius = L::splat(constants.multiplier) * touch.radius;
         let k = L::load(&rows[Rows::<S>::BOND], at);
         let ks = k * L::splat(constants.bond_share);
@@ -141,9 +141,9 @@ impl<S: Space> Law<S> for ParallelBondLaw {
             let [tension, sheared] = cement.exceeds(constants, radius, capacity);
             let broken = L::or(tension, sheared);
             (L::bits(broken) != 0).then(|| {
-                if ledger.open() {
+                if account.open() {
                     let energy = cement.energy(k, ks, gyration);
-                    ledger.charge(BROKEN, at, L::select(broken, energy, L::splat(0.0)));
+                    account.charge(BROKEN, at, L::select(broken, energy, L::splat(0.0)));
                 }
                 cement = cement.without(broken);
                 L::select(broken, L::splat(0.0), k).store(&mut rows[Rows::<S>::BOND], at);

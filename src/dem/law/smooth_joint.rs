@@ -12,7 +12,7 @@
 //!
 //! The forces act at the contact point; there is no moment of the joint's own. n stays as it was laid.
 
-use super::{BROKEN, Broken, Constants, KN, Law, Layout, Ledger, Memory, Rows, SLIP, Viscous, store_shear};
+use super::{Account, BROKEN, Broken, Constants, KN, Law, Layout, Memory, Rows, SLIP, Viscous, store_shear};
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple, Vector};
 
@@ -89,7 +89,7 @@ impl<S: Space> Law<S> for SmoothJointLaw {
         _viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
         let (zero, infinite) = (L::splat(0.0), L::splat(f64::INFINITY));
         let floor = |x: L| x.max(L::splat(f64::MIN_POSITIVE));
@@ -123,15 +123,15 @@ impl<S: Space> Law<S> for SmoothJointLaw {
         for k in 0..S::DIMENSION {
             shear.at(k).store(&mut rows[Own::<S>::SHEAR + k], at);
         }
-        if ledger.open() {
+        if account.open() {
             let half = L::splat(0.5);
             let lost = half * (trial.dot(trial) - shear.dot(shear)) / floor(ks);
             let pull = half * kn * (opening * opening - opening.min(zero) * opening.min(zero));
-            ledger.charge(BROKEN, at, L::select(broken, lost + pull, zero));
+            account.charge(BROKEN, at, L::select(broken, lost + pull, zero));
             // Friction pays for the pressure that the dilation adds.
             let friction = half * old.plus(shear).dot(trial.minus(shear)) / floor(ks);
             let lifted = half * kn * (left * left - opening * opening);
-            ledger.charge(SLIP, at, L::select(held, zero, friction - L::select(zero.above(opening), lifted, zero)));
+            account.charge(SLIP, at, L::select(held, zero, friction - L::select(zero.above(opening), lifted, zero)));
         }
         let force = plane.times(normal).plus(shear);
         let along = force.dot(touch.normal);

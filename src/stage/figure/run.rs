@@ -1,6 +1,7 @@
 //! Figures of a specimen and of one run on it: curves, cracks, forces, particles.
 
 use super::super::StageError;
+use super::super::specimen::stored;
 use super::source::Sources;
 use super::{Params, space};
 use crate::artifact::run::{CrackMode, Cracks as StoredCracks, Curve as Stored, Run};
@@ -90,7 +91,7 @@ fn outlines(specimen: &StoredSpecimen) -> Vec<Vec<[f64; 2]>> {
 }
 
 pub(super) fn specimen(sources: &Sources) -> Result<Box<dyn Picture>, StageError> {
-    let stored = StoredSpecimen::from_artifact(sources.first()?.0)?;
+    let stored = stored(sources.first()?.0)?;
     if stored.centres.ncols() == 3 {
         return Ok(Box::new(space::solid(&stored)));
     }
@@ -129,7 +130,7 @@ struct Ground {
 /// Domain and polygons: of the specimen when it is given, else around the points.
 fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
     if let Some(specimen) = sources.compare.first() {
-        let specimen = StoredSpecimen::from_artifact(specimen.0)?;
+        let specimen = stored(specimen.0)?;
         let (low, high) = domain(&specimen);
         return Ok(Ground { outline: outline(&specimen), low, high, polygons: outlines(&specimen) });
     }

@@ -1,5 +1,6 @@
 //! Specimens, cracks and stones in space. The axis of loading, the second of a specimen, points up on the page.
 
+use super::super::specimen::stored;
 use super::super::{StageError, shapes};
 use super::run::{MM, groups, modes};
 use super::source::Sources;
@@ -48,7 +49,7 @@ pub(super) fn cracks(run: &Run, sources: &Sources) -> Result<Solid, StageError> 
     };
     let cracks: Vec<Penny> = (0..mode.len()).map(penny).collect();
     let solid = match sources.compare.first() {
-        Some(specimen) => frame(&StoredSpecimen::from_artifact(specimen.0)?),
+        Some(specimen) => frame(&stored(specimen.0)?),
         None => {
             let axis = |k: usize| figure::axis::extent(cracks.iter().map(|crack| crack.at[k]));
             let ends = [0, 1, 2].map(axis);

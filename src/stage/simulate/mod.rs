@@ -32,6 +32,8 @@ use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError, Step, Task,
     Work,
 };
+use crate::artifact::run::{Responses, Run};
+use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use config::Params;
 use dem::Space;
@@ -148,7 +150,11 @@ impl Kind for Simulate {
 const REPORT_EVERY: usize = 50;
 
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
-    match super::specimen::load(job.input("specimen")?)? {
+    let specimen = job.input("specimen")?;
+    if let Some(why) = Stored::from_artifact(specimen).map_err(StageError::from)?.failure {
+        return Ok(Run::plain(&format!("no specimen: {why}"), Responses::default()).to_artifact());
+    }
+    match super::specimen::load(specimen)? {
         Loaded::Plane(specimen) => tested(job, &Piece::from(&specimen)),
         Loaded::Solid(specimen) => tested(job, &Piece::from(&specimen)),
     }

@@ -9,9 +9,12 @@
 //! | thick disc, its axis across the load | `diameter`, `depth` |
 //!
 //! Packed to a `porosity`, or as `[stage.NAME.packing]` says: to a `stress`, or as a `lattice`. Replicate k is another
-//! packing and another aggregate of the same recipe. In a box or cylinder, `[stage.NAME.stones]` places stones of the shapes of a
-//! `shapes` stage, and the balls are the mortar between them, at a `porosity` of that room. A replicate's seed comes from the workflow's seed and k. What is computed and
-//! why: [`dem::genesis`].
+//! packing and another aggregate of the same recipe; its seed comes from the workflow's seed and k. In a box or cylinder,
+//! `[stage.NAME.stones]` places stones of the shapes of a `shapes` stage, and the balls are the mortar between them, at a
+//! `porosity` of that room. What is computed and why: [`dem::genesis`].
+//!
+//! A packing that comes to nothing (overlaps beyond half a radius, no rest) is a result with its reason, as a test without
+//! a peak is: of a design, the rows on that packing have no result, and the others go on.
 
 mod aggregate;
 mod config;
@@ -23,7 +26,7 @@ mod stored;
 pub use aggregate::{AggregateConfig, GradationName};
 pub use config::{ClassesConfig, PackingConfig, SieveConfig, SizeName, Specimen};
 pub use stones::{FullerConfig, StoneClassConfig, StonesConfig};
-pub use stored::{Loaded, load};
+pub use stored::{Loaded, load, stored};
 
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
@@ -83,6 +86,10 @@ impl Stage for Specimen {
         Ok(Step::Finish(self.task(known, 1).map_err(faults)?))
     }
 
+    fn unmet(&self, result: &Artifact) -> Option<String> {
+        Stored::from_artifact(result).ok()?.failure
+    }
+
     fn replicate(&self, known: &Known, number: u64) -> Option<Task> {
         self.task(known, number).ok()
     }
@@ -102,16 +109,23 @@ impl Kind for Specimen {
 fn make(job: &Job) -> Result<Artifact, Failure> {
     let recipe: Recipe = job.params()?;
     let seed = job.seed.ok_or_else(|| StageError::new("a specimen needs a seed"))?;
-    match recipe.region.dimension() {
-        2 => made::<D2>(&recipe, seed, job).map_err(failure),
-        _ => made::<D3>(&recipe, seed, job).map_err(failure),
-    }
+    let made = match recipe.region.dimension() {
+        2 => made::<D2>(&recipe, seed, job),
+        _ => made::<D3>(&recipe, seed, job),
+    };
+    made.or_else(|faults| unmade(&recipe, &faults, job))
 }
 
-fn failure(faults: Vec<SpecimenError>) -> Failure {
-    match faults[..] {
-        [SpecimenError::Packing(PackingError::Stopped)] => Failure::Stopped,
-        _ => StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")).into(),
+/// What is stored where packing came to nothing, so that the rows that rest on this specimen alone are without a result.
+fn unmade(recipe: &Recipe, faults: &[SpecimenError], job: &Job) -> Result<Artifact, Failure> {
+    let words = faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+    match faults {
+        [SpecimenError::Packing(PackingError::Stopped)] => Err(Failure::Stopped),
+        [fault] if fault.is_outcome() => {
+            (job.say)(Progress::warning(fault));
+            Ok(stored::nothing(&recipe.region, recipe.density, words).to_artifact())
+        }
+        _ => Err(StageError::new(words).into()),
     }
 }
 
@@ -126,7 +140,10 @@ fn mixed(job: &Job) -> Result<Artifact, Failure> {
     let Mixture { recipe, mix } = job.params()?;
     let seed = job.seed.ok_or_else(|| StageError::new("a specimen needs a seed"))?;
     let shapes: Vec<_> = shapes::load(job.input("shapes")?)?.into_iter().map(stones::template).collect();
-    let (made, quality, report) = mix.make(&recipe, &shapes, seed, &|| job.watch()).map_err(failure)?;
+    let (made, quality, report) = match mix.make(&recipe, &shapes, seed, &|| job.watch()) {
+        Ok(made) => made,
+        Err(faults) => return unmade(&recipe, &faults, job),
+    };
     quality.warnings().iter().for_each(|warning| (job.say)(Progress::warning(warning)));
     let mut stored = stored::store(&made, &quality);
     stored.quality = report::with_mix(stored.quality, &report, quality.contacts);

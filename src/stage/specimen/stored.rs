@@ -97,15 +97,51 @@ pub(super) fn store<S: Space>(made: &Specimen<S>, quality: &Quality) -> Stored {
         vertices: made.polygons.iter().flat_map(|p| p.vertices.iter().copied()).collect(),
         quality: report(quality, if S::DIMENSION == 2 { "discs" } else { "spheres" }, &made.group_names),
         warnings: quality.warnings().iter().map(ToString::to_string).collect(),
+        failure: None,
+    }
+}
+
+/// A specimen of this outline that could not be made.
+pub(super) fn nothing(region: &Region, density: f64, why: String) -> Stored {
+    let [width, height, depth] = region.edges();
+    Stored {
+        outline: region.name().to_owned(),
+        width,
+        height,
+        depth,
+        density,
+        centres: Array2::zeros((0, region.dimension())),
+        radii: Vec::new(),
+        group_of: Vec::new(),
+        groups: Vec::new(),
+        clump_of: Vec::new(),
+        clumps: Table { about: "rigid clumps".to_owned(), columns: Vec::new() },
+        polygon_of: Vec::new(),
+        vertices: Vec::new(),
+        quality: Table { about: "quality of the specimen".to_owned(), columns: Vec::new() },
+        warnings: vec![why.clone()],
+        failure: Some(why),
+    }
+}
+
+/// The stored specimen in an artifact, as one reads it that needs its balls.
+///
+/// # Errors
+/// The artifact is no specimen, or says why the specimen could not be made.
+pub fn stored(artifact: &Artifact) -> Result<Stored, StageError> {
+    let stored = Stored::from_artifact(artifact)?;
+    match stored.failure {
+        Some(why) => Err(StageError::new(why)),
+        None => Ok(stored),
     }
 }
 
 /// The specimen in a stored artifact, for tests on it.
 ///
 /// # Errors
-/// What is missing or does not fit together.
+/// It could not be made; or what is missing or does not fit together.
 pub fn load(artifact: &Artifact) -> Result<Loaded, StageError> {
-    let stored = Stored::from_artifact(artifact).map_err(|wanted| StageError::new(wanted.to_string()))?;
+    let stored = stored(artifact)?;
     let region = Region::named(&stored.outline, [stored.width, stored.height, stored.depth]);
     let region = region.ok_or_else(|| odd("outline"))?;
     match (region.dimension(), stored.centres.ncols()) {

@@ -156,7 +156,7 @@ fn monstrous_and_impossible_packings_are_refused_before_they_run() {
     let plane = "width = '0.1 m'\nheight = '0.2 m'\ndensity = '2650 kg/m^3'\nradius_ratio = 2.5\n";
     let of = |keys: &str| messages(&format!("{plane}{keys}"));
     let tiny = of("mean_radius = '1 nm'\nporosity = 0.12");
-    assert!(tiny.len() == 1 && tiny[0].starts_with("mean_radius:") && tiny[0].contains("5.602e15"), "{tiny:?}");
+    assert!(tiny.len() == 1 && tiny[0].starts_with("mean_radius:") && tiny[0].contains("5.60e15"), "{tiny:?}");
     let loose = of("mean_radius = '1 mm'\nporosity = 0.9");
     assert!(loose.len() == 1 && loose[0].starts_with("porosity:"), "{loose:?}");
     let one = of("mean_radius = '50 mm'\nporosity = 0.12");
@@ -165,4 +165,31 @@ fn monstrous_and_impossible_packings_are_refused_before_they_run() {
         "width = '0.1 m'\nheight = '0.2 m'\ndensity = '2650 kg/m^3'\nradius_ratio = 100\nmean_radius = '1 mm'\nporosity = 0.12",
     );
     assert!(wide.len() == 1 && wide[0].starts_with("radius_ratio:"), "{wide:?}");
+}
+
+/// A stress of a twentieth of the modulus swallows the small ones of discs whose radii differ tenfold.
+#[test]
+fn a_packing_that_comes_to_nothing_is_a_result_with_its_reason() {
+    let config = read(
+        "diameter = '20 mm'\nsmallest_radius = '0.2 mm'\nradius_ratio = 10\ngives_way = 'number'\n\
+         density = '2600 kg/m^3'\npacking = { stress = '50 MPa', modulus = '1 GPa' }",
+    );
+    let (params, said) = (serde_json::to_value(config.recipe().unwrap()).unwrap(), std::sync::Mutex::new(Vec::new()));
+    let job = Job {
+        params: &params,
+        seed: Some(1),
+        inputs: &[],
+        files: &[],
+        threads: &|| 1,
+        time_limit: None,
+        say: &|progress| said.lock().unwrap().push(progress.note),
+        stop: &std::sync::atomic::AtomicBool::new(false),
+    };
+    let artifact = make(&job).unwrap();
+    let failure = Stored::from_artifact(&artifact).unwrap().failure.unwrap();
+    assert!(failure.starts_with("packing: overlaps reach"), "{failure}");
+    assert_eq!(*said.lock().unwrap(), [failure.clone()]);
+    assert_eq!(config.unmet(&artifact), Some(failure.clone()));
+    // Nobody takes it for a specimen without balls.
+    assert_eq!(load(&artifact).unwrap_err().message, failure);
 }

@@ -196,3 +196,33 @@ fn values_in_another_unit_are_converted() {
     let error = run(params, &[("of", ours), ("compare", runs("", 1.0, "mm", 1.0))]).unwrap_err().to_string();
     assert!(error.contains("column `UCS` is in `mm` and cannot be read in `MPa`"), "{error}");
 }
+
+/// Two radii and two ratios, one of the four cells twice, one without a row and one without a value.
+#[test]
+fn a_column_is_spread_over_two_others() {
+    let table = Data::default()
+        .reals_column("R_min", "mm", "", vec![0.4, 0.1, 0.1, 0.4])
+        .ints_column("ratio", "", vec![2, 10, 10, 10])
+        .reals_column("estimate", "MPa", "", vec![0.75, 2.0, 4.0, f64::NAN])
+        .texts_column("term", "", vec!["a".into(); 4]);
+    let groups = Arc::new(Artifact::of(ArtifactKind::GROUPS, Group::new().with("groups", Node::Table(table))));
+    let spread = |value: &str| {
+        let pivot = json!({ "down": "R_min", "across": "ratio", "value": value });
+        let symbols = json!({ "ratio": r"\rho" });
+        run(json!({ "pivot": pivot, "digits": 3, "symbols": symbols }), &[("of", groups.clone())])
+    };
+    let made = spread("estimate").unwrap();
+    assert_eq!(text(&made, "csv"), "R_min [mm],ratio 2 [MPa],ratio 10 [MPa]\n0.1,,3\n0.4,0.75,\n");
+    let markdown = text(&made, "markdown");
+    assert!(markdown.starts_with(r"| R\_min / mm | $\rho = 2$ / MPa | $\rho = 10$ / MPa |"), "{markdown}");
+    let Err(Failure::Failed(error)) = spread("term") else { panic!("words in cells") };
+    assert_eq!(error.message, "`pivot` names `term`, which holds words");
+}
+
+#[test]
+fn columns_beside_a_pivot_are_a_complaint() {
+    let table: Table =
+        toml::from_str("of = 'K'\ncolumns = ['a']\npivot = { down = 'a', across = 'b', value = 'c' }").unwrap();
+    let messages: Vec<String> = table.check(&Context::default()).into_iter().map(|c| c.message).collect();
+    assert_eq!(messages, ["`columns` has no effect with `pivot`"]);
+}

@@ -29,7 +29,7 @@ pub(super) fn printed(artifact: &Artifact, params: &Params) -> Result<(Vec<Colum
     let judged = params.invalid.judge(runs)?;
     let mut columns = chosen(table, params, &|row| !judged.leaves_out(row))?;
     let said = of_runs(runs, judged.verdict());
-    let marked = params.invalid == Invalid::Keep && judged.sentence().is_some();
+    let marked = params.invalid == Invalid::Keep && judged.sentence().is_some() && params.pivot.is_none();
     if marked && columns.iter().all(|column| column.key != MARK) {
         columns.extend(named(table, &[MARK.to_owned()], params, &chosen_rows(table, params, &|_| true)?)?);
     }

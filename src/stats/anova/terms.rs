@@ -87,8 +87,8 @@ pub(super) fn chosen_terms(sample: &Sample, usable: &Usable, settings: &Settings
     match &settings.interactions {
         Interactions::None => {}
         Interactions::Named(pairs) => {
-            let place = |name: &String| names.iter().position(|n| n == name);
-            terms.extend(pairs.iter().filter_map(|(a, b)| Some(vec![place(a)?, place(b)?])));
+            let index = |name: &String| names.iter().position(|n| n == name);
+            terms.extend(pairs.iter().filter_map(|(a, b)| Some(vec![index(a)?, index(b)?])));
         }
         Interactions::Estimable => return estimable(sample, usable, &names, terms, levels),
     }

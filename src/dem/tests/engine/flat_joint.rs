@@ -346,7 +346,7 @@ fn keeps<S: Space>(joint: FlatJoint) {
     let mut engine = Engine::new(&model::<S>(balls, vec![], law, settings)).unwrap();
     engine.install_bonds(1e-12, 1).unwrap();
     engine.set_motion(1, along::<S>(0, -0.02), about::<S>(0.05)).unwrap();
-    engine.keep_books();
+    engine.track_energy();
     let start = measure::energy(&engine).initial;
     let mut stored: f64 = 0.0;
     for _ in 0..60 {

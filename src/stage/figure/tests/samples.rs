@@ -85,6 +85,7 @@ pub(super) fn specimen() -> Artifact {
         vertices: vec![[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]],
         quality: table(),
         warnings: Vec::new(),
+        failure: None,
     };
     specimen.to_artifact()
 }

@@ -19,6 +19,7 @@ fn cube() -> Artifact {
         vertices: Vec::new(),
         quality: table(),
         warnings: Vec::new(),
+        failure: None,
     };
     stored.to_artifact()
 }

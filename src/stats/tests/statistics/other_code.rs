@@ -61,13 +61,13 @@ pub(super) fn columns(file: &str, names: &[&str]) -> Vec<Vec<f64>> {
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
     let heads = reader.headers().unwrap().clone();
-    let place = |name: &str| heads.iter().position(|h| h.split(' ').next() == Some(name)).unwrap();
-    let places: Vec<usize> = names.iter().map(|n| place(n)).collect();
+    let column = |name: &str| heads.iter().position(|h| h.split(' ').next() == Some(name)).unwrap();
+    let columns: Vec<usize> = names.iter().map(|n| column(n)).collect();
     let mut found = vec![Vec::new(); names.len()];
     for row in reader.records() {
         let row = row.unwrap();
-        for (values, &place) in found.iter_mut().zip(&places) {
-            values.push(row[place].parse().unwrap());
+        for (values, &column) in found.iter_mut().zip(&columns) {
+            values.push(row[column].parse().unwrap());
         }
     }
     found
@@ -146,18 +146,18 @@ fn point_agrees(found: &Regression, set: &Table) {
 }
 
 fn canonical_agrees(found: &Regression, set: &Table) {
-    let place = canonical(&found.model).unwrap();
-    all_close(place.axes.iter().map(|a| a.eigenvalue), &numbers(&set["eigenvalues"]), 1e-9, "eigenvalues");
-    all_close(place.coded.iter().copied(), &numbers(&set["stationary"]), 1e-9, "stationary point");
-    close(place.value, number(&set["stationary_value"]), 1e-10, "stationary value");
-    let up = place.axes.iter().filter(|a| a.eigenvalue > 0.0).count();
+    let point = canonical(&found.model).unwrap();
+    all_close(point.axes.iter().map(|a| a.eigenvalue), &numbers(&set["eigenvalues"]), 1e-9, "eigenvalues");
+    all_close(point.coded.iter().copied(), &numbers(&set["stationary"]), 1e-9, "stationary point");
+    close(point.value, number(&set["stationary_value"]), 1e-10, "stationary value");
+    let up = point.axes.iter().filter(|a| a.eigenvalue > 0.0).count();
     let nature =
-        [Nature::Maximum, Nature::Saddle, Nature::Minimum][usize::from(up > 0) + usize::from(up == place.axes.len())];
-    assert_eq!(place.nature, nature);
+        [Nature::Maximum, Nature::Saddle, Nature::Minimum][usize::from(up > 0) + usize::from(up == point.axes.len())];
+    assert_eq!(point.nature, nature);
     for (upward, key) in [(true, "highest_on_unit_sphere"), (false, "lowest_on_unit_sphere")] {
         let path = steepest_path(&found.model, upward, &[0.0, 0.5, 1.0]).unwrap();
         close(path[2].value, number(&set[key]), 1e-9, key);
-        assert_eq!(path[0].value, found.model.value_coded(&vec![0.0; place.coded.len()]));
+        assert_eq!(path[0].value, found.model.value_coded(&vec![0.0; point.coded.len()]));
         let length = path[2].coded.iter().map(|u| u * u).sum::<f64>().sqrt();
         assert!((length - 1.0).abs() < 1e-9);
     }
