@@ -1,6 +1,6 @@
 //! Runs that gave no result, that are not valid, or that are to be read with caution: how many of how many, and why.
 //!
-//! The sentences are made here for everything that says them: the end of `flow run`, `flow show`, notes of the statistics,
+//! The sentences are made here for all that print them: the end of `flow run`, `flow show`, notes of the statistics,
 //! printed tables, figures and the report.
 
 use super::results::Results;
@@ -33,12 +33,12 @@ crate::table! {
     }
 }
 
-/// What is said of some runs of a table.
+/// A statement on some runs of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// They gave no result.
     NoResult,
-    /// They are not valid, whatever becomes of them.
+    /// They are not valid.
     NotValid,
     /// They are not valid, and a stage treated them so.
     Treated(Treated),
@@ -224,7 +224,7 @@ impl NotValid {
     }
 }
 
-/// What must be said of the runs that an artifact holds or was made from, wherever its numbers are read.
+/// The statements on the runs of an artifact, or on those that it was made from, to be shown wherever its numbers are.
 pub fn sentences(artifact: &Artifact) -> Vec<String> {
     let mut found = faults(artifact);
     if artifact.is(ArtifactKind::RUN) && found.is_empty() {
@@ -255,7 +255,7 @@ pub fn faults(artifact: &Artifact) -> Vec<String> {
 /// Name of the list of runs that are not valid in artifacts that were made from runs.
 const NOT_VALID: &str = "not_valid";
 
-/// The runs of a table without a result, and those that are not valid, of which `verdict` is said.
+/// The runs of a table without a result, and those that are not valid, on which `verdict` is the statement.
 pub fn of_runs(runs: &Table, verdict: Verdict) -> Vec<String> {
     let invalid = Results::invalid(runs);
     let invalid = Tally::of(runs.rows(), invalid.iter().map(|(_, why)| *why)).sentence(verdict);
@@ -275,7 +275,7 @@ fn failures(runs: &Table) -> Tally<'_> {
     Tally::of(runs.rows(), Results::failures(runs).iter().map(String::as_str))
 }
 
-/// What must be said of a single run.
+/// The statements on a single run.
 fn of_run(artifact: &Artifact) -> Option<String> {
     let text = |name: &str| match artifact.root.get(name) {
         Some(Node::Text(text)) if !text.is_empty() => Some(text.as_str()),

@@ -32,7 +32,7 @@ pub enum Domain {
 /// A factor of a design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Name, unique in the design; it stands in the names of terms (`Ec*kn_ks`).
+    /// Name, unique in the design; it appears in the names of terms (`Ec*kn_ks`).
     pub name: String,
     /// Unit of the values, as text for tables; empty for a plain number.
     pub unit: String,

@@ -2,7 +2,7 @@
 //! 1937).
 //!
 //! Standard order is that of Yates: the first factor changes fastest. A factor given by a range is set to its two ends.
-//! Centre points may be added; they stand at the middle of every range.
+//! Centre points may be added; they are at the middle of every range.
 
 use super::coding::{Factor, check_surface};
 use super::error::Fault;

@@ -5,7 +5,7 @@
 //! `maximin` spreads the points by exchanging two values of one factor under simulated annealing (Morris & Mitchell
 //! 1995, *J. Stat. Plan. Inference* 43, 381, doi:10.1016/0378-3758(94)00035-T): it minimises φ = (Σ d⁻⁴⁰)^(1/40) over
 //! the distances d of all pairs, measured in strata, which for so high a power pushes the smallest distance up. The
-//! best sample met is kept.
+//! the best sample is used.
 
 use super::coding::Factor;
 use super::error::Fault;

@@ -9,7 +9,7 @@
 //! A factor with fewer levels than its column has the surplus levels merged into its own ones (Addelman 1962,
 //! *Technometrics* 4, 21, doi:10.1080/00401706.1962.10489985): in L64(4^21) with three-level factors one level stands
 //! in 32 runs and the others in 16, and every pair of factors keeps exactly proportional frequencies.
-//! [`Orthogonal::doubled`] says which.
+//! [`Orthogonal::doubled`] names them.
 //!
 //! When a table has more columns than there are factors, those are taken that entangle main effects least with
 //! two-factor interactions (smallest A₃ of the generalized word-length pattern, one column after the other).

@@ -3,9 +3,9 @@
 //! (Antonov & Saleev 1979, doi:10.1016/0041-5553(79)90085-5).
 //!
 //! *First point.* Unscrambled, point 1 is the origin: every factor at its low end. It belongs to the sequence and is
-//! kept (dropping it spoils the balance of the first 2^m points: Owen 2020, arXiv:2008.08051); `skip` leaves out points
+//! included (dropping it spoils the balance of the first 2^m points: Owen 2020, arXiv:2008.08051); `skip` leaves out points
 //! from the start. *Scrambling* (the default) multiplies the digits by random lower triangular matrices and adds a
-//! random shift (Matoušek 1998, doi:10.1006/jcom.1998.0489); balance is kept and no point lies on the boundary by rule.
+//! random shift (Matoušek 1998, doi:10.1006/jcom.1998.0489); balance is preserved and no point lies on the boundary by rule.
 //! Runs should be a power of two: then every factor's range is cut into as many equal parts with one point each.
 
 mod directions;

@@ -28,7 +28,7 @@ pub enum PointType {
 }
 
 impl PointType {
-    /// The word that stands in tables and files.
+    /// The word in tables and files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Centre => "centre",
@@ -42,7 +42,7 @@ impl PointType {
     }
 }
 
-/// Where a factor stands in one run.
+/// Position of a factor in one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Position {
     /// At its level of this index, from 0.
@@ -195,7 +195,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// What is wrong with a design of `rows` runs and `centre` more at its centre, laid out so.
+    /// Faults of a design of `rows` runs and `centre` more at its centre, laid out so.
     pub(super) fn fault(self, rows: usize, centre: usize) -> Option<Fault> {
         let bad = |option: &str, found: usize, wanted: &str| Fault::BadOption {
             option: option.into(),

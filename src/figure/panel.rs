@@ -1,4 +1,4 @@
-//! One pair of axes on the page: frame, grid, ticks, titles; values → places.
+//! One pair of axes on the page: frame, grid, ticks, titles; values → points on the page.
 
 use super::Style;
 use super::axis::{Axis, Scale, Tick};
@@ -89,22 +89,22 @@ impl Panel {
         self
     }
 
-    /// Place of a pair of values.
+    /// Point of a pair of values.
     pub fn place(&self, x: f64, y: f64) -> Point {
         [self.place_x(x), self.place_y(y)]
     }
 
-    /// Horizontal place of a value.
+    /// Horizontal position of a value.
     pub fn place_x(&self, x: f64) -> f64 {
         self.area.left + self.x.fraction(x) * self.area.width()
     }
 
-    /// Vertical place of a value.
+    /// Vertical position of a value.
     pub fn place_y(&self, y: f64) -> f64 {
         self.area.bottom - self.y.fraction(y) * self.area.height()
     }
 
-    /// Places of a series; values that are not finite part it into several.
+    /// Points of a series; values that are not finite part it into several.
     pub fn places(&self, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
         let mut parts: Vec<Vec<Point>> = vec![Vec::new()];
         for (&x, &y) in x.iter().zip(y) {
@@ -204,7 +204,7 @@ impl Panel {
         }
     }
 
-    /// Facts that let a script tell values under a pointer: ends of both axes and the plot area.
+    /// Facts from which a script reads values under a pointer: ends of both axes and the plot area.
     pub fn facts(&self) -> Vec<(&'static str, String)> {
         let scale = |a: &Axis| if a.scale == Scale::Log { "log" } else { "linear" };
         let r = self.area;
@@ -224,7 +224,7 @@ fn labelled(axis: &Axis) -> impl Iterator<Item = &Tick> {
     axis.ticks.iter().filter(|tick| !tick.label.is_empty())
 }
 
-/// The labels that do not touch: all of them, or every second, third, … from the first on. `labels` are places, lengths
+/// The labels that do not touch: all of them, or every second, third, … from the first on. `labels` are positions, lengths
 /// along the axis and what is written.
 fn apart<T>(labels: Vec<(f64, f64, T)>) -> Vec<(f64, f64, T)> {
     let touch = |every: usize| {

@@ -1,4 +1,4 @@
-//! Small numerical pieces that every domain folder may use; they import nothing of ours.
+//! Small numerical pieces that every domain crate may use; they import no other crate of flow.
 //!
 //! * [`random`]: seeded streams whose values never change between versions, hosts or thread counts
 //! * [`elementary`]: `exp`, `sin`, `pow` … with one implementation everywhere, so that results keep their bits

@@ -1,4 +1,4 @@
-//! Where the parameters may lie: a box, and linear constraints in it.
+//! The domain of the parameters: a box, and linear constraints in it.
 //!
 //! Optimisers see the unit box u ([`super::factor`]). A linear constraint Σ aᵢ xᵢ ≤ b becomes
 //! Σ aᵢ wᵢ uᵢ ≤ b − Σ aᵢ lowᵢ with the widths wᵢ, scaled to a normal of unit length. On logarithmic scales two kinds of
@@ -201,7 +201,7 @@ fn box_faults(factors: &[Factor]) -> Vec<Error> {
 
 type Wall = (Vec<f64>, f64, String);
 
-/// The constraint in the unit box; nothing when it always holds.
+/// The constraint in the unit box; `None` when it always holds.
 fn wall(constraint: &Linear, factors: &[Factor], known: &[String]) -> Result<Option<Wall>, Vec<Error>> {
     let mut faults = Vec::new();
     let text = written(constraint);

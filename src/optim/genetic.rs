@@ -45,7 +45,7 @@ pub enum Mutation {
     Gaussian,
 }
 
-/// Settings; what is left out is the preset's.
+/// Settings; a setting that is left out has the value of the preset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {

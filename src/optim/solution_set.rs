@@ -6,7 +6,7 @@
 //!   [`least_distance`] problem, halved while it makes the responses worse than they were;
 //! * the **sample** takes the solutions nearest random points of the domain;
 //! * the number of **free** directions is d minus the rank of the sensitivities there;
-//! * the **reach** of every response over the domain tells which target cannot be met by itself, and how near one
+//! * the **reach** of every response over the domain shows which target cannot be met by itself, and how near one
 //!   can get; where each can be met alone the misfit that is left is a conflict between them.
 //!
 //! It asks the model far more often than a simulation could bear: give it fitted surfaces.
@@ -43,7 +43,7 @@ pub struct SolutionSet {
 /// Least and greatest value of a response over the domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reach {
-    /// What is wanted of the response.
+    /// The target of the response.
     pub target: Target,
     /// Least value.
     pub low: f64,
@@ -63,7 +63,7 @@ impl Reach {
         }
     }
 
-    /// Whether the target itself can be had.
+    /// Whether the target can be met by itself.
     pub fn holds_target(&self) -> bool {
         self.low <= self.target.high && self.high >= self.target.low
     }
@@ -137,8 +137,8 @@ fn lowest(domain: &Domain, starts: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64) -
 pub(super) fn descend(domain: &Domain, from: &[f64], start: f64, value: &dyn Fn(&[f64]) -> f64) -> (Vec<f64>, f64) {
     let mut descent = Local::new(domain, from, start);
     while descent.stop().is_none() {
-        let told = |point: Vec<f64>| Trial { misfit: value(&point), point, responses: Vec::new() };
-        let trials: Vec<Trial> = descent.ask().into_iter().map(told).collect();
+        let trial = |point: Vec<f64>| Trial { misfit: value(&point), point, responses: Vec::new() };
+        let trials: Vec<Trial> = descent.ask().into_iter().map(trial).collect();
         descent.tell(&trials);
     }
     let (point, misfit) = descent.best();
@@ -183,7 +183,7 @@ mod tests {
         assert!((set.misfit - 2.0 / 3.0).abs() < 1e-9);
     }
 
-    /// Of "at least ¼" the centre itself is a solution, and nothing is tied there; beyond the reach the nearest is told.
+    /// Of "at least ¼" the centre itself is a solution, and nothing is tied there; beyond the reach the nearest is returned.
     #[test]
     fn a_band_leaves_free_what_lies_within() {
         let product = |x: &[f64]| Some(vec![x[0] * x[1]]);

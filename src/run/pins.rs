@@ -3,7 +3,7 @@
 //! When a pin fails, either the change was a mistake, or the numbers moved on purpose: then raise the version of the work
 //! with a line that says what moved, and replace the pins with what the test prints.
 
-use super::{Settings, Silent, StageStatus, run};
+use super::{RunSettings, Silent, StageStatus, run};
 use crate::plan::{Overrides, load};
 use crate::stage::KINDS;
 use crate::store::Store;
@@ -199,7 +199,7 @@ fn found() -> String {
     });
     let kinds: BTreeSet<&str> = workflow.stages.iter().map(|stage| stage.kind).collect();
     let store = Store::open(&folder.path().join("store")).unwrap();
-    let settings = Settings {
+    let settings = RunSettings {
         jobs: 2,
         keep_going: true,
         dry: false,

@@ -23,7 +23,7 @@ fn blank(c: char) -> bool {
 }
 
 impl Sheet {
-    /// Reads a whole file, or says what is wrong with it.
+    /// Reads a whole file, or returns its fault.
     ///
     /// # Errors
     /// It is no text, has other separators, or a line has more or fewer cells than the first.

@@ -2,8 +2,8 @@
 //!
 //! In coded units the surface is `y = b₀ + xᵀb + xᵀBx` with `B` symmetric (half of each interaction on either side).
 //! Stationary point `xₛ = −½ B⁻¹ b`; the eigenvectors of `B` are the principal axes through it and the eigenvalues the
-//! curvatures along them: all negative a maximum, all positive a minimum, mixed a saddle. An eigenvalue that is nothing
-//! beside the largest makes a ridge: the surface is then flat or linear along that axis and no single point stands.
+//! curvatures along them: all negative a maximum, all positive a minimum, mixed a saddle. An eigenvalue that is negligible
+//! beside the largest makes a ridge: the surface is then flat or linear along that axis and no single point is stationary.
 //!
 //! The steepest path follows the best point on spheres about the centre of the design (ridge analysis): on radius `r` it
 //! solves `(B − μI)x = −½ b` with `μ` above the largest eigenvalue (below the least one for the way down).
@@ -187,7 +187,7 @@ fn farthest_up(linear: &[f64], axes: &[Principal], radius: f64) -> Vec<f64> {
     point(high)
 }
 
-/// The slope has no part along the steepest axis: what is missing to the radius is gone along that axis.
+/// The slope has no part along the steepest axis: the rest of the radius is travelled along that axis.
 fn along_top_axis(mut x: Vec<f64>, axes: &[Principal], top: f64, radius: f64) -> Vec<f64> {
     let rest = (radius * radius - dot(&x, &x)).max(0.0).sqrt();
     if let Some(axis) = axes.iter().find(|a| a.eigenvalue == top) {

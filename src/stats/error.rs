@@ -119,7 +119,7 @@ pub enum Fault {
         /// Coefficients of the model, the constant counted.
         terms: usize,
     },
-    /// Nothing is left over to estimate the error from.
+    /// No degree of freedom is left to estimate the error.
     #[error(
         "response `{response}`: {rows} usable rows for {terms} coefficients leave no degree of freedom for the error; \
          take the empty columns as error, pool weak factors or add runs"
@@ -132,13 +132,13 @@ pub enum Fault {
         /// Coefficients of the model, the constant counted.
         terms: usize,
     },
-    /// Pure error was asked for and no two rows are replicates.
+    /// Pure error was requested and no two rows are replicates.
     #[error("response `{response}` has no replicated runs, so there is no pure error; use the residual as error")]
     NoReplicates {
         /// The response.
         response: String,
     },
-    /// A term cannot be told from others.
+    /// A term is aliased with others.
     #[error(
         "`{term}` is aliased with {} in the usable rows of `{response}`; drop one of them or use a larger design",
         names(others)
@@ -148,7 +148,7 @@ pub enum Fault {
         response: String,
         /// The term that adds nothing.
         term: String,
-        /// The terms that say the same.
+        /// The terms that are aliased with it.
         others: Vec<String>,
     },
     /// A power of a factor whose levels are names.
@@ -164,7 +164,7 @@ pub enum Fault {
     Unknown {
         /// "factor", "response" or "term".
         what: &'static str,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The names there are.
         known: Vec<String>,
@@ -212,7 +212,7 @@ pub enum Fault {
 pub struct Faults(pub Vec<Fault>);
 
 impl Faults {
-    /// `Ok` when nothing was found.
+    /// `Ok` without a fault.
     pub(crate) fn none_in(faults: Vec<Fault>) -> Result<(), Faults> {
         if faults.is_empty() { Ok(()) } else { Err(Faults(faults)) }
     }

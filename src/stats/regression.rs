@@ -29,12 +29,12 @@ use super::terms::Term;
 use math::scale::Scale;
 use serde::{Deserialize, Serialize};
 
-/// What a regression is told beside its terms.
+/// Settings of a regression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Level of the outlier test, after Bonferroni's correction.
     pub outlier_alpha: f64,
-    /// How terms are chosen; `None` keeps them all.
+    /// How terms are chosen; `None` takes them all.
     pub selection: Option<Selection>,
 }
 
@@ -74,7 +74,7 @@ pub struct Regression {
     pub residuals: Vec<Residual>,
     /// What predicts.
     pub model: Model,
-    /// What term selection did, in order.
+    /// The steps of term selection, in order.
     pub steps: Vec<Step>,
 }
 

@@ -1,7 +1,7 @@
-//! Screening of two-level designs, with or without replicates: which few effects stand out of the noise.
+//! Screening of two-level designs, with or without replicates: which few effects exceed the noise.
 //!
 //! The effect of a term is twice its coefficient in ±1 units: the mean response at the high level minus that at the low
-//! one. Without replicates the noise is judged from the effects themselves, most of which are taken to be nothing:
+//! one. Without replicates the noise is judged from the effects themselves, most of which are assumed to be zero:
 //! Lenth's pseudo standard error is `PSE = 1.5 · median{|e| : |e| < 2.5 s₀}` with `s₀ = 1.5 · median |e|`; with
 //! `d = m/3` for `m` effects, the margin of error is `ME = t(1 − α/2; d) · PSE` and the simultaneous one
 //! `SME = t(γ; d) · PSE`, `γ = (1 + (1 − α)^(1/m))/2`.
@@ -158,7 +158,7 @@ fn in_signs(sample: &Sample) -> Sample {
     signs
 }
 
-/// Effects smaller than this share of the largest response are what rounding leaves of nothing.
+/// Effects smaller than this share of the largest response are rounding errors of zero.
 const ROUNDING: f64 = 1e-15;
 
 /// Lenth's pseudo standard error of absolute effects, those up to `nothing` taken as zero.

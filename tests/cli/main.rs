@@ -11,6 +11,7 @@ mod command;
 mod engines;
 mod export;
 mod faults;
+mod forecast;
 mod guide;
 mod hostile;
 mod kill;

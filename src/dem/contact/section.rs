@@ -1,11 +1,11 @@
 //! Contacts of one class, in blocks of eight; between them the classes hold the whole list.
 //!
 //! The order of contacts (class, wall or image, i, j) decides the order of every sum, so it depends on nothing but the contacts.
-//! Blocks stand in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second whole list
-//! stands beside it.
+//! Blocks are stored in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second list
+//! exists beside it.
 
 use crate::interaction::Bond;
-use crate::law::{ENERGIES, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
+use crate::law::{ENERGIES, Memory, RowIndex, flat_joint_rows, fresh, idle, smooth_joint_rows};
 use crate::simd::{Row, WIDEST};
 use crate::space::Space;
 use std::ops::Range;
@@ -39,15 +39,15 @@ impl LawKind {
     /// Rows of memory of a contact.
     fn rows<S: Space>(self) -> usize {
         match self {
-            Self::Linear => Rows::<S>::TENSION,
-            Self::ContactBond => Rows::<S>::BOND,
-            Self::ParallelBond => Rows::<S>::COUNT,
+            Self::Linear => RowIndex::<S>::TENSION,
+            Self::ContactBond => RowIndex::<S>::BOND,
+            Self::ParallelBond => RowIndex::<S>::COUNT,
             Self::FlatJoint { elements } => flat_joint_rows::<S>(elements),
             Self::SmoothJoint => smooth_joint_rows::<S>(),
         }
     }
 
-    /// Whether a contact that is not bonded comes to the same bits by the linear law, with fewer rows.
+    /// Whether a contact that is not bonded gives the same bits by the linear law, with fewer rows.
     pub(crate) fn begins_linear(self) -> bool {
         matches!(self, Self::ParallelBond | Self::FlatJoint { .. })
     }
@@ -66,12 +66,12 @@ pub(crate) struct Key {
     pub(crate) image: u8,
 }
 
-/// What the contacts of a section have in common; sections stand in this order.
+/// What the contacts of a section have in common; sections are in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Rank {
     /// True when the second ends are walls.
     pub(crate) at_wall: bool,
-    /// Place in the contact table.
+    /// Index in the contact table.
     pub(crate) class: usize,
     /// The wall, or the image of the second ends in a periodic cell (0 for themselves).
     pub(crate) second: u32,
@@ -106,7 +106,7 @@ pub(crate) struct Section {
     /// What they have in common.
     pub(crate) rank: Rank,
     /// The law that they follow: that of the class, or the linear one as long as no parallel bond was installed in the
-    /// class. It comes to the same bits with fewer rows.
+    /// class. It gives the same bits with fewer rows.
     pub(crate) law: LawKind,
     /// Real contacts; the last block is filled up with idle ones.
     pub(crate) count: usize,
@@ -124,7 +124,7 @@ fn locate(c: usize) -> (usize, usize, usize) {
 }
 
 impl Section {
-    /// Without contacts. The two dummies stand after the `particles` real ones.
+    /// Without contacts. The two dummies follow the `particles` real ones.
     pub(crate) fn new(rank: Rank, law: LawKind, particles: usize) -> Self {
         Self { rank, law, count: 0, own_from: 0, chunks: Vec::new(), dummy: particles as u32 }
     }
@@ -153,12 +153,12 @@ impl Section {
         let rows = self.law.rows::<S>();
         let mut memory = fresh::<S>();
         let own = &self.chunks[chunk].rows[block * rows..(block + 1) * rows];
-        let (shared, tail) = own.split_at(rows.min(Rows::<S>::COUNT));
+        let (shared, tail) = own.split_at(rows.min(RowIndex::<S>::COUNT));
         for (value, row) in memory.iter_mut().zip(shared) {
             *value = row.0[lane];
         }
         // Rows of elements matter where there is an interface.
-        if memory[Rows::<S>::BOND] > 0.0 {
+        if memory[RowIndex::<S>::BOND] > 0.0 {
             memory.tail.extend(tail.iter().map(|row| row.0[lane]));
         }
         memory
@@ -176,7 +176,7 @@ impl Section {
         let chunk = &mut self.chunks[chunk];
         if block == chunk.ends.len() {
             chunk.ends.push([[self.dummy; WIDEST], [self.dummy + 1; WIDEST]]);
-            let (idle_memory, shared) = (fresh::<S>(), Rows::<S>::COUNT);
+            let (idle_memory, shared) = (fresh::<S>(), RowIndex::<S>::COUNT);
             let flat = matches!(self.law, LawKind::FlatJoint { .. });
             let tail = |row| if flat { idle::<S>(row) } else { 0.0 };
             let value = |row| if row < shared { idle_memory[row] } else { tail(row) };
@@ -191,7 +191,7 @@ impl Section {
             ends[1][lane] = key.j;
         }
         let own = &mut chunk.rows[block * rows..(block + 1) * rows];
-        let (shared, tail) = own.split_at_mut(rows.min(Rows::<S>::COUNT));
+        let (shared, tail) = own.split_at_mut(rows.min(RowIndex::<S>::COUNT));
         for (row, value) in shared.iter_mut().zip(&**memory) {
             row.0[lane] = *value;
         }
@@ -203,12 +203,12 @@ impl Section {
 
     /// Whether contact `c` is bonded.
     pub(crate) fn bonded<S: Space>(&self, c: usize) -> bool {
-        self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
+        self.value::<S>(c, RowIndex::<S>::TENSION) < f64::INFINITY
     }
 
     /// Whether contact `c` is bonded or an interface, bonded or not.
     pub(crate) fn joined<S: Space>(&self, c: usize) -> bool {
-        self.bonded::<S>(c) || self.value::<S>(c, Rows::<S>::BOND) > 0.0
+        self.bonded::<S>(c) || self.value::<S>(c, RowIndex::<S>::BOND) > 0.0
     }
 
     /// Force of contact `c` on the wall; the third component is 0 in the plane.
@@ -254,7 +254,7 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
-    /// At the first contact of `sections`, which stand in the order of their stretches.
+    /// At the first contact of `sections`, which are in the order of their stretches.
     pub(crate) fn new(sections: Vec<Section>) -> Self {
         let mut reader = Self { sections: sections.into_iter(), now: None };
         reader.open();
@@ -305,7 +305,7 @@ impl<'a> Writer<'a> {
         Self { cuts, expected: expected.div_ceil(stretches), sections }
     }
 
-    /// Adds a contact, after all that stand before it in the order of the list.
+    /// Adds a contact, behind those that precede it in the order of the list.
     pub(crate) fn push<S: Space>(&mut self, key: Key, memory: &Memory) {
         let stretch = |p: u32| self.cuts.partition_point(|&cut| cut <= p as usize) - 1;
         let first = stretch(key.i);

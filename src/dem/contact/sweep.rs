@@ -219,7 +219,7 @@ fn work<S: Space, L: Lane>(velocity: Vector<S>, dt: f64, touch: &Touch<S, L>, lo
     S::force(touch, load).dot(S::Vector::<L>::build(|k| L::splat(way.at(k))))
 }
 
-/// Keeps the force on the wall.
+/// Stores the force on the wall.
 #[inline(always)]
 fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L>, load: &Load<S, L>) {
     let force = S::force(touch, load);
@@ -298,7 +298,7 @@ fn offset<S: Space>(piece: &Piece, n: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
-    use crate::law::Rows;
+    use crate::law::RowIndex;
     use crate::space::{D2, D3};
     use crate::strength::Scatter;
 
@@ -317,10 +317,10 @@ mod tests {
         };
         let constants =
             Constants::new::<S>(&Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) });
-        let mut rows = vec![Row::default(); Rows::<S>::COUNT];
-        rows[Rows::<S>::TENSION] = Row([f64::MAX; WIDEST]);
-        rows[Rows::<S>::COHESION] = Row([f64::MAX; WIDEST]);
-        rows[Rows::<S>::BOND] = Row([1e9; WIDEST]);
+        let mut rows = vec![Row::default(); RowIndex::<S>::COUNT];
+        rows[RowIndex::<S>::TENSION] = Row([f64::MAX; WIDEST]);
+        rows[RowIndex::<S>::COHESION] = Row([f64::MAX; WIDEST]);
+        rows[RowIndex::<S>::BOND] = Row([1e9; WIDEST]);
         let mut answer = |ends: &[End<S, f64>; 2]| {
             let touch = pair_touch(&ends[0], &ends[1], 1.0);
             let (load, _) = ParallelBondLaw::respond(&constants, &touch, None, &mut rows, 0, &mut Account(None));

@@ -75,7 +75,7 @@ impl<S: Space> Engine<S> {
             inverse_mass: vec![0.0; n + 2],
             weights: Vec::new(),
             clumps: Vec::with_capacity(model.clumps.len()),
-            clump_place: vec![0; model.clumps.len()],
+            clump_index: vec![0; model.clumps.len()],
             clump_caller: Vec::with_capacity(model.clumps.len()),
             walls: Vec::with_capacity(model.walls.len()),
             cell: model.settings.cell.as_ref().map(MovingCell::new),
@@ -124,7 +124,7 @@ impl<S: Space> Engine<S> {
         order.sort_unstable();
         for (k, &(first, id)) in order.iter().enumerate() {
             let clump = &model.clumps[id];
-            self.clump_place[id] = k as u32;
+            self.clump_index[id] = k as u32;
             self.clump_caller.push(id as u32);
             let pebbles = first..first + clump.pebbles.len();
             self.bodies[pebbles.clone()].fill(k as u32);
@@ -230,7 +230,7 @@ pub(super) fn moving<S: Space>(wall: &Wall<S>) -> MovingWall<S> {
     }
 }
 
-/// The caller's places in the engine's order (bodies along a Morton curve, pebbles of a clump together), and the clump
+/// The caller's indices in the engine's order (bodies along a Morton curve, pebbles of a clump together), and the clump
 /// of each of the caller's particles.
 fn numbering<S: Space>(model: &Model<S>) -> (Vec<u32>, Vec<u32>) {
     let mut clump_of = vec![NO_CLUMP; model.particles.len()];

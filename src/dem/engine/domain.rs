@@ -23,7 +23,7 @@ pub(crate) struct Domain {
     pub(crate) sections: Vec<Section>,
     /// Loads on all particles; only the own ones are complete.
     pub(crate) loads: Table,
-    /// Bonds that broke, with the step; each is kept by the owner of its first particle.
+    /// Bonds that broke, with the step; the owner of its first particle stores it.
     pub(crate) breaks: Vec<(u64, Break)>,
     /// Work of local damping and of prescribed motion on each particle, J; empty unless a run tracks its energy.
     pub(crate) spent: Vec<[f64; 2]>,

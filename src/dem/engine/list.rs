@@ -209,7 +209,7 @@ impl<S: Space> Engine<S> {
         if key.image == 0 { apart } else { apart.plus(self.shift(key)) }
     }
 
-    /// From the second particle of a pair to the image that is meant, m.
+    /// From the second particle of a pair to the image of the pair, m.
     pub(super) fn shift(&self, key: Key) -> Vector<S> {
         match &self.cell {
             Some(cell) if key.image != 0 => cell.image(key.image).shift,
@@ -234,7 +234,7 @@ impl<S: Space> Engine<S> {
         rows[KN] = if rows.tail.is_empty() { kn } else { 0.0 };
     }
 
-    /// Radii that a contact stands between, ∞ for a wall.
+    /// Radii on both sides of a contact, ∞ for a wall.
     pub(super) fn contact_radii(&self, key: Key) -> [f64; 2] {
         let second = if key.at_wall { f64::INFINITY } else { self.radii[key.j as usize] };
         [self.radii[key.i as usize], second]

@@ -2,7 +2,7 @@
 //!
 //! Order of a step: contact forces at x(t) from velocities at t − dt/2; clumps and balls gain velocity, then position
 //! (leapfrog); walls move; the threads meet; servo walls take the speed that the forces of this step ask for. Every
-//! thread moves its own copy of the walls with the same numbers, and every thread comes to the same decision to stop.
+//! thread moves its own copy of the walls with the same numbers, and every thread takes the same decision to stop.
 
 use super::domain::Domain;
 use super::{Class, Engine, MovingWall};
@@ -152,7 +152,7 @@ impl<S: Space> March<'_, S> {
         breaks.extend(broken.into_iter().filter(|b| particles.contains(&(b.i as usize))).map(|b| (step, b)));
     }
 
-    /// Leaves the own numbers for the others.
+    /// Publishes the numbers of this stretch to the other threads.
     #[inline(always)]
     fn tell(&self, parity: usize, fastest: f64) {
         let shared = self.orders.shared;
@@ -263,7 +263,7 @@ fn accelerated(velocity: Quad, load: Quad, inverse: Quad, damping: f64, dt: f64)
     next
 }
 
-/// Work of local damping, and of whatever holds the prescribed components, with the mean of the old and new velocity.
+/// Work of local damping, and of the agent that prescribes components, with the mean of the old and new velocity.
 #[inline(always)]
 fn book(spent: &mut [f64; 2], load: Quad, inverse: Quad, [before, after]: [Quad; 2], damping: f64, dt: f64) {
     for k in 0..4 {

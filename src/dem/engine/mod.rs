@@ -137,10 +137,10 @@ pub struct Engine<S: Space> {
     inverse: Table,
     inverse_mass: Vec<f64>,
     weights: Vec<Quad>,
-    /// Clumps stand in the order of their pebbles; `clump_place` leads from the caller's place to theirs,
+    /// Clumps are in the order of their pebbles; `clump_index` leads from the caller's index to theirs,
     /// `clump_caller` back.
     clumps: Vec<Rigid<S>>,
-    clump_place: Vec<u32>,
+    clump_index: Vec<u32>,
     clump_caller: Vec<u32>,
     walls: Vec<MovingWall<S>>,
     cell: Option<MovingCell<S>>,
@@ -181,7 +181,7 @@ pub(crate) struct EnergySums {
 pub enum Watch {
     /// Go on.
     Continue,
-    /// Go on, with up to so many threads from now on.
+    /// Continue, with up to this many threads from now on.
     Threads(usize),
     /// End the run here.
     Stop,

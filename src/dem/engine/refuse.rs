@@ -14,7 +14,7 @@ impl<S: Space> Engine<S> {
         index.ok_or(Fault::Missing { what: "particle", index: particle, count })
     }
 
-    /// A ball of its own. `problem` says what a pebble of a clump cannot.
+    /// A ball of its own. `problem` names what a pebble of a clump cannot do.
     fn single(&self, particle: usize, problem: &'static str) -> Result<usize, Fault> {
         let p = self.known(particle)?;
         match self.clump_of(particle) {

@@ -52,6 +52,11 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// Why the run failed.
     pub fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        S::advance(self, steps)
+    }
+
+    /// The loop itself, called by each space.
+    pub(crate) fn march_on(&mut self, steps: u64) -> Result<(), Failure> {
         let end = self.step.saturating_add(steps);
         while self.step < end {
             if self.stale {

@@ -269,7 +269,7 @@ fn table_faults<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> 
     faults
 }
 
-/// Told of a quantity, its value, whether that is right, and what it must be.
+/// Called with a quantity, its value, whether that is allowed, and the allowed range.
 type Check<'a> = &'a mut dyn FnMut(&'static str, f64, bool, &'static str);
 
 fn cement_faults(stiffness: BondStiffness, check: Check<'_>) {
@@ -412,7 +412,7 @@ fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
     });
 }
 
-/// Balls, by place and radius, that start too deep in a wall.
+/// Balls, by position and radius, that start too deep in a wall.
 pub(super) fn wall_overlaps<S: Space>(
     wall: usize,
     face: &Wall<S>,

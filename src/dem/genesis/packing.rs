@@ -1,7 +1,7 @@
 //! A packing of balls in a vessel: to a porosity, to a stress, or as a lattice.
 //!
 //! **To a porosity**, by radius expansion:
-//! 1. Number and radii as [`super::sizes`] says; balls placed at half size without overlap ([`super::cloud`]).
+//! 1. Number and radii by [`super::sizes`]; balls placed at half size without overlap ([`super::cloud`]).
 //! 2. Full size at once (m = 2), then the rest state without friction ([`super::relax`]): all stresses come from the
 //!    overlaps, and the walls being fixed the stress is isotropic up to the noise of the packing (reported).
 //! 3. Floaters (fewer than 3 contacts in the plane, 4 in the solid): each is enlarged in small steps and everything rescaled
@@ -300,7 +300,7 @@ fn to_porosity<S: Space>(
     Packed { radius_factor, iterations: first.iterations, unbalanced: first.unbalanced, ..Packed::of(heap) }
 }
 
-/// Balls of full size at the places of the cloud, and the factor on their stated radii.
+/// Balls of full size at the positions of the cloud, and the factor on their stated radii.
 fn cloud<S: Space>(sizes: &Sizes, porosity: f64, region: &Region, stream: &mut Stream) -> (Heap<S>, f64) {
     let volume = region.volume();
     let mut radii = sizes.draw::<S>(sizes.count::<S>(volume, porosity) as usize, stream);
@@ -400,7 +400,7 @@ fn to_stress<S: Space>(
     })
 }
 
-/// Takes random balls out, or puts some of the law at random places, until there are `wanted`. New balls grow in steps,
+/// Takes random balls out, or puts some of the law at random positions, until there are `wanted`. New balls grow in steps,
 /// so that none is squeezed through its neighbours or a wall.
 fn recount<S: Space>(heap: &mut Heap<S>, sizes: &Sizes, wanted: usize, stream: &mut Stream, watch: &dyn Fn() -> Watch) {
     let count = heap.radii.len();

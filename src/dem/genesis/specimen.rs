@@ -4,9 +4,9 @@
 //! centres lie in a polygon become the pebbles of its clump. So the grain of the aggregate's surface is that of the mortar,
 //! and no ball is squeezed against a smooth face. N of eq. (4) counts balls before clumps.
 //!
-//! The specimen is **stress-free**: whatever is built on it takes the gaps of the packing as reference gaps, so that
+//! The specimen is **stress-free**: a test on it takes the gaps of the packing as reference gaps, so that
 //! the overlaps of the packing (their mean stress is in the report) carry no load. No load is locked in, and nothing
-//! has to relax when the vessel is taken away.
+//! has to relax when the vessel is removed.
 //!
 //! Seeds: aggregate, packing and groups have streams of their own, so another polygon recipe keeps the packing.
 
@@ -36,7 +36,7 @@ pub struct Aggregate {
     pub classes: Vec<f64>,
     /// Shapes.
     pub polygons: PolygonRecipe,
-    /// Places.
+    /// Positions.
     pub placement: Placement,
     /// Density (kg/m³).
     pub density: f64,
@@ -61,7 +61,7 @@ pub struct Recipe {
     pub aggregate: Option<Aggregate>,
 }
 
-/// A specimen, stress-free as it stands.
+/// A specimen, free of stress.
 #[derive(Clone, Debug)]
 pub struct Specimen<S: Space = D2> {
     /// Outline; the origin is its centre.
@@ -295,7 +295,7 @@ fn solid<S: Space>(clump: Clump) -> Clump<S> {
 }
 
 impl<S: Space> Specimen<S> {
-    /// The clump of every ball, none for the others.
+    /// The clump of every ball that is in one.
     pub fn clump_of_balls(&self) -> Vec<Option<usize>> {
         clump_of_balls(self.radii.len(), &self.clumps)
     }

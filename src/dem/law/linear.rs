@@ -7,7 +7,7 @@
 //! displacement of j's surface relative to i's, F_s acts on i.
 
 use super::{
-    Account, Broken, Constants, DASHPOT, KN, Law, Layout, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear,
+    Account, Broken, Constants, DASHPOT, KN, Law, Layout, REFERENCE, RowIndex, SHEAR, SLIP, Viscous, load_shear,
     store_shear,
 };
 use crate::simd::{Lane, Row};
@@ -91,7 +91,7 @@ fn charge_slip<S: Space, L: Lane>(
 impl<S: Space> Law<S> for LinearLaw {
     #[inline(always)]
     fn rows(_layout: &Layout) -> usize {
-        Rows::<S>::TENSION
+        RowIndex::<S>::TENSION
     }
 
     #[inline(always)]

@@ -29,10 +29,10 @@ pub(crate) const REFERENCE: usize = 1;
 /// First row of the shear force of the linear spring, N.
 pub(crate) const SHEAR: usize = 2;
 
-/// Places of the other rows, which depend on the space.
-pub(crate) struct Rows<S>(std::marker::PhantomData<S>);
+/// Indices of the other rows, which depend on the space.
+pub(crate) struct RowIndex<S>(std::marker::PhantomData<S>);
 
-impl<S: Space> Rows<S> {
+impl<S: Space> RowIndex<S> {
     /// Tensile capacity σ_c A (∞ where nothing is bonded), N.
     pub(crate) const TENSION: usize = SHEAR + S::SHEAR;
     /// Shear capacity c A (∞ where nothing is bonded), N.
@@ -205,7 +205,7 @@ pub(crate) trait Law<S: Space> {
     }
 
     /// Calls `put` with every piece of contact `lane` that broke in this step, in a lane of which [`respond`](Self::respond)
-    /// said that something broke; `tensile` is what it said of this contact. A bond breaks in one piece.
+    /// reported a break; `tensile` is its report on this contact. A bond breaks in one piece.
     fn pieces(_constants: &Constants, _rows: &mut [Row], _lane: usize, tensile: bool, mut put: impl FnMut(Piece)) {
         put(Piece { tensile, ..Piece::default() });
     }

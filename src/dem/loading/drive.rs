@@ -2,8 +2,8 @@
 //!
 //! Samples are taken every `sample_strain` of axial strain. The run stops when the stress has fallen to `stop_fraction`
 //! of the largest one so far and stays below it for a while (`lasting`), armed only after the largest has passed the
-//! seating stress; when the test itself says that it is done; or at the strain limit or the bound on steps, which are
-//! failures, as is whatever the engine reports. Failures are data: the record up to that point is stored.
+//! seating stress; when the test itself ends it; or at the strain limit or the bound on steps, which are
+//! failures, as are faults of the engine. Failures are data: the record up to that point is stored.
 //!
 //! The watcher is asked after at most some hundredths of a second of work, however long a sample takes.
 

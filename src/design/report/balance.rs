@@ -1,8 +1,8 @@
-//! How often levels stand, alone and together.
+//! How often levels occur, alone and together.
 
 use crate::table::{DesignTable, PointType};
 
-/// How often each value of a factor stands.
+/// How often each value of a factor occurs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorBalance {
     /// The factor.

@@ -190,7 +190,7 @@ impl Models {
         bad / (bad + good + 1.0)
     }
 
-    /// The misfit with what is not known counted as deviation, and with the chance of failure.
+    /// The misfit, with uncertainty counted as deviation, and with the chance of failure.
     fn risk(&self, unit: &[f64]) -> f64 {
         let misfit = &self.problem.misfit;
         let (mut expected, mut beyond) = (Vec::new(), Vec::new());
@@ -219,7 +219,7 @@ impl Models {
         self.at(point)
     }
 
-    /// What is expected at a point of the unit box.
+    /// The prediction at a point of the unit box.
     pub fn at(&self, point: Vec<f64>) -> Recommendation {
         let interval = |(response, (mean, variance)): (&Response, (f64, f64))| {
             let half = WIDE * variance.sqrt();

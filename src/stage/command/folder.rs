@@ -29,7 +29,7 @@ pub(super) fn is_plain(name: &str) -> bool {
 /// A run's own temporary folder; `stdout` and `stderr` lie beside what the program writes.
 pub(super) struct Folder {
     root: TempDir,
-    /// Says that the folder is in use, and by whom; it is dropped after the folder.
+    /// Marks the folder as in use, with its process; it is dropped after the folder.
     _record: Record,
 }
 
@@ -143,7 +143,7 @@ impl Folder {
         Ok(readable(&bytes))
     }
 
-    /// The end of what the program said, for the message of a failure.
+    /// The end of the program's log, for the message of a failure.
     pub(super) fn last_words(&self) -> String {
         let said =
             ["stderr", "stdout"].iter().filter_map(|name| self.text(name).ok()).find(|text| !text.trim().is_empty());

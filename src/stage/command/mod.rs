@@ -12,7 +12,7 @@
 //! shall compare rows on the same one.
 //!
 //! Numbers are read as C and Fortran write them. A value that the program itself calls `NaN` (or `null` in JSON) is a
-//! missing response, said with the run; a run that leaves no value at all has failed.
+//! missing response, which a warning of the run names; a run that leaves no value at all has failed.
 //!
 //! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
 //! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
@@ -29,6 +29,7 @@ mod template;
 mod verdict;
 
 use super::beside::Beside;
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
     AtOnce, Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError,
@@ -186,7 +187,7 @@ impl Stage for Command {
         for (key, files) in [("files", &self.files), ("templates", &self.templates)] {
             for (name, path) in files {
                 let Some(full) = found.file(&format!("{key}.{name}"), path) else { continue };
-                // A template that is no text is told when it is filled.
+                // A template that is no text is reported when it is filled.
                 let text = (key == "templates").then(|| std::fs::read_to_string(full).ok()).flatten();
                 if let Some(fault) = text.and_then(|text| template::fault(&text, || self.values(context))) {
                     let complaint = Complaint::new(key, format!("{path}, {}", fault.message));
@@ -200,6 +201,10 @@ impl Stage for Command {
     fn sketch(&self) -> Sketch {
         let responses = Some(self.read.keys().cloned().collect());
         Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        Forecast::of_design(ahead, |_, _| TaskForecast::Exactly(0))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -1,4 +1,4 @@
-//! What a plot of columns cannot draw of its rows: said below the picture, so that nothing is missing in silence.
+//! Rows that a plot of columns cannot draw: stated below the picture, so that nothing is missing silently.
 
 use super::own::{Drawn, Shown, fitted};
 use super::plot::Direction;
@@ -18,8 +18,8 @@ fn keys(show: Show) -> &'static [&'static str] {
     }
 }
 
-/// The sentences: rows without a number, values that have no place on a logarithmic axis, groups without the line that was
-/// asked for. Runs without a result and runs that are not valid are said elsewhere.
+/// The sentences: rows without a number, values that a logarithmic axis cannot show, groups without the line that was
+/// requested. Runs without a result and runs that are not valid are stated elsewhere.
 pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String>, StageError> {
     let keys = keys(params.show);
     if keys.is_empty() {

@@ -116,7 +116,7 @@ struct Params {
     /// What becomes of runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     invalid: Invalid,
-    /// What is said of the runs that curves are drawn of.
+    /// Statements on the runs whose curves are drawn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
 }
@@ -327,7 +327,7 @@ impl Kind for Figure {
     /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
-    /// one another. 11: runs that are not valid are left out or marked, and it is said below the picture. 12: titles of
+    /// one another. 11: runs that are not valid are left out or marked, which is stated below the picture. 12: titles of
     /// axes stay on the page; lines of a contour are labelled in the words of its bar.
     const WORKS: &'static [Work] = &[Work { name: "figure", version: 12, run: draw }];
 }

@@ -73,7 +73,7 @@ fn short(value: f64) -> String {
     if plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// The numbers of a column; of words the places of their names in the alphabet.
+/// The numbers of a column; of words their alphabetical indices.
 fn numbers(column: &Column) -> (Vec<f64>, Vec<String>) {
     match &column.values {
         Values::Reals(values) => (values.clone(), Vec::new()),
@@ -286,7 +286,7 @@ fn overlay(job: &Job, x: &Quantity, y: &Quantity) -> Result<Option<bundle::Line>
     Ok(Some(bundle::Line { name: stem, x: read(first, x)?, y: read(second, y)? }))
 }
 
-/// Places at which a mean curve is computed.
+/// Number of abscissae at which a mean curve is computed.
 const MEAN_PLACES: usize = 201;
 
 pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bundle, Failure> {

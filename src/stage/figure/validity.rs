@@ -1,4 +1,4 @@
-//! What a figure does with runs that are not valid, and what it says of them below the picture.
+//! What a figure does with runs that are not valid, and its statement below the picture.
 
 use super::super::StageError;
 use super::super::invalid::{Invalid, sentence};
