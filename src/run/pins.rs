@@ -73,17 +73,6 @@ kind = "shapes"
 sections = "sections.csv"
 within = { inertia = 0.1 }
 
-[stage.mix]
-kind = "specimen"
-width = "60 mm"
-height = "60 mm"
-depth = "60 mm"
-porosity = 0.36
-mean_radius = "4 mm"
-radius_ratio = 2
-density = "2000 kg/m^3"
-stones = { shapes = "shapes", density = "2700 kg/m^3", classes = [{ from = "10 mm", to = "20 mm", count = 6 }] }
-
 [stage.range]
 kind = "range"
 table = "formula"
@@ -152,7 +141,6 @@ formula c57272d7c660
 command ab7cb869a592
 data 76fbb067e6c6
 shapes c041015d0836
-mix 43d5ce0b9c5d
 range c56236dde0d0
 anova 2a92fd32596a
 screening a2868be9d3d3
