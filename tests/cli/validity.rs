@@ -223,3 +223,23 @@ fn a_disc_that_cannot_be_packed_costs_its_row_alone() {
     // A second run repeats nothing: the reason is stored.
     assert!(space.run(&[]).ran.is_empty());
 }
+
+#[test]
+fn a_group_without_a_fit_says_how_many_of_its_runs_are_missing() {
+    let space = Space::new();
+    space.write(
+        "w.toml",
+        "[workflow]\nseed = 1\n[factor]\na = { levels = [1, 2, 3] }\n[response]\ny = {}\n[stage.runs]\nkind = 'data'\n\
+         file = 'runs.csv'\n[stage.groups]\nkind = 'regression'\ntable = 'runs'\nterms.y = ['a']\nby = ['site']\n",
+    );
+    space.write("runs.csv", "a,y,validity,site\n1,3,,1\n2,5,,1\n3,7.1,,1\n1,3,rotation,2\n2,5,rotation,2\n3,7,,2\n");
+    space.run(&[]);
+    let table = space.stdout(&["show", "w.toml", "groups", "--csv"]);
+    let column = |name: &str| table.lines().next().unwrap().split(',').position(|head| head == name).expect("a column");
+    let cells: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let (missing, second) = (column("missing"), cells.last().unwrap());
+    assert_eq!((cells[0][missing], second[missing]), ("0", "2"), "{table}");
+    assert!(table.contains("has 1 usable rows (2 missing) for 2 coefficients"), "{table}");
+    let notes = space.stdout(&["show", "w.toml", "groups", "--table", "notes", "--csv"]);
+    assert!(notes.contains("site 2: 2 of 3 runs have no value or are left out"), "{notes}");
+}
