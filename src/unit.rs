@@ -152,8 +152,18 @@ const SYMBOLS: &[(&str, f64, Dimension, bool)] = &[
     ("1", 1.0, Dimension::NONE, false),
 ];
 
-const PREFIXES: &[(&str, f64)] =
-    &[("G", 1e9), ("M", 1e6), ("k", 1e3), ("c", 1e-2), ("m", 1e-3), ("µ", 1e-6), ("u", 1e-6), ("n", 1e-9)];
+/// The sign of a millionth is written as `u` too, and as the Greek letter, which looks the same and is another character.
+const PREFIXES: &[(&str, f64)] = &[
+    ("G", 1e9),
+    ("M", 1e6),
+    ("k", 1e3),
+    ("c", 1e-2),
+    ("m", 1e-3),
+    ("\u{b5}", 1e-6),
+    ("\u{3bc}", 1e-6),
+    ("u", 1e-6),
+    ("n", 1e-9),
+];
 
 impl Unit {
     /// Reads a unit such as `GPa`, `m/s`, `kg/m^3` or `MPa*m^0.5`; the empty text is the pure number.
@@ -314,7 +324,7 @@ impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Self::Value, E> {
                 Quantity::parse(text).map_err(E::custom)
             }
-            /// A hole: the value was faulty and that is told already.
+            /// A hole: the value was faulty, which is reported already.
             fn visit_unit<E: de::Error>(self) -> Result<Self::Value, E> {
                 Ok(Quantity::si(1.0))
             }

@@ -1,6 +1,7 @@
 //! Computed results beside values from elsewhere, as they are stored.
 
 use super::ArtifactKind;
+use super::statistics::NoteTable;
 use super::validity::NotValid;
 
 crate::artifact! {
@@ -14,6 +15,8 @@ crate::artifact! {
         pub pairs: Pairs, "";
         /// runs that are not valid, and what became of them
         pub not_valid: Option<NotValid>, "";
+        /// rows and pairs that the comparison is not of
+        pub notes: Option<NoteTable>, "";
     }
 }
 

@@ -5,7 +5,7 @@ use crate::unit::Conversion;
 use ndarray::{Dimension, IxDyn};
 use std::collections::BTreeMap;
 
-/// Why a value could not be read as what was declared.
+/// Why a value could not be read as it was declared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{path}: wanted {wanted}, found {found}")]
 pub struct Wanted {
@@ -18,7 +18,7 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// A value that is not what was wanted.
+    /// A value of another type than declared.
     pub fn new(name: &str, wanted: impl Into<String>, found: impl Into<String>) -> Self {
         Self { path: name.to_owned(), wanted: wanted.into(), found: found.into() }
     }
@@ -39,7 +39,7 @@ pub trait Field: Sized {
     /// Reads it back, its numbers converted to the declared unit.
     ///
     /// # Errors
-    /// What was wanted and what stands there.
+    /// The declared type and the value found.
     fn take(group: &Group, name: &str, unit: &str) -> Result<Self, Wanted>;
 }
 

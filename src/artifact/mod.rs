@@ -53,7 +53,7 @@ impl Artifact {
         Self::new(kind.name(), kind.version(), root)
     }
 
-    /// Whether it is of this kind, whatever its version.
+    /// Whether it is of this kind, in any version.
     pub fn is(&self, kind: ArtifactKind) -> bool {
         self.kind == kind.name()
     }

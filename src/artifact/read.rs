@@ -3,7 +3,7 @@
 use super::{Column, Table, Values};
 use crate::unit::{Conversion, UnitError};
 
-/// Why a column cannot be read as what was wanted.
+/// Why a column cannot be read as requested.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unread {
     /// The table has no such column.

@@ -1,6 +1,6 @@
 //! One run of a simulator as it is stored.
 
-use super::{Artifact, ArtifactKind, Node, Unread, Wanted};
+use super::{Artifact, ArtifactKind, Group, Node, Unread, Values, Wanted, results};
 use ndarray::{Array2, Array3};
 use std::borrow::Cow;
 
@@ -11,6 +11,8 @@ crate::artifact! {
         pub failure: String, "";
         /// why the result is not valid; empty when it is
         pub validity: Option<String>, "";
+        /// why the result is to be read with caution, where a program says so; empty when there is no reason
+        pub cautions: Option<String>, "";
         /// what should be known before its results are believed
         pub warnings: Option<Vec<String>>, "";
         /// what the run gave
@@ -187,6 +189,7 @@ impl Run {
         Self {
             failure: failure.to_owned(),
             validity: None,
+            cautions: None,
             warnings: None,
             responses,
             judgement: None,
@@ -219,10 +222,41 @@ impl Run {
                 let checks = checks.map_err(|unread| Wanted::new("checks", "its columns", unread.to_string()))?;
                 (Some(Cow::Owned(checks.unmet(true))), checks.unmet(false))
             }
-            (_, Some(Node::Text(why))) => (Some(Cow::Borrowed(why.as_str())), String::new()),
+            (_, Some(Node::Text(why))) => {
+                let cautions = match artifact.root.get("cautions") {
+                    Some(Node::Text(cautions)) => cautions.clone(),
+                    Some(_) | None => String::new(),
+                };
+                (Some(Cow::Borrowed(why.as_str())), cautions)
+            }
             (_, _) => (None, String::new()),
         };
         Ok(Outcome { failure, validity, cautions: Cow::Owned(cautions), responses: all.collect() })
+    }
+
+    /// The run as a reader gets it: what it gave with its verdict in columns beside it, as the row of a run among many has
+    /// them. A run without a result has no values there, whatever was measured before it failed.
+    #[must_use]
+    pub fn judged(artifact: &Artifact) -> Artifact {
+        let (Ok(outcome), Some(table)) = (Self::outcome(artifact), artifact.table("responses")) else {
+            return artifact.clone();
+        };
+        let verdicts = [
+            (results::FAILURE, outcome.failure),
+            (results::VALIDITY, outcome.invalid().unwrap_or_default()),
+            (results::CAUTIONS, outcome.cautions.as_ref()),
+        ];
+        let mut table = table.clone();
+        let rows = table.rows();
+        for column in table.columns.iter_mut().filter(|column| column.name == "value" && !outcome.failure.is_empty()) {
+            column.values = Values::Reals(vec![f64::NAN; rows]);
+        }
+        let said = verdicts.into_iter().filter(|(_, why)| !why.is_empty());
+        let table = said.fold(table, |table, (name, why)| table.texts_column(name, "", vec![why.to_owned(); rows]));
+        let node =
+            |name: &str, node: &Node| if name == "responses" { Node::Table(table.clone()) } else { node.clone() };
+        let root = artifact.root.iter().fold(Group::new(), |root, (name, own)| root.with(name, node(name, own)));
+        Artifact { root, ..artifact.clone() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Runs that gave no result, that are not valid, or that are to be read with caution: how many of how many, and why.
 //!
-//! The sentences are made here for everything that says them: the end of `flow run`, `flow show`, notes of the statistics,
+//! The sentences are made here for all that print them: the end of `flow run`, `flow show`, notes of the statistics,
 //! printed tables, figures and the report.
 
 use super::results::Results;
@@ -33,12 +33,12 @@ crate::table! {
     }
 }
 
-/// What is said of some runs of a table.
+/// A statement on some runs of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// They gave no result.
     NoResult,
-    /// They are not valid, whatever becomes of them.
+    /// They are not valid.
     NotValid,
     /// They are not valid, and a stage treated them so.
     Treated(Treated),
@@ -62,17 +62,74 @@ impl Verdict {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tally<'a> {
     all: usize,
-    reasons: Vec<(&'a str, usize)>,
+    reasons: Vec<Reason<'a>>,
+}
+
+/// Reasons that differ in their numbers alone, and how many runs have them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Reason<'a> {
+    /// The words of the first.
+    first: &'a str,
+    /// Which of its [`pieces`] are numbers that others have otherwise.
+    differ: Vec<usize>,
+    count: usize,
+}
+
+/// Most reasons that are written out.
+const WRITTEN: usize = 5;
+
+/// The pieces of a text: numbers, and what stands between them.
+fn pieces(text: &str) -> impl Iterator<Item = (bool, &str)> {
+    let numeric = |c: char| c.is_ascii_digit();
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let first = rest.chars().next()?;
+        let number = numeric(first);
+        // A point or a power of ten belongs to the number when digits follow it.
+        let within = |at: usize, c: char| match c {
+            '.' => rest[at + 1..].starts_with(numeric),
+            'e' => rest[at + 1..].trim_start_matches(['-', '+']).starts_with(numeric),
+            '-' | '+' => rest[..at].ends_with('e') && rest[at + 1..].starts_with(numeric),
+            c => numeric(c),
+        };
+        let end = rest.char_indices().find(|(at, c)| if number { !within(*at, *c) } else { numeric(*c) });
+        let (piece, behind) = rest.split_at(end.map_or(rest.len(), |(at, _)| at));
+        rest = behind;
+        Some((number, piece))
+    })
+}
+
+/// Whether two texts differ in nothing but numbers.
+fn alike(a: &str, b: &str) -> bool {
+    let words = |text| pieces(text).map(|(number, piece)| if number { "" } else { piece });
+    a == b || words(a).eq(words(b))
+}
+
+impl Reason<'_> {
+    /// The words, with a gap where numbers differ.
+    fn words(&self) -> String {
+        let all = pieces(self.first).enumerate();
+        all.map(|(place, (_, piece))| if self.differ.contains(&place) { "…" } else { piece }).collect()
+    }
+
+    /// Counts another run whose reason differs in nothing but numbers.
+    fn meet(&mut self, why: &str) {
+        self.count += 1;
+        let both = pieces(self.first).zip(pieces(why)).enumerate();
+        let new = both.filter(|(place, ((_, own), (_, other)))| own != other && !self.differ.contains(place));
+        let new: Vec<usize> = new.map(|(place, _)| place).collect();
+        self.differ.extend(new);
+    }
 }
 
 impl<'a> Tally<'a> {
     /// Counts the reasons of `all` runs; an empty one is none. They stand in the order in which they are first met.
     pub fn of(all: usize, found: impl IntoIterator<Item = &'a str>) -> Self {
-        let mut reasons: Vec<(&str, usize)> = Vec::new();
+        let mut reasons: Vec<Reason> = Vec::new();
         for why in found.into_iter().filter(|why| !why.is_empty()) {
-            match reasons.iter_mut().find(|(known, _)| *known == why) {
-                Some((_, count)) => *count += 1,
-                None => reasons.push((why, 1)),
+            match reasons.iter_mut().find(|known| alike(known.first, why)) {
+                Some(known) => known.meet(why),
+                None => reasons.push(Reason { first: why, differ: Vec::new(), count: 1 }),
             }
         }
         Self { all, reasons }
@@ -80,7 +137,7 @@ impl<'a> Tally<'a> {
 
     /// Number of runs with a reason.
     pub fn count(&self) -> usize {
-        self.reasons.iter().map(|(_, count)| count).sum()
+        self.reasons.iter().map(|reason| reason.count).sum()
     }
 
     /// `3 of 40 evaluations gave no result: not valid: rotation (3)`; nothing where none has a reason.
@@ -89,7 +146,15 @@ impl<'a> Tally<'a> {
     }
 
     fn why(&self) -> String {
-        self.reasons.iter().map(|(why, count)| format!("{why} ({count})")).collect::<Vec<_>>().join("; ")
+        let (written, others) = self.reasons.split_at(self.reasons.len().min(WRITTEN));
+        let words = written.iter().map(|reason| format!("{} ({})", reason.words(), reason.count));
+        let count: usize = others.iter().map(|reason| reason.count).sum();
+        let more = match others.len() {
+            0 => None,
+            1 => Some(format!("another reason ({count})")),
+            kinds => Some(format!("{kinds} other reasons ({count})")),
+        };
+        words.chain(more).collect::<Vec<_>>().join("; ")
     }
 
     /// `3 of 24 runs gave no result: no peak (2); escape (1)`; nothing where no run has a reason.
@@ -98,7 +163,7 @@ impl<'a> Tally<'a> {
         let words = verdict.words(count == 1);
         match (count, all) {
             (0, _) => None,
-            (1, 1) => Some(format!("the only run {words}: {}", self.reasons[0].0)),
+            (1, 1) => Some(format!("the only run {words}: {}", self.reasons[0].first)),
             _ => Some(format!("{count} of {all} runs {words}: {}", self.why())),
         }
     }
@@ -159,7 +224,7 @@ impl NotValid {
     }
 }
 
-/// What must be said of the runs that an artifact holds or was made from, wherever its numbers are read.
+/// The statements on the runs of an artifact, or on those that it was made from, to be shown wherever its numbers are.
 pub fn sentences(artifact: &Artifact) -> Vec<String> {
     let mut found = faults(artifact);
     if artifact.is(ArtifactKind::RUN) && found.is_empty() {
@@ -190,7 +255,7 @@ pub fn faults(artifact: &Artifact) -> Vec<String> {
 /// Name of the list of runs that are not valid in artifacts that were made from runs.
 const NOT_VALID: &str = "not_valid";
 
-/// The runs of a table without a result, and those that are not valid, of which `verdict` is said.
+/// The runs of a table without a result, and those that are not valid, on which `verdict` is the statement.
 pub fn of_runs(runs: &Table, verdict: Verdict) -> Vec<String> {
     let invalid = Results::invalid(runs);
     let invalid = Tally::of(runs.rows(), invalid.iter().map(|(_, why)| *why)).sentence(verdict);
@@ -210,7 +275,7 @@ fn failures(runs: &Table) -> Tally<'_> {
     Tally::of(runs.rows(), Results::failures(runs).iter().map(String::as_str))
 }
 
-/// What must be said of a single run.
+/// The statements on a single run.
 fn of_run(artifact: &Artifact) -> Option<String> {
     let text = |name: &str| match artifact.root.get(name) {
         Some(Node::Text(text)) if !text.is_empty() => Some(text.as_str()),
@@ -242,6 +307,33 @@ mod tests {
         assert_eq!(say(24, &["rotation"], kept).unwrap(), "1 of 24 runs is not valid and was kept: rotation (1)");
         assert_eq!(say(1, &["no peak"], Verdict::NoResult).unwrap(), "the only run gave no result: no peak");
         assert_eq!(say(1, &["slow"], Verdict::Caution).unwrap(), "the only run is to be read with caution: slow");
+    }
+
+    #[test]
+    fn reasons_that_differ_in_numbers_are_one_and_many_reasons_are_counted() {
+        let say = |all, found: &[&str]| Tally::of(all, found.iter().copied()).sentence(Verdict::NoResult).unwrap();
+        let stress = |number: &str| format!("no peak up to a strain of 2e-9: the largest stress is {number} MPa");
+        let found = [stress("34.5"), stress("1.2e-3"), stress("7")];
+        assert_eq!(
+            say(9, &found.each_ref().map(String::as_str)),
+            "3 of 9 runs gave no result: no peak up to a strain of 2e-9: the largest stress is … MPa (3)"
+        );
+        assert_eq!(say(9, &["at 3", "at 3"]), "2 of 9 runs gave no result: at 3 (2)");
+        assert_eq!(say(9, &["at 3", "on 3"]), "2 of 9 runs gave no result: at 3 (1); on 3 (1)");
+        let many: Vec<String> = ('a'..='z').map(String::from).collect();
+        let many: Vec<&str> = many.iter().map(String::as_str).collect();
+        assert_eq!(
+            say(40, &many),
+            "26 of 40 runs gave no result: a (1); b (1); c (1); d (1); e (1); 21 other reasons (21)"
+        );
+        assert_eq!(
+            say(40, &many[..6]),
+            "6 of 40 runs gave no result: a (1); b (1); c (1); d (1); e (1); another reason (1)"
+        );
+        let whole = |text| pieces(text).map(|(_, piece)| piece).collect::<String>();
+        for text in ["", "1", "1.", "1e", "1e+", "-1.5e-7x", "é1e5é", "e5.", "1..2", "1e5e6", "１"] {
+            assert_eq!(whole(text), text);
+        }
     }
 
     #[test]

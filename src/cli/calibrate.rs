@@ -12,10 +12,11 @@ use super::Exit;
 use super::common::{Campaign, system, workers};
 use super::progress::Progress;
 use super::run::{expected, interruption};
+use super::whole::Whole;
 use crate::artifact::Artifact;
 use crate::exec::cores;
 use crate::plan::{Workflow, nearest};
-use crate::run::{Report, Settings, Silent, StageStatus, Watch, decide, run};
+use crate::run::{Report, RunSettings, Silent, StageStatus, Watch, decide, forecasts_of, run};
 use crate::stage::Kind;
 use crate::stage::calibrate::{Calibrate as Calibration, Wanted};
 use crate::stage::verify::Verify;
@@ -197,7 +198,11 @@ impl Calibrate {
         let jobs = self.jobs.unwrap_or_else(cores);
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
-            false => Box::new(Progress::new(|| expected(&asked.workflow, &asked.store), jobs)),
+            false => Box::new(Progress::new(
+                Whole::of(forecasts_of(&asked.workflow, &asked.checks)),
+                || expected(&asked.workflow, &asked.store),
+                jobs,
+            )),
         };
         let report = asked.run(&asked.checks, jobs, &*watch, &interruption(None));
         if report.interrupted {
@@ -217,7 +222,7 @@ impl Calibrate {
 
 impl Asked {
     fn run(&self, stages: &[String], jobs: usize, watch: &dyn Watch, stop: &Arc<AtomicBool>) -> Report {
-        let settings = Settings {
+        let settings = RunSettings {
             jobs,
             keep_going: false,
             dry: false,

@@ -9,12 +9,14 @@ use crate::artifact::{Artifact, ArtifactKind, ContentHash};
 use crate::export::{File, files, paraview, particles, shapes, tables};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
+use crate::stage;
+use crate::stage::specimen::{self, Loaded};
 use crate::stage::units::presented;
-use crate::stage::{self, specimen};
 use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
+use dem::Space;
 use dem::genesis::specimen::Specimen;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.
@@ -22,10 +24,10 @@ use std::sync::Arc;
 pub(super) struct Export {
     #[command(flatten)]
     campaign: Campaign,
-    /// The stages, or single runs of them such as `orthogonal[12]`; all that have a result when not given.
+    /// The stages, or single runs of them such as `orthogonal[12]`; by default all that have a result.
     #[arg(value_name = "STAGE[ROW]")]
     stages: Vec<String>,
-    /// In which form.
+    /// Form of the files.
     #[arg(long, value_enum, value_name = "FORM", default_value_t = Form::Files)]
     to: Form,
     /// The folder that the files are written to.
@@ -69,20 +71,25 @@ impl Export {
         let memos = asked.iter().all(|(_, row)| row.is_none());
         let report = decide(&workflow, &store, &names, memos);
         let (chosen, missing) = choose(&workflow, &report, &asked);
-        std::fs::create_dir_all(&self.folder).map_err(|e| system(&e))?;
+        let unwritten = |path: &Path, error: std::io::Error| {
+            err!("error: {}: {error}", path.display());
+            Exit::System
+        };
+        std::fs::create_dir_all(&self.folder).map_err(|e| unwritten(&self.folder, e))?;
         let mut written = 0;
         for one in &chosen {
             let artifact = store.get(&one.object.content).map_err(|e| system(&e))?;
-            let csv = self.to == Form::Csv;
-            let artifact = if csv { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
+            let read = matches!(self.to, Form::Files | Form::Csv);
+            let artifact = if read { Arc::new(presented(&artifact, &workflow.context)) } else { artifact };
             let files = self.files(&store, one, &artifact).map_err(|why| {
                 err!("error: {}: {why}", one.name);
                 Exit::BadInput
             })?;
             for (name, bytes) in files {
-                replace(&self.folder.join(&name), &bytes).map_err(|e| system(&e))?;
+                let path = self.folder.join(name);
+                replace(&path, &bytes).map_err(|e| unwritten(&path, e))?;
                 if !self.campaign.common.quiet {
-                    out!("{}", self.folder.join(name).display());
+                    out!("{}", path.display());
                 }
                 written += 1;
             }
@@ -98,7 +105,7 @@ impl Export {
         Ok(Exit::Done)
     }
 
-    /// The files of one result; a result that the form is not for is a fault only where it was asked for by name.
+    /// The files of one result. A result that has no such form is a fault only when it was named.
     fn files(&self, store: &Store, chosen: &Chosen, artifact: &Artifact) -> Result<Vec<File>, String> {
         let name = &chosen.name;
         match self.to {
@@ -114,19 +121,16 @@ impl Export {
             }
             Form::Stl if self.stages.is_empty() => Ok(Vec::new()),
             Form::Stl => Err(format!("`{}` holds no shapes of stones", artifact.kind)),
-            Form::Vtu | Form::Particles if artifact.is(ArtifactKind::SPECIMEN) => {
-                let specimen = load(artifact)?;
-                if self.to == Form::Vtu {
-                    return Ok(paraview::specimen(name, &specimen));
-                }
-                particles::files(name, &specimen, None)
-            }
+            Form::Vtu | Form::Particles if artifact.is(ArtifactKind::SPECIMEN) => match load(artifact)? {
+                Loaded::Plane(specimen) => self.specimen(name, &specimen),
+                Loaded::Solid(specimen) => self.specimen(name, &specimen),
+            },
             Form::Vtu | Form::Particles if Run::from_artifact(artifact).is_ok_and(|run| run.cracks.is_some()) => {
-                let made = Made::of(store, &chosen.object)?;
-                if self.to == Form::Vtu {
-                    return paraview::run(name, artifact, &made.specimen);
+                let Made { specimen, parameters } = Made::of(store, &chosen.object)?;
+                match specimen {
+                    Loaded::Plane(specimen) => self.run(name, artifact, &specimen, &parameters),
+                    Loaded::Solid(specimen) => self.run(name, artifact, &specimen, &parameters),
                 }
-                particles::files(name, &made.specimen, Some(&made.parameters))
             }
             Form::Vtu | Form::Particles if self.stages.is_empty() => Ok(Vec::new()),
             Form::Vtu | Form::Particles => Err(format!(
@@ -135,9 +139,29 @@ impl Export {
             )),
         }
     }
+
+    fn specimen<S: Space>(&self, name: &str, specimen: &Specimen<S>) -> Result<Vec<File>, String> {
+        match self.to {
+            Form::Vtu => Ok(paraview::specimen(name, specimen)),
+            Form::Files | Form::Csv | Form::Particles | Form::Stl => particles::files(name, specimen, None),
+        }
+    }
+
+    fn run<S: Space>(
+        &self,
+        name: &str,
+        run: &Artifact,
+        specimen: &Specimen<S>,
+        parameters: &particles::Parameters,
+    ) -> Result<Vec<File>, String> {
+        match self.to {
+            Form::Vtu => paraview::run(name, run, specimen),
+            Form::Files | Form::Csv | Form::Particles | Form::Stl => particles::files(name, specimen, Some(parameters)),
+        }
+    }
 }
 
-/// The results that were asked for, or all, and the names of those that are not there yet.
+/// The named results, or all, and the names of those that are missing.
 fn choose(workflow: &Workflow, report: &Report, asked: &[(String, Option<usize>)]) -> (Vec<Chosen>, Vec<String>) {
     let all: Vec<(String, Option<usize>)> = match asked {
         [] => report.stages.iter().map(|stage| (stage.name.clone(), None)).collect(),
@@ -157,13 +181,13 @@ fn choose(workflow: &Workflow, report: &Report, asked: &[(String, Option<usize>)
     (chosen, missing)
 }
 
-fn load(artifact: &Artifact) -> Result<Specimen, String> {
-    specimen::load(artifact).and_then(specimen::Loaded::plane).map_err(|e| e.to_string())
+fn load(artifact: &Artifact) -> Result<Loaded, String> {
+    specimen::load(artifact).map_err(|e| e.to_string())
 }
 
-/// What a run was made of, from its task text.
+/// The parameters of a run, from its task text.
 struct Made {
-    specimen: Specimen,
+    specimen: Loaded,
     parameters: particles::Parameters,
 }
 

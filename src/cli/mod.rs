@@ -10,6 +10,7 @@ mod check;
 mod common;
 mod completions;
 mod diff;
+mod examples;
 mod export;
 mod graph;
 mod message;
@@ -23,11 +24,13 @@ mod schema;
 mod show;
 mod site;
 mod store;
+mod whole;
 mod work;
 
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Numerical-experiment campaigns with bonded-particle models, from one TOML file.
 #[derive(Parser)]
@@ -40,35 +43,49 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     /// Compute the missing results of a campaign.
+    #[command(after_help = examples::RUN)]
     Run(run::Run),
     /// Show what `run` would do, and why, without doing it.
+    #[command(after_help = examples::PLAN)]
     Plan(plan::Plan),
     /// Show a result as a table.
+    #[command(after_help = examples::SHOW)]
     Show(show::Show),
     /// Find the parameters for other targets, on the surfaces of a finished campaign.
+    #[command(after_help = examples::CALIBRATE)]
     Calibrate(calibrate::Calibrate),
     /// Find every fault of a workflow without running anything.
+    #[command(after_help = examples::CHECK)]
     Check(check::Check),
     /// Show the stages, their inputs, and their progress.
+    #[command(after_help = examples::GRAPH)]
     Graph(graph::Graph),
     /// Write a page with every table and figure of a campaign.
+    #[command(after_help = examples::REPORT)]
     Report(report::Report),
     /// Write results as files: pictures, printed tables, CSV.
+    #[command(after_help = examples::EXPORT)]
     Export(export::Export),
     /// Compare two campaigns: settings that differ, results that differ.
+    #[command(after_help = examples::DIFF)]
     Diff(diff::Diff),
     /// Manage the store: list, verify, sizes, remove unused results.
+    #[command(after_help = examples::STORE)]
     Store(store::StoreCommand),
     /// Describe a cluster for `flow run --executor slurm`.
+    #[command(after_help = examples::SITE)]
     Site(site::SiteCommand),
-    /// Take tasks from a queue of a cluster; started by the jobs of `flow run --executor slurm`.
+    /// Take tasks from a queue of a cluster (the jobs of `flow run --executor slurm` do this).
     #[command(hide = true)]
     Work(work::Work),
     /// Write a commented workflow to start from.
+    #[command(after_help = examples::NEW)]
     New(new::New),
     /// Print the JSON Schema of workflow files, for editors.
+    #[command(after_help = examples::SCHEMA)]
     Schema(schema::Schema),
     /// Print completions for a shell.
+    #[command(after_help = examples::COMPLETIONS)]
     Completions(completions::Completions),
 }
 
@@ -89,6 +106,9 @@ pub enum Exit {
 
 /// Reads the command line and executes it.
 pub fn main() -> ExitCode {
+    // A file beyond the limit of the user (`ulimit -f`) is an error of the write, which is reported, and not the end of the
+    // process. Where the signal cannot be taken it ends it, as it would have.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     ExitCode::from(execute(std::env::args_os()) as u8)
 }
 

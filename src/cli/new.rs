@@ -27,6 +27,7 @@ struct Shipped {
 const SHIPPED: &[Shipped] = &[
     Shipped { name: "start", text: include_str!("../../workflows/start.toml"), files: &[] },
     Shipped { name: "rock", text: include_str!("../../workflows/rock.toml"), files: &[] },
+    Shipped { name: "rock-3d", text: include_str!("../../workflows/rock-3d.toml"), files: &[] },
     Shipped { name: "granite", text: include_str!("../../workflows/granite.toml"), files: &[] },
     Shipped { name: "fissure", text: include_str!("../../workflows/fissure.toml"), files: &[] },
     Shipped { name: "concrete", text: include_str!("../../workflows/concrete.toml"), files: &[] },
@@ -64,8 +65,11 @@ impl New {
         };
         let path = self.name.with_extension("toml");
         match self.write(&path, shipped) {
-            Ok(()) => {
-                println!("{0} is written; next: flow plan {0}", path.display());
+            Ok(beside) => {
+                for file in beside {
+                    out!("{} is written", file.display());
+                }
+                out!("{0} is written; next: flow plan {0}", path.display());
                 Exit::Done
             }
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {
@@ -79,21 +83,26 @@ impl New {
         }
     }
 
-    /// The workflow must be new; schema and tables beside it may be there from another one.
-    fn write(&self, path: &Path, shipped: &Shipped) -> std::io::Result<()> {
+    /// Writes the workflow, which must be new, and the schema and tables beside it, which may be there from another one;
+    /// returns the files beside it that are new.
+    fn write(&self, path: &Path, shipped: &Shipped) -> std::io::Result<Vec<PathBuf>> {
         std::fs::File::create_new(path)?.write_all(shipped.text.as_bytes())?;
         let schema = format!("{:#}\n", schema::schema());
         let beside = shipped.files.iter().copied().chain([(schema::FILE_NAME, schema.as_str())]);
+        let mut written = Vec::new();
         for (name, text) in beside {
-            let target = path.with_file_name(name);
-            target.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-            match std::fs::File::create_new(&target) {
-                Ok(mut file) => file.write_all(text.as_bytes())?,
+            let file = path.with_file_name(name);
+            file.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+            match std::fs::File::create_new(&file) {
+                Ok(mut new) => {
+                    new.write_all(text.as_bytes())?;
+                    written.push(file);
+                }
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
                 Err(e) => return Err(e),
             }
         }
-        Ok(())
+        Ok(written)
     }
 }
 

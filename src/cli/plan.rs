@@ -4,7 +4,8 @@ use super::Exit;
 use super::common::Campaign;
 use crate::exec::cores;
 use crate::report::duration;
-use crate::run::{Past, Report, StageReport, StageStatus, TaskReport, TaskState, decide};
+use crate::run::{Past, Report, StageReport, StageStatus, TaskReport, TaskState, decide, forecasts};
+use crate::stage::forecast::{Forecast, TaskForecast};
 use clap::Args;
 
 /// Show what `run` would do, and why, without doing it.
@@ -27,6 +28,10 @@ struct Line {
     state: String,
     reasons: Vec<String>,
     to_run: usize,
+    /// What it is expected to ask for when its inputs are there; none of a stage whose tasks are known.
+    expected: Option<TaskForecast>,
+    /// Whether nothing is known of its tasks.
+    unknown: bool,
     seconds: Option<f64>,
 }
 
@@ -45,7 +50,9 @@ impl Plan {
             let index = workflow.position(&stage.name);
             open.iter().filter(|task| Some(task.stage) == index).collect()
         };
-        let lines: Vec<Line> = report.stages.iter().map(|stage| line(stage, of(stage), &past)).collect();
+        let forecasts = forecasts(&workflow);
+        let ahead = |stage: &StageReport| workflow.position(&stage.name).map_or(Forecast::UNKNOWN, |i| forecasts[i]);
+        let lines: Vec<Line> = report.stages.iter().map(|stage| line(stage, of(stage), ahead(stage), &past)).collect();
         if self.json {
             out!("{}", document(&workflow.name, &report, &lines));
         } else {
@@ -56,12 +63,18 @@ impl Plan {
 }
 
 /// `open` are the tasks of the stage that would be run.
-fn line(stage: &StageReport, open: Vec<&TaskReport>, past: &Past<'_>) -> Line {
+fn line(stage: &StageReport, open: Vec<&TaskReport>, ahead: Forecast, past: &Past<'_>) -> Line {
+    let waits = matches!(stage.status, StageStatus::Open) && open.is_empty();
+    let expected = ahead.tasks.filter(|_| waits);
     let state = match &stage.status {
         StageStatus::Done(_) => format!("done, {} cached", stage.tasks.cached),
         StageStatus::Failed(why) => format!("cannot run: {why}"),
         StageStatus::Skipped(cause) => format!("skipped, because `{cause}` cannot run"),
-        StageStatus::Open if open.is_empty() => "not known yet: waits for its inputs".to_owned(),
+        StageStatus::Open if open.is_empty() => match expected {
+            Some(TaskForecast::Exactly(tasks)) => format!("{tasks} to run, once its inputs are there"),
+            Some(TaskForecast::AtMost(tasks)) => format!("at most {tasks} to run, once its inputs are there"),
+            None => "not known yet: waits for its inputs".to_owned(),
+        },
         StageStatus::Open => format!("{} to run, {} cached", open.len(), stage.tasks.cached),
     };
     let mut reasons = past.reasons(&stage.name, &open);
@@ -75,8 +88,20 @@ fn line(stage: &StageReport, open: Vec<&TaskReport>, past: &Past<'_>) -> Line {
     if more > 0 {
         reasons.push(format!("… and {more} more reasons"));
     }
-    let seconds = past.seconds(&stage.name).map(|each| each * open.len() as f64).filter(|_| !open.is_empty());
-    Line { name: stage.name.clone(), state, reasons, to_run: open.len(), seconds }
+    let tasks = match expected {
+        Some(TaskForecast::Exactly(tasks) | TaskForecast::AtMost(tasks)) => tasks,
+        None => open.len(),
+    };
+    let seconds = past.seconds(&stage.name).map(|each| each * tasks as f64).filter(|_| tasks > 0);
+    Line {
+        name: stage.name.clone(),
+        state,
+        reasons,
+        to_run: open.len(),
+        expected,
+        unknown: waits && expected.is_none(),
+        seconds,
+    }
 }
 
 fn print_lines(lines: &[Line]) {
@@ -88,6 +113,36 @@ fn print_lines(lines: &[Line]) {
             out!("{:width$}    {reason}", "");
         }
     }
+    if let Some(total) = total(lines) {
+        out!("{total}");
+    }
+}
+
+/// The whole campaign in one line; none when nothing is left to do.
+fn total(lines: &[Line]) -> Option<String> {
+    let known: usize = lines.iter().map(|line| line.to_run).sum();
+    let (mut tasks, mut bounded) = (known, false);
+    for line in lines {
+        match line.expected {
+            Some(TaskForecast::Exactly(more)) => tasks = tasks.saturating_add(more),
+            Some(TaskForecast::AtMost(more)) => (tasks, bounded) = (tasks.saturating_add(more), true),
+            None => {}
+        }
+    }
+    let busy: Vec<&Line> = lines.iter().filter(|line| line.to_run > 0 || line.expected.is_some()).collect();
+    let unknown = lines.iter().filter(|line| line.unknown).count();
+    if busy.is_empty() && unknown == 0 {
+        return None;
+    }
+    let most = if bounded { "at most " } else { "" };
+    let stages =
+        if unknown > 0 { format!(", and those of {unknown} stages that are not known yet") } else { String::new() };
+    let seconds: Option<f64> = busy.iter().map(|line| line.seconds).sum();
+    let time = match seconds {
+        Some(seconds) => format!(", about {}", duration(seconds / cores() as f64)),
+        None => "; how long they take is known for stages that ran here before".to_owned(),
+    };
+    Some(format!("in all {most}{tasks} tasks to run{stages}{time}"))
 }
 
 fn document(name: &str, report: &Report, lines: &[Line]) -> serde_json::Value {
@@ -99,6 +154,10 @@ fn document(name: &str, report: &Report, lines: &[Line]) -> serde_json::Value {
             serde_json::json!({
                 "name": stage.name, "kind": stage.kind, "state": stage.status.word(),
                 "cached": stage.tasks.cached, "to_run": line.to_run, "reasons": line.reasons, "seconds": line.seconds,
+                "expected": line.expected.map(|expected| match expected {
+                    TaskForecast::Exactly(tasks) => serde_json::json!({ "tasks": tasks, "at_most": false }),
+                    TaskForecast::AtMost(tasks) => serde_json::json!({ "tasks": tasks, "at_most": true }),
+                }),
             })
         })
         .collect();

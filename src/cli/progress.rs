@@ -1,7 +1,8 @@
 //! What a person sees while a campaign runs: a live table on a terminal, plain lines elsewhere.
 
+use super::whole::Whole;
 use crate::report::duration;
-use crate::run::{Event, StageReport, StageStatus, Watch};
+use crate::run::{Event, StageReport, StageStatus, TaskCount, Watch};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::IsTerminal;
@@ -15,6 +16,9 @@ const PAUSE: Duration = Duration::from_secs(5);
 pub(super) struct Progress<'a> {
     screen: Option<MultiProgress>,
     stages: Mutex<HashMap<String, Live>>,
+    /// How far all stages together are, and its line on a terminal.
+    whole: Mutex<Whole>,
+    line: Option<ProgressBar>,
     /// Mean seconds of a task by stage, from earlier runs; looked up when the first task starts.
     expected: OnceLock<HashMap<String, f64>>,
     look_up: Box<dyn Fn() -> HashMap<String, f64> + Sync + 'a>,
@@ -38,12 +42,18 @@ struct Live {
 
 impl<'a> Progress<'a> {
     /// `look_up` gives the mean seconds of a task by stage.
-    pub(super) fn new(look_up: impl Fn() -> HashMap<String, f64> + Sync + 'a, workers: usize) -> Self {
+    pub(super) fn new(whole: Whole, look_up: impl Fn() -> HashMap<String, f64> + Sync + 'a, workers: usize) -> Self {
         let screen = std::io::stderr().is_terminal().then(|| {
             let target = ProgressDrawTarget::stderr_with_hz(8);
             MultiProgress::with_draw_target(target)
         });
-        Self { screen, stages: Mutex::default(), expected: OnceLock::new(), look_up: Box::new(look_up), workers }
+        let line = screen.as_ref().map(|screen| {
+            let line = screen.add(ProgressBar::new(0));
+            line.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+            line
+        });
+        let (stages, whole) = (Mutex::default(), Mutex::new(whole));
+        Self { screen, stages, whole, line, expected: OnceLock::new(), look_up: Box::new(look_up), workers }
     }
 
     fn stages(&self) -> MutexGuard<'_, HashMap<String, Live>> {
@@ -59,7 +69,11 @@ impl<'a> Progress<'a> {
     }
 
     fn bar(&self, stage: &str) -> Option<ProgressBar> {
-        let bar = self.screen.as_ref()?.add(ProgressBar::new(0));
+        let screen = self.screen.as_ref()?;
+        let bar = match &self.line {
+            Some(line) => screen.insert_before(line, ProgressBar::new(0)),
+            None => screen.add(ProgressBar::new(0)),
+        };
         let style = ProgressStyle::with_template("{prefix:16} {bar:24.cyan/dim} {pos:>5}/{len:5} {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(stage.to_owned());
@@ -90,8 +104,20 @@ impl<'a> Progress<'a> {
         }
     }
 
-    fn asked(&self, stage: &str, count: crate::run::TaskCount, note: &str) {
+    /// How far the campaign is, shown on its line where there is one.
+    fn whole(&self, change: impl FnOnce(&mut Whole)) -> Option<String> {
+        let mut whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut whole);
+        let words = whole.in_words(self.workers);
+        if let (Some(line), Some(words)) = (&self.line, &words) {
+            line.set_message(words.clone());
+        }
+        words
+    }
+
+    fn asked(&self, stage: &str, count: TaskCount, note: &str) {
         self.started(stage);
+        self.whole(|whole| whole.note(stage, count, None));
         if let Some(live) = self.stages().get_mut(stage) {
             note.clone_into(&mut live.note);
             if let Some(bar) = &live.bar {
@@ -102,14 +128,20 @@ impl<'a> Progress<'a> {
         }
     }
 
-    fn ended(&self, stage: &str, count: crate::run::TaskCount) {
+    fn ended(&self, stage: &str, count: TaskCount) {
         let mut stages = self.stages();
         let Some(live) = stages.get_mut(stage) else { return };
         live.ended += 1;
         live.failed = count.failed;
         let elapsed = live.started.elapsed().as_secs_f64();
         let left = count.total - count.ended();
-        let expected = self.expected.get_or_init(&self.look_up).get(stage).map(|s| s / self.workers as f64);
+        let earlier = self.expected.get_or_init(&self.look_up);
+        let expected = earlier.get(stage).map(|s| s / self.workers as f64);
+        let measured = elapsed / live.ended as f64 * self.workers as f64;
+        let words = self.whole(|whole| {
+            whole.note(stage, count, Some(measured));
+            whole.expect(|name| earlier.get(name).copied());
+        });
         let pace = pace(live.ended, left, elapsed, expected);
         let message = match live.note.as_str() {
             "" => pace,
@@ -121,11 +153,13 @@ impl<'a> Progress<'a> {
             bar.set_message(message);
         } else if live.reported.elapsed() >= PAUSE && left > 0 {
             live.reported = Instant::now();
-            err!("{stage:16} {:>5}/{:<5} {message}", count.ended(), count.total);
+            let whole = words.map_or_else(String::new, |words| format!("; {words}"));
+            err!("{stage:16} {:>5}/{:<5} {message}{whole}", count.ended(), count.total);
         }
     }
 
     fn closed(&self, report: &StageReport) {
+        self.whole(|whole| whole.close(&report.name, report.tasks));
         let live = self.stages().remove(&report.name);
         if let Some(bar) = live.as_ref().and_then(|live| live.bar.as_ref()) {
             bar.finish_and_clear();

@@ -5,11 +5,14 @@ use super::common::{Campaign, system, workers};
 use super::notes::notes;
 use super::progress::{Progress, task_name};
 use super::site;
+use super::whole::Whole;
 use crate::cluster::Site;
 use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
-use crate::run::{Cluster, Past, Report, Settings, Silent, StageReport, StageStatus, TaskState, Watch, record, run};
+use crate::run::{
+    Cluster, Past, Report, RunSettings, Silent, StageReport, StageStatus, TaskState, Watch, forecasts_of, record, run,
+};
 use crate::stage::command::leftover;
 use crate::store::Store;
 use clap::{Args, ValueEnum};
@@ -79,7 +82,7 @@ impl Run {
         let stop = interruption(cluster.as_ref().map(|cluster| &cluster.leave));
         leftover::sweep().iter().for_each(|line| err!("warning: {line}"));
         let jobs = self.jobs.unwrap_or_else(cores);
-        let settings = Settings {
+        let settings = RunSettings {
             jobs,
             keep_going: self.keep_going,
             dry: false,
@@ -90,7 +93,11 @@ impl Run {
         };
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
-            false => Box::new(Progress::new(|| expected(&workflow, &store), jobs)),
+            false => Box::new(Progress::new(
+                Whole::of(forecasts_of(&workflow, &self.stages)),
+                || expected(&workflow, &store),
+                jobs,
+            )),
         };
         let report = run(&workflow, &store, &settings, &*watch, &stop);
         drop(watch);
@@ -195,7 +202,7 @@ pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
 /// sound whenever a campaign is killed.
 const PATIENCE: Duration = Duration::from_millis(850);
 
-/// The same, when a scheduler must be told to cancel jobs meanwhile.
+/// The same, when the scheduler must cancel jobs meanwhile.
 const PATIENCE_FAR: Duration = Duration::from_secs(20);
 
 /// Ends this process and the programs that it runs.

@@ -14,7 +14,7 @@ use std::ops::Range;
 pub(crate) struct Rigid<S: Space> {
     /// Its pebbles, one after the other.
     pub(crate) pebbles: Range<usize>,
-    /// Their places in the clump's frame, m.
+    /// Their positions in the clump's frame, m.
     pub(crate) offsets: Vec<Vector<S>>,
     /// Centre of mass, m.
     pub(crate) centre: Vector<S>,

@@ -1,6 +1,7 @@
 //! What can be wrong with a model, and why a run can fail.
 
 use super::particle::Group;
+use super::words::Quantity;
 
 /// One fault of the input. All faults of a model are reported together.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -8,7 +9,7 @@ pub enum Fault {
     /// A number of a particle is out of range.
     #[error("particle {particle}: {quantity} is {value}, wanted {wanted}")]
     Particle {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         particle: usize,
         /// What it is.
         quantity: &'static str,
@@ -20,7 +21,7 @@ pub enum Fault {
     /// A number of a clump is out of range.
     #[error("clump {clump}: {quantity} is {value}, wanted {wanted}")]
     Clump {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         clump: usize,
         /// What it is.
         quantity: &'static str,
@@ -32,9 +33,9 @@ pub enum Fault {
     /// A pebble does not exist, belongs to two clumps, or cannot do what is asked of a ball.
     #[error("clump {clump}: pebble {pebble} {problem}")]
     Pebble {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         clump: usize,
-        /// Place of the particle.
+        /// Index of the particle.
         pebble: usize,
         /// What is wrong.
         problem: &'static str,
@@ -42,7 +43,7 @@ pub enum Fault {
     /// A number of a wall is out of range.
     #[error("wall {wall}: {quantity} is {value}, wanted {wanted}")]
     Wall {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         wall: usize,
         /// What it is.
         quantity: &'static str,
@@ -52,19 +53,19 @@ pub enum Fault {
         wanted: &'static str,
     },
     /// A call names a particle or wall that is not there.
-    #[error("{what} {place} does not exist: there are {count}, counted from 0")]
+    #[error("{what} {index} does not exist: there are {count}, counted from 0")]
     Missing {
         /// `particle` or `wall`.
         what: &'static str,
-        /// The place asked for.
-        place: usize,
+        /// The index asked for.
+        index: usize,
         /// How many there are.
         count: usize,
     },
-    /// A call names a wall that was taken away.
-    #[error("wall {wall} was taken away")]
+    /// A call names a removed wall.
+    #[error("wall {wall} was removed")]
     Removed {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         wall: usize,
     },
     /// A number of the contact table is out of range.
@@ -102,7 +103,7 @@ pub enum Fault {
     /// Two particles start too deep in one another.
     #[error("particles {a} and {b} start with an overlap of {overlap:.3} of the smaller radius")]
     Overlap {
-        /// One, by its place in the caller's list.
+        /// One, by its index in the caller's list.
         a: usize,
         /// The other.
         b: usize,
@@ -112,9 +113,9 @@ pub enum Fault {
     /// A particle starts too deep in a wall.
     #[error("particle {particle} starts with an overlap of {overlap:.3} of its radius in wall {wall}")]
     InWall {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         wall: usize,
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         particle: usize,
         /// Overlap over the radius.
         overlap: f64,
@@ -132,17 +133,18 @@ pub enum Failure {
     /// A body left the bounds (or went further than half an edge out of a periodic cell).
     #[error("particle {particle} left the bounds at step {step}")]
     Escape {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         particle: usize,
         /// Step.
         step: u64,
     },
     /// A body moved further in one step than contacts can be found.
     #[error(
-        "particle {particle} moved {travel:.3e} m in step {step}, more than the {limit:.3e} m within which contacts are found: unstable"
+        "particle {particle} moved {} in step {step}, more than the {} within which contacts are found: unstable",
+        Quantity(*.travel, "m"), Quantity(*.limit, "m")
     )]
     Instability {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         particle: usize,
         /// Step.
         step: u64,
@@ -154,7 +156,7 @@ pub enum Failure {
     /// A position or velocity is not a number.
     #[error("particle {particle} has a position or velocity that is not finite at step {step}")]
     NotFinite {
-        /// Place in the caller's list.
+        /// Index in the caller's list.
         particle: usize,
         /// Step.
         step: u64,

@@ -99,7 +99,7 @@ impl Linear {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShearBreak {
-    /// Kept under compression, limited by friction from then on (continuous; PFC 3).
+    /// Unchanged under compression, limited by friction from then on (continuous; PFC 3).
     #[default]
     Keep,
     /// Zeroed (present PFC text).
@@ -346,7 +346,7 @@ impl ContactTable {
         self
     }
 
-    /// The place of a pair in the table: its class.
+    /// The index of a pair in the table: its class.
     pub fn class(&self, a: Group, b: Group) -> Option<usize> {
         let pair = (a.min(b), a.max(b));
         self.entries.iter().position(|e| (e.0, e.1) == pair)
@@ -358,7 +358,7 @@ impl ContactTable {
     }
 }
 
-/// The radii that a contact stands between: the second is infinite at a wall.
+/// The radii on both sides of a contact: the second is infinite at a wall.
 fn length(radii: [f64; 2]) -> f64 {
     if radii[1].is_finite() { radii[0] + radii[1] } else { radii[0] }
 }

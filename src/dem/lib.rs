@@ -3,12 +3,12 @@
 //!
 //! # How to use it
 //! 1. Describe a [`Model`]: `particles` (position, radius, velocity, spin, mass, inertia, [`Group`];
-//!    [`Particle::ball`] fills them in from a density), `clumps` (pebbles are particles too, named by their place;
+//!    [`Particle::ball`] fills them in from a density), `clumps` (pebbles are particles too, named by their index;
 //!    [`Clump::of`] gives them mass and inertia of the union), `walls` (infinite planes; normal into the specimen;
 //!    [`Motion::Velocity`] or [`Motion::Servo`]), `contacts` (a [`ContactTable`] with one [`Interaction`] for each pair of
 //!    groups that can meet; walls have groups too), `settings` ([`Settings`]: damping 0.7, gravity, safety 0.8, masses).
 //! 2. [`Engine::new`] checks it and reports all [`Faults`] at once. Bodies are renumbered along a Morton curve inside;
-//!    **the caller's places (of particles, clumps, walls) name things everywhere in the interface**.
+//!    **the caller's indices (of particles, clumps, walls) name things everywhere in the interface**.
 //! 3. Move it: [`Engine::advance`]`(steps)`, or [`Engine::run`]`(steps, every, |engine| Watch::Continue)` to look at it every
 //!    `every` steps. A [`Failure`] (escape, instability, not finite) is data. [`Engine::calm`] zeroes velocities,
 //!    [`Engine::scale_radii`] grows balls at constant density (stiffnesses follow), [`Engine::set_contacts`] exchanges the
@@ -99,6 +99,7 @@ pub mod space;
 pub mod strength;
 
 mod union;
+mod words;
 
 pub use boundary::{Cell, Motion, Servo, Wall};
 pub use contact::{Contact, Other};

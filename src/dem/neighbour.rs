@@ -1,6 +1,6 @@
 //! Neighbour search on a uniform grid, and the order of bodies along a space-filling curve.
 //!
-//! Pairs come out sorted by (i, j) with i < j, whatever the grid.
+//! Pairs come out sorted by (i, j) with i < j, for every grid.
 
 /// Gives `put` the pairs of balls whose surfaces are nearer than `margin`, in order. Balls of the same body are left out.
 ///
@@ -94,7 +94,7 @@ impl Grid {
     }
 }
 
-/// Places of `points` along a Morton curve through their bounding cube; equal codes keep their order.
+/// Positions of `points` along a Morton curve through their bounding cube; equal codes keep their order.
 pub(crate) fn morton_order(points: &[[f64; 3]], dimension: usize) -> Vec<u32> {
     let mut low = [f64::INFINITY; 3];
     let mut edge: f64 = 0.0;

@@ -1,4 +1,4 @@
-//! Microparameters: what the laws of a contact are told, declared once.
+//! Microparameters: the parameters of contact models, each declared once.
 //!
 //! Whoever reads, checks, lists or exports a microparameter asks here for its key, symbol, unit, range and meaning, and for the laws
 //! that it has an effect on. Symbols are LaTeX; a bar marks the cement of a parallel bond.
@@ -122,7 +122,7 @@ impl Range {
     }
 }
 
-/// What there is to say about a microparameter.
+/// Description of a microparameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Declaration {
     /// Key in a material, such as `sigma_c`.
@@ -133,7 +133,7 @@ pub struct Declaration {
     pub quantity: Quantity,
     /// Its values.
     pub range: Range,
-    /// The value when none is given; NaN when one is needed or another microparameter stands for it.
+    /// The value when none is given; NaN when one is needed or another microparameter replaces it.
     pub default: f64,
     /// Laws that it has an effect on.
     pub laws: &'static [Law],

@@ -2,7 +2,7 @@
 
 use super::space::{Space, Spin, Vector};
 
-/// A set of bodies with the same contact properties; the caller keeps the names.
+/// A set of bodies with the same contact properties; their names are the caller's affair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Group(pub u8);
 
@@ -38,7 +38,7 @@ impl<S: Space> Particle<S> {
 /// A rigid body of overlapping pebbles. Pebbles of one clump do not touch each other.
 #[derive(Clone, Debug)]
 pub struct Clump<S: Space> {
-    /// Places of the pebbles in the caller's list of particles.
+    /// Indices of the pebbles in the caller's list of particles.
     pub pebbles: Vec<usize>,
     /// Centre of mass, m.
     pub centre: Vector<S>,

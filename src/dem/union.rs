@@ -37,7 +37,7 @@ impl<S: Space> Clump<S> {
     /// The clump at rest whose mass, centre and inertia are those of the union of its pebbles, of one density (kg/m³).
     ///
     /// # Errors
-    /// Every pebble that does not exist or has no sound place and radius; no pebble; a density that is not above 0.
+    /// Every pebble that does not exist or has no sound centre and radius; no pebble; a density that is not above 0.
     pub fn of(particles: &[Particle<S>], pebbles: &[usize], density: f64) -> Result<Self, Faults> {
         let clump = 0;
         let mut faults = Vec::new();
@@ -79,7 +79,7 @@ fn plane(balls: &[Ball]) -> (f64, [f64; 3], [[f64; 3]; 3]) {
 
 /// Volume, centre, inertia about it (over the density) of a union of spheres.
 fn solid(balls: &[Ball]) -> (f64, [f64; 3], [[f64; 3]; 3]) {
-    // About the first ball, so that a place far from the origin costs no digits.
+    // About the first ball, so that a centre far from the origin costs no digits.
     let base = balls[0].0;
     let local: Vec<Ball> = balls.iter().map(|&(x, r)| (x.minus(base), r)).collect();
     let along = |k: usize| sliced(&local, axis(k), axis(k + 1), axis(k + 2));
@@ -140,9 +140,9 @@ fn nodes() -> impl Iterator<Item = (f64, f64)> {
 
 /// Area of the slice at a height.
 fn slice(balls: &[([f64; 2], f64, f64)], s: f64) -> f64 {
-    let disc = |&(place, height, r): &([f64; 2], f64, f64)| {
+    let disc = |&(centre, height, r): &([f64; 2], f64, f64)| {
         let square = r * r - (s - height) * (s - height);
-        (square > 0.0).then(|| (place, square.sqrt()))
+        (square > 0.0).then(|| (centre, square.sqrt()))
     };
     let discs: Vec<_> = balls.iter().filter_map(disc).collect();
     if discs.is_empty() { 0.0 } else { union_moments(&discs).area }

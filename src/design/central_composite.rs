@@ -39,7 +39,7 @@ pub enum Alpha {
     Number(f64),
 }
 
-/// What the range of a factor stands for.
+/// Meaning of the range of a factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Extent {
@@ -71,7 +71,7 @@ pub struct CentralComposite {
     /// Number of centre points; that of uniform precision if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub centre_points: Option<usize>,
-    /// What the factors' ranges stand for.
+    /// Meaning of the ranges of the factors.
     #[serde(skip_serializing_if = "is_default")]
     pub extent: Extent,
     /// Which corners are run.

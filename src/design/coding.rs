@@ -32,7 +32,7 @@ pub enum Domain {
 /// A factor of a design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Name, unique in the design; it stands in the names of terms (`Ec*kn_ks`).
+    /// Name, unique in the design; it appears in the names of terms (`Ec*kn_ks`).
     pub name: String,
     /// Unit of the values, as text for tables; empty for a plain number.
     pub unit: String,
@@ -154,9 +154,9 @@ impl Factor {
                 let words: Vec<u64> = levels.iter().map(|value| (value + 0.0).to_bits()).collect();
                 let again =
                     occurrences(&words, 1, words.len()).into_iter().enumerate().filter(|(_, number)| *number > 1);
-                for (place, _) in again.filter(|(place, _)| !levels[*place].is_nan()) {
-                    let first = words.iter().position(|word| *word == words[place]).unwrap_or(place);
-                    let (value, first, second) = (levels[place], first + 1, place + 1);
+                for (position, _) in again.filter(|(position, _)| !levels[*position].is_nan()) {
+                    let first = words.iter().position(|word| *word == words[position]).unwrap_or(position);
+                    let (value, first, second) = (levels[position], first + 1, position + 1);
                     faults.push(Fault::DuplicateLevel { factor: factor(), value, first, second });
                 }
             }

@@ -5,7 +5,7 @@ use thiserror::Error;
 /// One thing that is wrong, with the factor or option it concerns and the remedy.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Fault {
-    /// There is nothing to vary.
+    /// No factor.
     #[error("the design has no factors; name at least one, with its levels or its range")]
     NoFactors,
     /// A factor without a name.
@@ -35,7 +35,7 @@ pub enum Fault {
         /// How many levels it has.
         found: usize,
     },
-    /// A level stands twice.
+    /// A duplicate level.
     #[error(
         "factor `{factor}` has the level {value} twice, as levels {first} and {second}; remove one (to run a level more often, use `doubled` or `replicates`)"
     )]
@@ -72,9 +72,9 @@ pub enum Fault {
     EmptyRange {
         /// The factor.
         factor: String,
-        /// Lower limit as given.
+        /// Lower limit of the input.
         low: f64,
-        /// Upper limit as given.
+        /// Upper limit of the input.
         high: f64,
     },
     /// The design wants another number of levels than the factor has.
@@ -112,7 +112,7 @@ pub enum Fault {
     NoConstruction {
         /// The design.
         design: String,
-        /// What was asked for.
+        /// The request.
         found: String,
         /// What exists instead.
         remedy: String,

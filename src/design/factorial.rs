@@ -2,11 +2,11 @@
 //! 1937).
 //!
 //! Standard order is that of Yates: the first factor changes fastest. A factor given by a range is set to its two ends.
-//! Centre points may be added; they stand at the middle of every range.
+//! Centre points may be added; they are at the middle of every range.
 
 use super::coding::{Factor, check_surface};
 use super::error::Fault;
-use super::table::{MOST_RUNS, Place, PointType, Points};
+use super::table::{MOST_RUNS, PointType, Points, Position};
 use super::{Design, Stream, is_default};
 use serde::{Deserialize, Serialize};
 
@@ -32,12 +32,12 @@ impl Design for FullFactorial {
         let kind = if counts.iter().all(|&n| n == 2) { PointType::Cube } else { PointType::Grid };
         let row = |run: usize| {
             let mut rest = run;
-            let place = |n: &usize| {
+            let position = |n: &usize| {
                 let level = rest % n;
                 rest /= n;
-                Place::Level(level)
+                Position::Level(level)
             };
-            (counts.iter().map(place).collect(), kind)
+            (counts.iter().map(position).collect(), kind)
         };
         let shape: Vec<String> = counts.iter().map(ToString::to_string).collect();
         Ok(Points {

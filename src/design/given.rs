@@ -2,7 +2,7 @@
 
 use super::coding::{Domain, Factor};
 use super::error::Fault;
-use super::table::{Place, PointType, Points};
+use super::table::{PointType, Points, Position};
 use super::{Design, Stream, is_default};
 use serde::{Deserialize, Serialize};
 
@@ -70,11 +70,11 @@ impl Design for Given {
         if !faults.is_empty() {
             return Err(faults);
         }
-        let place = |(&x, f): (&f64, &Factor)| match level(x, f.level_count()) {
-            Some(level) if self.by_level => Place::Level(level),
-            _ => Place::Natural(x),
+        let position = |(&x, f): (&f64, &Factor)| match level(x, f.level_count()) {
+            Some(level) if self.by_level => Position::Level(level),
+            _ => Position::Natural(x),
         };
-        let row = |row: &Vec<f64>| (row.iter().zip(factors).map(place).collect(), PointType::Given);
+        let row = |row: &Vec<f64>| (row.iter().zip(factors).map(position).collect(), PointType::Given);
         Ok(Points {
             rows: self.rows.iter().map(row).collect(),
             centre: 0,

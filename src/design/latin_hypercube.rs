@@ -5,11 +5,11 @@
 //! `maximin` spreads the points by exchanging two values of one factor under simulated annealing (Morris & Mitchell
 //! 1995, *J. Stat. Plan. Inference* 43, 381, doi:10.1016/0378-3758(94)00035-T): it minimises φ = (Σ d⁻⁴⁰)^(1/40) over
 //! the distances d of all pairs, measured in strata, which for so high a power pushes the smallest distance up. The
-//! best sample met is kept.
+//! the best sample is used.
 
 use super::coding::Factor;
 use super::error::Fault;
-use super::sobol::{check_runs, place};
+use super::sobol::{check_runs, position};
 use super::table::{PointType, Points};
 use super::{Design, Stream, is_default};
 use math::elementary::{exp, ln};
@@ -93,8 +93,9 @@ impl Design for LatinHypercube {
         };
         let mut rows = Vec::with_capacity(n);
         for run in 0..n {
-            let places = factors.iter().zip(&columns).map(|(f, c)| place(f, (c[run] as f64 + within()) / n as f64));
-            rows.push((places.collect(), PointType::Sample));
+            let positions =
+                factors.iter().zip(&columns).map(|(f, c)| position(f, (c[run] as f64 + within()) / n as f64));
+            rows.push((positions.collect(), PointType::Sample));
         }
         let how = match self.criterion {
             Criterion::Maximin => "maximin",

@@ -1,4 +1,4 @@
-//! Designs of experiments: from factors to a table of runs, and what such a table can tell.
+//! Designs of experiments: from factors to a table of runs, and reports on such tables.
 //!
 //! Every file is one design; its head cites who published the construction and for which sizes. A size for which none
 //! is published is refused with the nearest one that is. Coded values run from −1 to +1 over a factor's range
@@ -23,7 +23,7 @@ pub mod table;
 pub use coding::{Domain, Factor};
 pub use error::{DesignError, Fault};
 pub use report::{Report, report};
-pub use table::{DesignTable, Layout, Order, Place, PointType, Points};
+pub use table::{DesignTable, Layout, Order, PointType, Points, Position};
 
 use math::random::Stream;
 use serde::{Deserialize, Serialize};

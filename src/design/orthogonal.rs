@@ -9,7 +9,7 @@
 //! A factor with fewer levels than its column has the surplus levels merged into its own ones (Addelman 1962,
 //! *Technometrics* 4, 21, doi:10.1080/00401706.1962.10489985): in L64(4^21) with three-level factors one level stands
 //! in 32 runs and the others in 16, and every pair of factors keeps exactly proportional frequencies.
-//! [`Orthogonal::doubled`] says which.
+//! [`Orthogonal::doubled`] names them.
 //!
 //! When a table has more columns than there are factors, those are taken that entangle main effects least with
 //! two-factor interactions (smallest A₃ of the generalized word-length pattern, one column after the other).
@@ -24,7 +24,7 @@ mod tests;
 
 use super::coding::Factor;
 use super::error::Fault;
-use super::table::{Place, PointType, Points};
+use super::table::{PointType, Points, Position};
 use super::{Design, Stream};
 use array::Array;
 use catalogue::{STRENGTH_THREE, STRENGTH_TWO, splits};
@@ -183,14 +183,14 @@ impl Design for Orthogonal {
             return Err(faults);
         }
         let doubled = self.doubled.unwrap_or(1) - 1;
-        let place = |run: usize, f: &Factor, c: &usize| {
+        let position = |run: usize, f: &Factor, c: &usize| {
             let (level, count) = (table.array.columns[*c].cells[run], f.level_count());
             // surplus levels are dealt out one by one, from the doubled level on
-            Place::Level(if level < count { level } else { (doubled + level - count) % count })
+            Position::Level(if level < count { level } else { (doubled + level - count) % count })
         };
         let row = |run: usize| {
-            let places = factors.iter().zip(&columns).map(|(f, c)| place(run, f, c)).collect();
-            (places, PointType::Grid)
+            let positions = factors.iter().zip(&columns).map(|(f, c)| position(run, f, c)).collect();
+            (positions, PointType::Grid)
         };
         let numbers: Vec<String> = columns.iter().map(|c| (c + 1).to_string()).collect();
         let merging = match merged.first() {

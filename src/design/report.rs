@@ -1,9 +1,9 @@
-//! What a table of runs can tell, judged by its rows alone: balance, orthogonality, aliases, models, power, spread.
+//! Report on a table of runs, from its rows alone: balance, orthogonality, aliases, models, power, spread.
 //!
-//! * [`balance`]: how often each level stands; proportional frequencies (n_ab N = n_a n_b for every pair of levels of
+//! * [`balance`]: how often each level occurs; proportional frequencies (n_ab N = n_a n_b for every pair of levels of
 //!   two factors, which makes their main effects uncorrelated: Addelman 1962, doi:10.1080/00401706.1962.10489985);
 //!   strength
-//! * [`model`]: rank of the models one may want, the terms that cannot be told apart, variance inflation
+//! * [`model`]: rank of the models one may want, the aliased terms, variance inflation
 //! * [`alias`]: what each main effect would pick up from interactions and squares that are left out of the model
 //! * [`power`]: the chance to see an effect of a given size
 //! * [`spread`]: distances and discrepancy of a sample
@@ -25,7 +25,7 @@ use model::{Kind, Model, ModelReport};
 use power::{Power, Question, powers};
 use spread::{Spread, spread};
 
-/// Everything the rows of a design tell.
+/// All reports on the rows of a design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// Number of runs.
@@ -57,7 +57,7 @@ pub struct Line {
     pub quantity: String,
     /// Its value; NaN where there is none.
     pub value: f64,
-    /// In words, where words say more.
+    /// In words, where they say more.
     pub text: String,
 }
 
@@ -92,10 +92,10 @@ pub fn report(table: &DesignTable, question: Question) -> Report {
 
 /// At most this many terms are named in a line of words.
 const NAMED: usize = 12;
-/// At most so many aliases of one main effect are listed, the largest first.
+/// Most aliases of one main effect that are listed, the largest first.
 const ALIASES: usize = 8;
 
-/// Rounds to twelve decimals: beyond them stands the rounding of the sums, and 1 should read as 1.
+/// Rounds to twelve decimals: beyond them is the rounding of the sums, and 1 should read as 1.
 fn tidy(x: f64) -> f64 {
     let rounded = (x * 1e12).round() / 1e12;
     if x.abs() < 1e3 { rounded + 0.0 } else { x }

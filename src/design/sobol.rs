@@ -3,16 +3,16 @@
 //! (Antonov & Saleev 1979, doi:10.1016/0041-5553(79)90085-5).
 //!
 //! *First point.* Unscrambled, point 1 is the origin: every factor at its low end. It belongs to the sequence and is
-//! kept (dropping it spoils the balance of the first 2^m points: Owen 2020, arXiv:2008.08051); `skip` leaves out points
+//! included (dropping it spoils the balance of the first 2^m points: Owen 2020, arXiv:2008.08051); `skip` leaves out points
 //! from the start. *Scrambling* (the default) multiplies the digits by random lower triangular matrices and adds a
-//! random shift (Matoušek 1998, doi:10.1006/jcom.1998.0489); balance is kept and no point lies on the boundary by rule.
+//! random shift (Matoušek 1998, doi:10.1006/jcom.1998.0489); balance is preserved and no point lies on the boundary by rule.
 //! Runs should be a power of two: then every factor's range is cut into as many equal parts with one point each.
 
 mod directions;
 
 use super::coding::{Domain, Factor};
 use super::error::Fault;
-use super::table::{MOST_RUNS, Place, PointType, Points};
+use super::table::{MOST_RUNS, PointType, Points, Position};
 use super::{Design, Stream, is_default};
 use directions::DIRECTIONS;
 use serde::{Deserialize, Serialize};
@@ -97,11 +97,11 @@ fn sequence(k: usize, runs: usize, skip: usize, mut scramble: Option<&mut Stream
     rows
 }
 
-/// The place of a factor at the fraction `u` of its range: a level where it has levels.
-pub(super) fn place(factor: &Factor, u: f64) -> Place {
+/// The position of a factor at the fraction `u` of its range: a level where it has levels.
+pub(super) fn position(factor: &Factor, u: f64) -> Position {
     match &factor.domain {
-        Domain::Levels(levels) => Place::Level(((u * levels.len() as f64) as usize).min(levels.len() - 1)),
-        Domain::Range { .. } => Place::Coded(2.0 * u - 1.0),
+        Domain::Levels(levels) => Position::Level(((u * levels.len() as f64) as usize).min(levels.len() - 1)),
+        Domain::Range { .. } => Position::Coded(2.0 * u - 1.0),
     }
 }
 
@@ -147,7 +147,7 @@ impl Design for Sobol {
             return Err(faults);
         }
         let points = sequence(factors.len(), self.runs, self.skip, self.scramble.then_some(stream));
-        let row = |p: &Vec<f64>| (p.iter().zip(factors).map(|(&u, f)| place(f, u)).collect(), PointType::Sample);
+        let row = |p: &Vec<f64>| (p.iter().zip(factors).map(|(&u, f)| position(f, u)).collect(), PointType::Sample);
         let how = if self.scramble { "scrambled" } else { "unscrambled" };
         let skipped = if self.skip > 0 { format!(", the first {} left out", self.skip) } else { String::new() };
         Ok(Points {

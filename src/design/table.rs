@@ -28,7 +28,7 @@ pub enum PointType {
 }
 
 impl PointType {
-    /// The word that stands in tables and files.
+    /// The word in tables and files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Centre => "centre",
@@ -42,9 +42,9 @@ impl PointType {
     }
 }
 
-/// Where a factor stands in one run.
+/// Position of a factor in one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum Position {
     /// At its level of this index, from 0.
     Level(usize),
     /// At this coded value.
@@ -56,8 +56,8 @@ pub enum Place {
 /// The runs of a design in standard order, before they are given their natural values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points {
-    /// One row a run but for those at the centre: the place of every factor, and the type of the point.
-    pub rows: Vec<(Vec<Place>, PointType)>,
+    /// One row a run but for those at the centre: the position of every factor, and the type of the point.
+    pub rows: Vec<(Vec<Position>, PointType)>,
     /// How many runs at the centre follow them. It may come from a file, so nothing is allocated for it before
     /// [`Layout`] has judged it.
     pub centre: usize,
@@ -69,8 +69,8 @@ pub struct Points {
 
 impl Points {
     /// Rows of coded values, all of one type.
-    pub(super) fn coded(rows: &[Vec<f64>], point_type: PointType) -> Vec<(Vec<Place>, PointType)> {
-        rows.iter().map(|row| (row.iter().map(|&x| Place::Coded(x)).collect(), point_type)).collect()
+    pub(super) fn coded(rows: &[Vec<f64>], point_type: PointType) -> Vec<(Vec<Position>, PointType)> {
+        rows.iter().map(|row| (row.iter().map(|&x| Position::Coded(x)).collect(), point_type)).collect()
     }
 
     /// Number of runs.
@@ -78,11 +78,11 @@ impl Points {
         self.rows.len().saturating_add(self.centre)
     }
 
-    /// Places and type of a run.
-    fn run(&self, index: usize, factors: usize) -> (Cow<'_, [Place]>, PointType) {
+    /// Positions and type of a run.
+    fn run(&self, index: usize, factors: usize) -> (Cow<'_, [Position]>, PointType) {
         match self.rows.get(index) {
-            Some((places, point_type)) => (places.into(), *point_type),
-            None => (vec![Place::Coded(0.0); factors].into(), PointType::Centre),
+            Some((positions, point_type)) => (positions.into(), *point_type),
+            None => (vec![Position::Coded(0.0); factors].into(), PointType::Centre),
         }
     }
 }
@@ -109,7 +109,7 @@ pub struct DesignTable {
     pub natural: Vec<Vec<f64>>,
     /// What each run is for.
     pub point_type: Vec<PointType>,
-    /// Place of each run in the standard order, from 1.
+    /// Position of each run in the standard order, from 1.
     pub standard_order: Vec<usize>,
     /// What was built, in one line.
     pub construction: String,
@@ -148,11 +148,11 @@ impl DesignTable {
         let mut types = Vec::with_capacity(order.len());
         let (mut coded, mut natural) = (Vec::with_capacity(order.len()), Vec::with_capacity(order.len()));
         for i in &order {
-            let (places, point_type) = points.run(i % once, codings.len());
-            let row = places.iter().zip(&codings);
+            let (positions, point_type) = points.run(i % once, codings.len());
+            let row = positions.iter().zip(&codings);
             types.push(point_type);
             let (mut codes, mut values) = (Vec::with_capacity(codings.len()), Vec::with_capacity(codings.len()));
-            for (code, value) in row.map(|(place, (factor, coding))| place.values(factor, coding)) {
+            for (code, value) in row.map(|(position, (factor, coding))| position.values(factor, coding)) {
                 codes.push(code);
                 values.push(value);
             }
@@ -171,7 +171,7 @@ impl DesignTable {
     }
 }
 
-impl Place {
+impl Position {
     /// Coded and natural value.
     fn values(self, factor: &Factor, coding: &Coding) -> (f64, f64) {
         match self {
@@ -195,7 +195,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// What is wrong with a design of `rows` runs and `centre` more at its centre, laid out so.
+    /// Faults of a design of `rows` runs and `centre` more at its centre, laid out so.
     pub(super) fn fault(self, rows: usize, centre: usize) -> Option<Fault> {
         let bad = |option: &str, found: usize, wanted: &str| Fault::BadOption {
             option: option.into(),

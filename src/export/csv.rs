@@ -1,6 +1,7 @@
 //! Tables as CSV.
 
 use crate::artifact::{Column, Table, Values};
+use math::text::typed;
 
 /// A table as CSV, with units in the first line and all digits.
 pub fn csv_text(table: &Table) -> String {
@@ -26,9 +27,7 @@ pub fn head(column: &Column) -> String {
 /// The values as texts with all digits; empty where one is missing.
 pub fn cells(values: &Values) -> Vec<String> {
     match values {
-        Values::Reals(values) => {
-            values.iter().map(|v| if v.is_nan() { String::new() } else { v.to_string() }).collect()
-        }
+        Values::Reals(values) => values.iter().map(|v| if v.is_nan() { String::new() } else { typed(*v) }).collect(),
         Values::Ints(values) => values.iter().map(i64::to_string).collect(),
         Values::Texts(values) => values.clone(),
     }

@@ -1,20 +1,23 @@
 //! `--to particles`: a specimen as plain lists that any code can read, and for a run its microparameters too. CSV, SI
-//! units in the heads, numbers of discs and clumps from 0; the specimen as it stands before loading, free of force.
+//! units in the heads, indices of balls and clumps from 0; the specimen as it stands before loading, free of force.
 //!
 //! | file | a row for each |
 //! |---|---|
-//! | `NAME.particles.csv` | disc: position, radius, group, clump, and the density of single discs; the mass of pebbles is that of their clump |
-//! | `NAME.clumps.csv` | rigid clump: mass and moment of inertia per metre of thickness, centre of mass |
+//! | `NAME.particles.csv` | ball (in the plane a disc): centre, radius, group, clump, and the density of single balls; the mass of pebbles is that of their clump |
+//! | `NAME.clumps.csv` | rigid clump: mass, inertia (in the plane per metre of thickness) and centre of mass |
 //! | `NAME.groups.csv` | contact group: microparameters of its spring and bond (of a run) |
-//! | `NAME.contacts.csv` | contact: its discs, group, gap, and whether it is bonded (of a run) |
+//! | `NAME.contacts.csv` | contact: its balls, group, gap, and whether it is bonded (of a run) |
 //! | `NAME.columns.csv` | column of these files: unit and meaning |
 
 use super::bodies::{Contact, contacts};
 use super::{File, csv_text};
 use crate::artifact::Table;
+use dem::genesis::clump::Clump;
 use dem::genesis::specimen::Specimen;
 use dem::loading::material::{BondKind, Contact as Values, Material};
 use dem::parameter::{Parameter, Quantity};
+use dem::space::Tuple;
+use dem::{Space, Vector};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -29,7 +32,7 @@ struct Named {
 }
 
 impl Named {
-    fn of(specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Self, String> {
+    fn of<S: Space>(specimen: &Specimen<S>, parameters: Option<&Parameters>) -> Result<Self, String> {
         let material = parameters.map(material).transpose()?;
         let own = material.as_ref().map(|material| material.groups.clone());
         Ok(Self { groups: own.unwrap_or_else(|| specimen.group_names.clone()), material })
@@ -69,7 +72,14 @@ fn material(parameters: &Parameters) -> Result<Material, String> {
 }
 
 /// The files; without parameters, those of the specimen alone.
-pub fn files(name: &str, specimen: &Specimen, parameters: Option<&Parameters>) -> Result<Vec<File>, String> {
+///
+/// # Errors
+/// The parameters of the run cannot be read.
+pub fn files<S: Space>(
+    name: &str,
+    specimen: &Specimen<S>,
+    parameters: Option<&Parameters>,
+) -> Result<Vec<File>, String> {
     let named = Named::of(specimen, parameters)?;
     let margin = named.material.as_ref().map_or(0.0, |material| material.gap) * specimen.mean_radius();
     let contacts = contacts(specimen, margin);
@@ -87,52 +97,69 @@ fn numbered(about: &str, count: usize) -> Table {
     Table::default().ints_column("id", about, numbers)
 }
 
-fn particles(specimen: &Specimen, named: &Named) -> Table {
+fn particles<S: Space>(specimen: &Specimen<S>, named: &Named) -> Table {
     let clump = specimen.clump_of_balls();
     let density = |clump: &Option<usize>| if clump.is_some() { f64::NAN } else { specimen.density };
-    numbered("number of the disc", clump.len())
-        .reals_column("x", "m", "centre, across the load, from the middle of the specimen", axis(&specimen.centres, 0))
-        .reals_column("y", "m", "centre, along the load, from the middle of the specimen", axis(&specimen.centres, 1))
+    let table = numbered("index of the ball", clump.len());
+    positions::<S>(table, "centre, from the middle of the specimen,", &specimen.centres)
         .reals_column("radius", "m", "radius", specimen.radii.clone())
         .texts_column(
             "group",
-            "group of the disc",
+            "group of the ball",
             specimen.groups.iter().map(|group| named.group(usize::from(group.0))).collect(),
         )
         .ints_column("clump", "its clump, -1 for none", clump.iter().map(|c| c.map_or(-1, |c| c as i64)).collect())
         .reals_column(
             "density",
             "kg/m^3",
-            "of discs that are no pebbles; empty for pebbles",
+            "of balls that are no pebbles; empty for pebbles",
             clump.iter().map(density).collect(),
         )
 }
 
-fn axis(points: &[[f64; 2]], axis: usize) -> Vec<f64> {
-    points.iter().map(|point| point[axis]).collect()
+/// Adds the coordinates x, y and, in space, z; the load acts along y.
+fn positions<S: Space>(table: Table, about: &str, points: &[Vector<S>]) -> Table {
+    let names = ["x", "y", "z"].into_iter().take(S::DIMENSION).enumerate();
+    names.fold(table, |table, (axis, name)| {
+        let about = format!("{about} {} the load", if axis == 1 { "along" } else { "across" });
+        table.reals_column(name, "m", &about, points.iter().map(|point| point.at(axis)).collect())
+    })
 }
 
-fn clumps(specimen: &Specimen) -> Table {
+fn clumps<S: Space>(specimen: &Specimen<S>) -> Table {
     let clumps = &specimen.clumps;
-    let centres: Vec<[f64; 2]> = clumps.iter().map(|clump| clump.centre).collect();
-    numbered("number of the clump", clumps.len())
-        .ints_column("pebbles", "discs in it", clumps.iter().map(|clump| clump.pebbles.len() as i64).collect())
-        .reals_column("x", "m", "centre of mass", axis(&centres, 0))
-        .reals_column("y", "m", "centre of mass", axis(&centres, 1))
-        .reals_column("mass", "kg/m", "per metre of thickness", clumps.iter().map(|clump| clump.mass).collect())
-        .reals_column(
+    let centres: Vec<Vector<S>> = clumps.iter().map(|clump| clump.centre).collect();
+    let table = numbered("index of the clump", clumps.len()).ints_column(
+        "pebbles",
+        "balls in it",
+        clumps.iter().map(|clump| clump.pebbles.len() as i64).collect(),
+    );
+    let table = positions::<S>(table, "centre of mass,", &centres);
+    let of = |pick: &dyn Fn(&Clump<S>) -> f64| clumps.iter().map(pick).collect::<Vec<f64>>();
+    if S::DIMENSION == 2 {
+        return table.reals_column("mass", "kg/m", "per metre of thickness", of(&|clump| clump.mass)).reals_column(
             "inertia",
             "kg*m",
             "about the centre of mass, per metre of thickness",
-            clumps.iter().map(|clump| clump.inertia[2][2]).collect(),
-        )
+            of(&|clump| clump.inertia[2][2]),
+        );
+    }
+    let table = table.reals_column("mass", "kg", "of the clump", of(&|clump| clump.mass));
+    INERTIA.into_iter().fold(table, |table, (name, [i, j])| {
+        let about = "component of the inertia about the centre of mass, in the axes of the specimen";
+        table.reals_column(name, "kg*m^2", about, of(&|clump| clump.inertia[i][j]))
+    })
 }
+
+/// The six components of an inertia.
+const INERTIA: [(&str, [usize; 2]); 6] =
+    [("Ixx", [0, 0]), ("Iyy", [1, 1]), ("Izz", [2, 2]), ("Ixy", [0, 1]), ("Ixz", [0, 2]), ("Iyz", [1, 2])];
 
 fn contact_table(contacts: &[Contact], named: &Named) -> Table {
     let whole = |pick: fn(&Contact) -> usize| contacts.iter().map(|c| pick(c) as i64).collect::<Vec<i64>>();
     let table = Table::default()
-        .ints_column("first", "disc", whole(|c| c.ends[0]))
-        .ints_column("second", "disc", whole(|c| c.ends[1]))
+        .ints_column("first", "ball", whole(|c| c.ends[0]))
+        .ints_column("second", "ball", whole(|c| c.ends[1]))
         .texts_column("group", "contact group", contacts.iter().map(|c| named.contact(c.groups).0).collect())
         .reals_column(
             "gap",
@@ -154,9 +181,9 @@ fn groups(material: &Material) -> Table {
         |pick: &dyn Fn(&Values) -> String| all.iter().map(|(_, contact)| pick(contact)).collect::<Vec<String>>();
     let mut table = Table::default()
         .texts_column("group", "contact", all.iter().map(|(name, _)| (*name).clone()).collect())
-        .texts_column("first", "group of one disc", texts(&|contact| contact.between[0].clone()))
+        .texts_column("first", "group of one ball", texts(&|contact| contact.between[0].clone()))
         .texts_column("second", "group of the other", texts(&|contact| contact.between[1].clone()))
-        .texts_column("bond", "parallel, contact or none", texts(&|contact| word(contact.bond)));
+        .texts_column("bond", "kind of the bond, or none", texts(&|contact| word(contact.bond)));
     for parameter in Parameter::ALL {
         let one = parameter.declaration();
         let value = |contact: &Values| {

@@ -7,6 +7,8 @@
 //! Format: VTK User's Guide, "VTK XML formats"; cell types 1 (vertex), 3 (line), 5 (triangle), 7 (polygon). Plane
 //! points have z = 0.
 
+use dem::space::Tuple;
+use dem::{Space, Vector};
 use std::fmt::{Display, Write};
 
 /// Cells of one kind.
@@ -27,8 +29,8 @@ pub(super) enum Field {
     Reals(&'static str, Vec<f64>),
     /// Whole numbers.
     Ints(&'static str, Vec<i64>),
-    /// Vectors of the plane.
-    Vectors(&'static str, Vec<[f64; 2]>),
+    /// Vectors.
+    Vectors(&'static str, Vec<[f64; 3]>),
 }
 
 /// Points, cells and fields on them.
@@ -106,14 +108,14 @@ impl Field {
         match self {
             Self::Reals(name, values) => array(text, "Float64", name, 1, values),
             Self::Ints(name, values) => array(text, "Int64", name, 1, values),
-            Self::Vectors(name, values) => array(text, "Float64", name, 3, in_space(values).iter().flatten()),
+            Self::Vectors(name, values) => array(text, "Float64", name, 3, values.iter().flatten()),
         }
     }
 }
 
-/// Points or vectors of the plane, as VTK has them.
-pub(super) fn in_space(plane: &[[f64; 2]]) -> Vec<[f64; 3]> {
-    plane.iter().map(|[x, y]| [*x, *y, 0.0]).collect()
+/// A point or vector as VTK has it.
+pub(super) fn spatial<S: Space>(vector: Vector<S>) -> [f64; 3] {
+    std::array::from_fn(|axis| if axis < S::DIMENSION { vector.at(axis) } else { 0.0 })
 }
 
 fn array(text: &mut String, kind: &str, name: &str, parts: usize, values: impl IntoIterator<Item = impl Display>) {

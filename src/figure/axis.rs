@@ -1,4 +1,4 @@
-//! Axes: where the ticks stand, what they say, and where a value lies between the ends.
+//! Axes: positions and labels of the ticks, and the position of a value between the ends.
 //!
 //! Linear ticks are 1, 2, 2.5 or 5 times a power of ten; logarithmic ones are powers of ten with 2 … 9 as minor
 //! ticks (labelled too when the axis holds less than two powers). Large and small numbers have a power of ten, `4×10⁶`.
@@ -24,7 +24,7 @@ pub enum Scale {
     Log,
 }
 
-/// A labelled place on an axis.
+/// A labelled position on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     /// Value.
@@ -74,7 +74,7 @@ impl Axis {
         }
     }
 
-    /// Takes a common number or power out of long labels, where there is a title that can say so.
+    /// Takes a common number or power out of long labels, where the title can state it.
     fn shortened(mut self) -> Self {
         self.common.clear();
         let long = self.ticks.iter().any(|tick| signs(&tick.label) > LONGEST);
@@ -100,7 +100,12 @@ impl Axis {
         }
         let number = fixed(base.abs(), decimals(place));
         let short = number.trim_end_matches('0').trim_end_matches('.');
-        let number = if number.contains('.') { short.to_owned() } else { number };
+        let zeros = number.len() - number.trim_end_matches('0').len();
+        let number = match number.contains('.') {
+            true => short.to_owned(),
+            false if number.len() > LONGEST => format!("{}×$10^{{{zeros}}}$", &number[..number.len() - zeros]),
+            false => number,
+        };
         let above = match (base == 0.0, base > 0.0, number) {
             (true, ..) => String::new(),
             (_, true, number) => format!("+{number}"),
@@ -130,7 +135,7 @@ impl Axis {
         Self::between(label, Scale::Linear, 0.0, if high > 0.0 { 1.06 * high } else { 1.0 }, want)
     }
 
-    /// One labelled place per category at 0, 1, 2 …, without lines across.
+    /// One labelled position per category at 0, 1, 2 …, without lines across.
     pub fn categories(label: impl Into<String>, names: &[String]) -> Self {
         let ticks = names.iter().enumerate().map(|(i, n)| Tick { at: i as f64, label: n.clone() }).collect();
         let high = names.len() as f64 - 0.5;
@@ -153,7 +158,7 @@ impl Axis {
         self.shortened()
     }
 
-    /// Place of a value: 0 at the start of the axis, 1 at its end.
+    /// Position of a value: 0 at the start of the axis, 1 at its end.
     pub fn fraction(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
@@ -313,7 +318,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A number with so many significant digits, for annotations.
+/// A number with this many significant digits, for annotations.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return fixed(value, 0);

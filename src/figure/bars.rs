@@ -1,6 +1,6 @@
 //! Ranked horizontal bars: the ranges of a range analysis, or the standardized effects of a screening (Pareto).
 
-use super::axis::{Axis, fixed};
+use super::axis::{Axis, fixed, significant};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::palette::{self, INK, Marker, PAPER, SOFT};
@@ -48,7 +48,14 @@ impl Figure for RankedBars {
         let values = values.chain(self.references.iter().map(|r| r.1));
         let mut x = Axis::from_zero(self.quantity.title(), values, 5);
         // Room for the numbers behind the bars.
-        x = Axis::between(x.label, x.scale, 0.0, x.high * (1.0 + 9.0 / style.width), 5);
+        let largest = order.first().map_or(1.0, |&i| self.bars[i].value);
+        let number = |bar: &Bar| Line::new(&number(bar.value, largest), 0.9 * size).width;
+        let room = self.bars.iter().map(number).fold(0.0, f64::max) + 2.5;
+        let beside =
+            names.iter().map(|name| Line::new(name, size).width).fold(8.0, |widest: f64, w| widest.max(w + 8.0));
+        let left = (style.width - beside - room).max(0.2 * style.width);
+        let share = if room > 9.0 { room / left } else { 9.0 / style.width };
+        x = Axis::between(x.label, x.scale, 0.0, x.high * (1.0 + share), 5);
         let mut y = Axis::categories("", &names);
         (y.low, y.high) = (y.high, y.low);
         let height = pitch * names.len() as f64 + legend_height + 12.5;
@@ -66,10 +73,8 @@ impl Figure for RankedBars {
             let x = panel.place_x(*at);
             scene.stroke(Path::polyline(&[[x, panel.area.top], [x, panel.area.bottom]]), reference_style(k));
         }
-        let largest = order.first().map_or(1.0, |&i| self.bars[i].value);
-        let decimals = (2.0 - log10(largest.max(1e-300)).floor()).clamp(0.0, 9.0) as usize;
         for (row, &i) in order.iter().enumerate() {
-            self.draw_value(&mut scene, &panel, row as f64, &self.bars[i], decimals, style);
+            self.draw_value(&mut scene, &panel, row as f64, &self.bars[i], largest, style);
         }
         panel.draw_axes(&mut scene, style);
         scene
@@ -118,7 +123,7 @@ impl RankedBars {
             // A factor without a key goes by its symbol, which a description tells in plain letters.
             let name =
                 if bar.factor.key.is_empty() { &Line::new(&bar.factor.name, 1.0).plain } else { &bar.factor.key };
-            format!("{name} {}", self.quantity.told(bar.value))
+            format!("{name} {}", self.quantity.in_words(bar.value))
         });
         format!("Bars in descending order: {}.", top.collect::<Vec<_>>().join(", "))
     }
@@ -146,18 +151,26 @@ impl RankedBars {
     }
 
     /// The number behind a bar, on a white ground where a reference line passes.
-    fn draw_value(&self, scene: &mut Scene, panel: &Panel, row: f64, bar: &Bar, decimals: usize, style: &Style) {
+    fn draw_value(&self, scene: &mut Scene, panel: &Panel, row: f64, bar: &Bar, largest: f64, style: &Style) {
         let mut text_from = panel.place_x(bar.value);
         if let Some(published) = bar.published {
             let at = panel.place(published, row);
             scene.shape(marker(Marker::Diamond, at, 1.7), PAPER, Stroke::new(INK, 0.25));
             text_from = text_from.max(at[0] + 0.9);
         }
-        let line = Line::new(&fixed(bar.value, decimals), 0.9 * style.size());
+        let line = Line::new(&number(bar.value, largest), 0.9 * style.size());
         let y = panel.place_y(row);
         scene.fill(Path::rect(Rect::new(text_from + 0.7, y - 1.3, line.width + 0.6, 2.6)), PAPER);
         scene.text_centred(line, [text_from + 1.0, y], Anchor::Start, SOFT);
     }
+}
+
+/// The number behind a bar: three digits of the largest one, with a power of ten where that would be long.
+fn number(value: f64, largest: f64) -> String {
+    if value != 0.0 && !(1e-3..1e6).contains(&largest) {
+        return significant(value, 3);
+    }
+    fixed(value, (2.0 - log10(largest.max(1e-300)).floor()).clamp(0.0, 9.0) as usize)
 }
 
 fn reference_style(k: usize) -> Stroke {

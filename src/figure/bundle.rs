@@ -183,7 +183,7 @@ fn measured_stroke(i: usize) -> Stroke {
     Stroke::new(INK, 0.4).dashed(super::palette::dash(i))
 }
 
-/// The curve, with some markers along it that tell it from computed ones in print.
+/// The curve, with some markers along it that distinguish it from computed ones in print.
 fn draw_measured(scene: &mut Scene, panel: &Panel, i: usize, line: &Line) {
     marks::draw_series(scene, panel, &line.x, &line.y, &measured_stroke(i));
     let every = line.x.len().div_ceil(MARKS).max(1);

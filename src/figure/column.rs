@@ -16,11 +16,11 @@ pub enum Values {
 pub enum Digits {
     /// As short as possible without loss.
     Shortest,
-    /// So many decimals.
+    /// This many decimals.
     Fixed(usize),
-    /// So many significant digits.
+    /// This many significant digits.
     Significant(usize),
-    /// So many significant digits, whole numbers as they are: for quantities of many kinds below one another.
+    /// This many significant digits, whole numbers as they are: for quantities of many kinds below one another.
     Unlike(usize),
 }
 

@@ -4,7 +4,7 @@ use super::axis::{Axis, Scale, extent, significant};
 use super::column::Column;
 use super::isoline::Field;
 use super::palette::{INK, Map, Marker, PAPER, SOFT};
-use super::panel::{Margins, Panel, marker};
+use super::panel::{Margins, Panel, RIM, marker, on_page, within};
 use super::scene::{Anchor, Color, Path, Point, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style};
@@ -23,7 +23,7 @@ pub struct Contour {
     pub xs: Vec<f64>,
     /// Grid values of `y`, equally spaced, ascending.
     pub ys: Vec<f64>,
-    /// Response at (`xs[i]`, `ys[j]`) in place `j * xs.len() + i`.
+    /// Response at (`xs[i]`, `ys[j]`) at index `j * xs.len() + i`.
     pub values: Vec<f64>,
     /// Design points to mark.
     pub points: Vec<[f64; 2]>,
@@ -41,7 +41,7 @@ impl Figure for Contour {
         let mut scene = Scene::new(style.width, 0.78 * style.width);
         scene.title = format!("The response {} over {} and {}", self.z.words(), self.x.words(), self.y.words());
         let (low, high) = extent(self.values.iter().copied());
-        scene.description = format!("Contours from {} to {}.", significant(low, 3), self.z.told(high));
+        scene.description = format!("Contours from {} to {}.", significant(low, 3), self.z.in_words(high));
         let bands = Bands::of(low, high, &self.z);
         let note = if self.note.is_empty() { 0.0 } else { 1.5 * size };
         let page = scene.page().inset(0.8, 0.8 + note, 0.8, 0.8);
@@ -150,8 +150,9 @@ impl Bands {
             scene.text_centred(line, [bar.right + 1.5, y], Anchor::Start, INK);
         }
         scene.stroke(ticks, Stroke::new(SOFT, 0.2));
-        let at = [bar.right + 1.6 + widest + 1.2 + 0.8 * size, bar.centre()[1]];
-        scene.text(Line::new(&self.axis.title(), size), at, Anchor::Middle, 90.0, INK);
+        let title = within(&self.axis.title(), size, (bar.height() + 4.0 * size).min(scene.height - RIM));
+        let y = on_page(bar.centre()[1], title.width, scene.height);
+        scene.text(title, [bar.right + 1.6 + widest + 1.2 + 0.8 * size, y], Anchor::Middle, 90.0, INK);
     }
 }
 
@@ -197,8 +198,10 @@ impl Contour {
 
 fn label_of(level: f64, bands: &Bands, size: f64) -> Line {
     let step = bands.levels.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-    let fine = Axis::between("", Scale::Linear, bands.low, bands.high, 11);
-    let known = fine.ticks.iter().find(|t| (t.at - level).abs() < 1e-6 * step);
+    // In the words of the bar: what all numbers have in common stands in its title, and not on every line.
+    let fine = Axis::between(bands.axis.label.as_str(), Scale::Linear, bands.low, bands.high, 11);
+    let axis = if fine.common == bands.axis.common { &fine } else { &bands.axis };
+    let known = axis.ticks.iter().find(|t| (t.at - level).abs() < 1e-6 * step);
     Line::new(known.map_or("", |t| &t.label), size)
 }
 

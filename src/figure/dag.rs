@@ -143,7 +143,7 @@ fn rounded(r: Rect, radius: f64) -> Path {
     ])
 }
 
-/// A smooth line through the blank places of a route, with a head at its end.
+/// A smooth line through the blank nodes of a route, with a head at its end.
 fn draw_arrow(scene: &mut Scene, route: &[usize], boxes: &[Rect], layout: &Layers) {
     let mut steps = Vec::new();
     let mut tip: Point = [0.0; 2];

@@ -1,5 +1,5 @@
 //! Probability plots of effects (Daniel 1959, doi:10.1080/00401706.1959.10489866): noise lies on a line through the
-//! origin, active effects stand off to the side and are named. The half-normal plot has absolute effects, the normal
+//! origin, active effects lie off to the side and are named. The half-normal plot has absolute effects, the normal
 //! plot keeps their signs; effects of several degrees of freedom each take the quantiles of the χ distribution (Wilk &
 //! Gnanadesikan 1968, doi:10.1093/biomet/55.1.1).
 
@@ -107,7 +107,7 @@ impl EffectPlot {
         }
     }
 
-    /// Places of the margin's lines.
+    /// Positions of the margin's lines.
     fn margins(&self) -> Vec<f64> {
         match (&self.margin, self.coordinates) {
             (None, _) => Vec::new(),

@@ -4,9 +4,8 @@ use super::axis::{Axis, Scale, extent, fixed};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::palette::{self, INK, Marker, PAPER, SOFT, WASH};
-use super::panel::{Margins, Panel, draw_marker, marker};
+use super::panel::{Margins, Panel, draw_marker, marker, within};
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
-use super::text::Line;
 use super::{Figure, Quantity, Style};
 
 /// Means of one factor.
@@ -189,5 +188,5 @@ impl MainEffects {
 fn draw_header(scene: &mut Scene, label: &str, place: Rect, style: &Style) {
     scene.fill(Path::rect(place), WASH);
     let [x, y] = place.centre();
-    scene.text_centred(Line::new(label, style.size()), [x, y], Anchor::Middle, INK);
+    scene.text_centred(within(label, style.size(), place.width() - 1.0), [x, y], Anchor::Middle, INK);
 }

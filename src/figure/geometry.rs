@@ -1,8 +1,8 @@
-//! Places, paths and rectangles on the page: millimetres, origin in the upper left corner, y down.
+//! Points, paths and rectangles on the page: millimetres, origin in the upper left corner, y down.
 
 use math::elementary::sin_cos;
 
-/// A place on the page in mm: right, down.
+/// A point on the page in mm: right, down.
 pub type Point = [f64; 2];
 
 /// One step of a path.

@@ -1,6 +1,6 @@
 //! A matrix of values over two columns: the number in its cell, on the colour of its size.
 //!
-//! Cells keep the order of their heads, not their distance. A cell without a value is struck out. Numbers are left out
+//! Cells have the order of their heads, not their distance. A cell without a value is struck out. Numbers are left out
 //! where they would be smaller than print allows, and then the colour bar is all there is.
 
 use super::axis::{Axis, extent, fixed, significant};
@@ -183,7 +183,8 @@ impl HeatMap {
             n => format!("; {n} cells have no value"),
         };
         let (rows, columns) = (self.rows.len(), self.columns.len());
-        let text = format!("{rows} × {columns} cells from {} to {}{gaps}.", significant(low, 3), self.value.told(high));
+        let text =
+            format!("{rows} × {columns} cells from {} to {}{gaps}.", significant(low, 3), self.value.in_words(high));
         Line::new(&text, 1.0).plain
     }
 }

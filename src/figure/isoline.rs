@@ -16,7 +16,7 @@ pub struct Field<'a> {
     pub values: &'a [f64],
 }
 
-/// A corner of an outline: place in grid steps, and whether it lies on the rim of the grid only because the
+/// A corner of an outline: position in grid steps, and whether it lies on the rim of the grid only because the
 /// outline closes there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {

@@ -1,18 +1,18 @@
 //! Layered placement of a directed acyclic graph (Sugiyama, Tagawa and Toda 1981, doi:10.1109/TSMC.1981.4308636).
 //!
-//! Longest-path layers; long edges pass through blank places; the order in each layer by barycentres, keeping the
+//! Longest-path layers; long edges pass through blank nodes; the order in each layer by barycentres, keeping the
 //! order with the fewest crossings; the heights by least squares towards the neighbours under a least distance.
 
-/// Where everything stands: layers of places, from the first to the last.
+/// A layout: layers of nodes, from the first to the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
-    /// Places in their order within each layer.
+    /// Nodes in their order within each layer.
     pub order: Vec<Vec<usize>>,
-    /// Height of each place; neighbours in a layer are at least their distance apart.
+    /// Height of each node; neighbours in a layer are at least their distance apart.
     pub height: Vec<f64>,
-    /// Each given edge as the places it passes.
+    /// Each edge as the nodes that it passes.
     pub routes: Vec<Vec<usize>>,
-    /// Number of places that are nodes; places from here on are blank.
+    /// Number of real nodes; nodes from this index on are blank.
     pub nodes: usize,
 }
 
@@ -168,7 +168,7 @@ fn heights(order: &[Vec<usize>], neighbours: &Neighbours, nodes: usize, places: 
     y.iter().map(|v| v - lowest).collect()
 }
 
-/// The places nearest to the wishes (least squares) that keep their order and gaps: pool adjacent violators.
+/// The heights nearest to the wishes (least squares) that keep their order and gaps: pool adjacent violators.
 fn apart(wishes: &[f64], gaps: &[f64]) -> Vec<f64> {
     let mut offset = 0.0;
     let mut offsets = vec![0.0];

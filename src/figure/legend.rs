@@ -6,7 +6,7 @@ use super::panel::{draw_marker, marker};
 use super::scene::{Anchor, Color, Path, Point, Rect, Scene, Stroke};
 use super::text::Line;
 
-/// What stands before a name.
+/// The symbol before a name.
 #[derive(Clone, Debug)]
 pub enum Swatch {
     /// Nothing: the name says what the entries after it differ in.

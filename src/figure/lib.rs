@@ -65,7 +65,7 @@ pub trait Figure {
     fn data(&self) -> Vec<Column>;
 }
 
-/// What is the same for all figures of a publication.
+/// Settings shared by all figures of a publication.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
     /// Width of the page in mm: 90 for one column of a journal, 190 for two.
@@ -123,8 +123,8 @@ impl Quantity {
         if self.key.is_empty() { &self.name } else { &self.key }
     }
 
-    /// A value of it as a description tells it: "12.3 MPa", or "0.203".
-    pub fn told(&self, value: f64) -> String {
+    /// A value of it in words: "12.3 MPa", or "0.203".
+    pub fn in_words(&self, value: f64) -> String {
         format!("{} {}", axis::significant(value, 3), self.unit).trim_end().to_owned()
     }
 

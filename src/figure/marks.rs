@@ -29,7 +29,7 @@ pub fn line(i: usize, n: usize, width: f64) -> Stroke {
 /// A line with its band on the page, in values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
-    /// Places along the page, ascending.
+    /// Positions along the page, ascending.
     pub x: Vec<f64>,
     /// The line.
     pub y: Vec<f64>,
@@ -144,7 +144,7 @@ impl Span {
 /// Greatest number of labels that an axis is given.
 const MOST_LABELS: usize = 6;
 
-/// A panel in `outer` with as many labels on each axis as stand apart, and titles that fit.
+/// A panel in `outer` with as many labels on each axis as do not touch, and titles that fit.
 pub fn panel(outer: Rect, x: &Span, y: &Span, style: &Style) -> Panel {
     fit(outer, |want, long| x.axis(want, long), |want, long| y.axis(want, long), style)
 }
@@ -200,7 +200,7 @@ fn thin_out(panel: &mut Panel, size: f64) {
         dropped.for_each(|(_, tick)| tick.label.clear());
     }
     while panel.y.ticks.len() > 2 && !stacked_apart(panel, size) {
-        let kept = panel.y.ticks.iter().step_by(2).cloned().collect();
-        panel.y.ticks = kept;
+        let shown = panel.y.ticks.iter().step_by(2).cloned().collect();
+        panel.y.ticks = shown;
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Categories: the palette of Okabe and Ito (2008), reordered so that neighbours differ in lightness; each series
 //! also has its own dash and marker. Sequences: viridis and cividis (matplotlib, CC0; Nuñez et al. 2018,
-//! doi:10.1371/journal.pone.0199239) at 17 places, linear between. Two-sided: computed in Oklab (Ottosson 2020).
+//! doi:10.1371/journal.pone.0199239) at 17 points, linear between. Two-sided: computed in Oklab (Ottosson 2020).
 
 use super::scene::Color;
 use math::elementary::{cbrt, pow};
@@ -68,7 +68,7 @@ pub fn mode(i: usize) -> Color {
     [VERMILION, Color(0x0b, 0x3c, 0x6f), GREEN, PURPLE, ORANGE, SKY][i % 6]
 }
 
-/// Colour of category number `i` for areas: lighter neighbours than lines need, so that grey tells them apart.
+/// Colour of category number `i` for areas: lighter neighbours than lines need, so that they differ in grey.
 pub fn area(i: usize) -> Color {
     [BLUE, ORANGE, Color(0xa6, 0xdb, 0xc4), PURPLE, SKY, VERMILION][i % 6]
 }

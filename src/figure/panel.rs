@@ -1,4 +1,4 @@
-//! One pair of axes on the page: frame, grid, ticks, titles; values → places.
+//! One pair of axes on the page: frame, grid, ticks, titles; values → points on the page.
 
 use super::Style;
 use super::axis::{Axis, Scale, Tick};
@@ -10,6 +10,8 @@ use super::text::{CAP_HEIGHT, Line, plain_text};
 const TICK: f64 = 0.8;
 const GAP: f64 = 0.9;
 const TITLE_GAP: f64 = 1.5;
+/// What a title that is as long as the page leaves of it, in mm.
+pub(super) const RIM: f64 = 1.0;
 
 /// A plot area with its axes.
 #[derive(Clone, Debug)]
@@ -87,22 +89,22 @@ impl Panel {
         self
     }
 
-    /// Place of a pair of values.
+    /// Point of a pair of values.
     pub fn place(&self, x: f64, y: f64) -> Point {
         [self.place_x(x), self.place_y(y)]
     }
 
-    /// Horizontal place of a value.
+    /// Horizontal position of a value.
     pub fn place_x(&self, x: f64) -> f64 {
         self.area.left + self.x.fraction(x) * self.area.width()
     }
 
-    /// Vertical place of a value.
+    /// Vertical position of a value.
     pub fn place_y(&self, y: f64) -> f64 {
         self.area.bottom - self.y.fraction(y) * self.area.height()
     }
 
-    /// Places of a series; values that are not finite part it into several.
+    /// Points of a series; values that are not finite part it into several.
     pub fn places(&self, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
         let mut parts: Vec<Vec<Point>> = vec![Vec::new()];
         for (&x, &y) in x.iter().zip(y) {
@@ -160,12 +162,15 @@ impl Panel {
             let labels =
                 if self.x.ticks.iter().any(|t| !t.label.is_empty()) { GAP + CAP_HEIGHT * size + below } else { 0.0 };
             let baseline = y0 + TICK + labels + TITLE_GAP + 0.72 * size;
-            let room = self.area.width() + 1.6 * self.left.min(self.area.width() / 3.0);
-            scene.text(within(&self.x.title(), size, room), [cx, baseline], Anchor::Middle, 0.0, INK);
+            let room = (self.area.width() + 1.6 * self.left.min(self.area.width() / 3.0)).min(scene.width - RIM);
+            let title = within(&self.x.title(), size, room);
+            let x = on_page(cx, title.width, scene.width);
+            scene.text(title, [x, baseline], Anchor::Middle, 0.0, INK);
         }
         if !self.y.label.is_empty() {
-            let line = within(&self.y.title(), size, self.area.height() + 4.0 * size);
-            scene.text(line, [x0 - self.left + 0.75 * size, cy], Anchor::Middle, 90.0, INK);
+            let title = within(&self.y.title(), size, (self.area.height() + 4.0 * size).min(scene.height - RIM));
+            let y = on_page(cy, title.width, scene.height);
+            scene.text(title, [x0 - self.left + 0.75 * size, y], Anchor::Middle, 90.0, INK);
         }
     }
 
@@ -199,7 +204,7 @@ impl Panel {
         }
     }
 
-    /// Facts that let a script tell values under a pointer: ends of both axes and the plot area.
+    /// Facts from which a script reads values under a pointer: ends of both axes and the plot area.
     pub fn facts(&self) -> Vec<(&'static str, String)> {
         let scale = |a: &Axis| if a.scale == Scale::Log { "log" } else { "linear" };
         let r = self.area;
@@ -209,11 +214,17 @@ impl Panel {
     }
 }
 
+/// The middle of a text of a given length, moved as little as it must be to lie on a page of a given extent.
+pub(super) fn on_page(middle: f64, length: f64, extent: f64) -> f64 {
+    let half = (length + RIM / 2.0) / 2.0;
+    if 2.0 * half < extent { middle.clamp(half, extent - half) } else { extent / 2.0 }
+}
+
 fn labelled(axis: &Axis) -> impl Iterator<Item = &Tick> {
     axis.ticks.iter().filter(|tick| !tick.label.is_empty())
 }
 
-/// The labels that do not touch: all of them, or every second, third, … from the first on. `labels` are places, lengths
+/// The labels that do not touch: all of them, or every second, third, … from the first on. `labels` are positions, lengths
 /// along the axis and what is written.
 fn apart<T>(labels: Vec<(f64, f64, T)>) -> Vec<(f64, f64, T)> {
     let touch = |every: usize| {
@@ -225,7 +236,7 @@ fn apart<T>(labels: Vec<(f64, f64, T)>) -> Vec<(f64, f64, T)> {
 }
 
 /// A title that fits into `room`: smaller, down to two thirds, or else cut.
-fn within(title: &str, size: f64, room: f64) -> Line {
+pub(super) fn within(title: &str, size: f64, room: f64) -> Line {
     const SMALLEST: f64 = 0.66;
     let line = Line::new(title, size);
     if line.width <= room || room <= 0.0 {

@@ -1,6 +1,6 @@
 //! Where a design tries the model: a square with its points for two factors, a cube for three.
 //!
-//! Kinds of points (cube, edge, axial, centre) differ by colour and marker; points tried several times say how often.
+//! Kinds of points (cube, edge, axial, centre) differ by colour and marker; points tried several times show how often.
 
 use super::axis::{Axis, Scale, extent, fixed};
 use super::column::Column;
@@ -27,8 +27,8 @@ pub struct DesignPoints {
     pub kinds: Vec<String>,
 }
 
-/// A place that was tried: where, its kind, how many kinds came before it there (in a projection several may meet), and
-/// how often all of them, told by the first.
+/// A point that was tried: position, kind, how many kinds came before it there (in a projection several may meet), and
+/// how often all of them, shown by the first.
 struct Spot {
     at: [f64; 3],
     kind: usize,

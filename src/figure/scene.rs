@@ -20,7 +20,7 @@ impl Color {
         Self(part(self.0, other.0), part(self.1, other.1), part(self.2, other.2))
     }
 
-    /// Relative luminance after WCAG 2 (0 black, 1 white): what a grey print keeps of the colour.
+    /// Relative luminance after WCAG 2 (0 black, 1 white): the grey of the colour in print.
     pub fn luminance(self) -> f64 {
         let linear = |c: u8| {
             let c = f64::from(c) / 255.0;
@@ -135,7 +135,7 @@ pub struct Scene {
     pub height: f64,
     /// Short title, for screen readers and file properties.
     pub title: String,
-    /// One or two sentences that tell what the picture shows, for those who cannot see it.
+    /// One or two sentences that describe the picture, for those who cannot see it.
     pub description: String,
     /// Content.
     pub items: Vec<Item>,
@@ -202,7 +202,7 @@ impl Scene {
         self.items.push(Item::Group { clip, facts, items });
     }
 
-    /// Every text with the corners of the place it takes, groups included.
+    /// Every text with the corners of its area, groups included.
     pub fn texts(&self) -> Vec<(String, [Point; 4])> {
         fn walk(items: &[Item], out: &mut Vec<(String, [Point; 4])>) {
             for item in items {
@@ -234,7 +234,7 @@ impl Scene {
     }
 }
 
-/// One line per item with its place, to compare and to read.
+/// One line per item with its position, to compare and to read.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "page {:.2} x {:.2} mm: {}", self.width, self.height, self.title)?;

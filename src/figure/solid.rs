@@ -34,7 +34,7 @@ pub struct Penny {
 pub struct Cut {
     /// 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// Place on that axis in mm.
+    /// Position on that axis in mm.
     pub at: f64,
 }
 
@@ -129,7 +129,7 @@ impl Figure for Solid {
     }
 }
 
-/// The picture as a place for points of the model.
+/// The projection of points of the model.
 struct Page<'a> {
     view: &'a View,
     place: &'a dyn Fn([f64; 3]) -> Point,

@@ -20,7 +20,7 @@ pub enum Outline {
 /// The outline of a specimen on the page: mm of the model → mm of the page.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    /// Place on the page.
+    /// Position on the page.
     pub area: Rect,
     outline: Outline,
     low: Point,
@@ -28,7 +28,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Fits a domain (lower left and upper right corner) into a place on the page, in its upper left corner.
+    /// Fits a domain (lower left and upper right corner) into an area of the page, in its upper left corner.
     pub fn fit(low: Point, high: Point, place: Rect) -> Self {
         let (w, h) = (high[0] - low[0], high[1] - low[1]);
         let scale = (place.width() / w).min(place.height() / h);
@@ -41,7 +41,7 @@ impl Frame {
         Self { outline, ..self }
     }
 
-    /// A place in the model on the page.
+    /// A point of the model on the page.
     pub fn place(&self, p: Point) -> Point {
         [self.area.left + (p[0] - self.low[0]) * self.scale, self.area.bottom - (p[1] - self.low[1]) * self.scale]
     }

@@ -49,7 +49,7 @@ impl Box3 {
         self.corner([self.unit(0, v[0]), self.unit(1, v[1]), self.unit(2, v[2])])
     }
 
-    /// Facts that let a script tell values under a pointer: the ends of the three axes, then the places on the page of
+    /// Facts from which a script reads values under a pointer: the ends of the three axes, then the points on the page of
     /// their common low corner and of the high end of each.
     fn facts(&self) -> Vec<(&'static str, String)> {
         let ends = self.axes.iter().flat_map(|axis| [axis.low, axis.high]).map(|end| end.to_string());
@@ -68,7 +68,7 @@ impl Figure for Surface {
         let mut scene = Scene::new(style.width, 0.74 * style.width);
         scene.title = format!("The response {} over {} and {}", f.z.words(), f.x.words(), f.y.words());
         let (low, high) = extent(f.values.iter().copied());
-        scene.description = format!("A surface from {} to {}.", significant(low, 3), f.z.told(high));
+        scene.description = format!("A surface from {} to {}.", significant(low, 3), f.z.in_words(high));
         let bands = Bands::of(low, high, &f.z);
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
         let note = if f.note.is_empty() { 0.3 * size } else { 1.8 * size };

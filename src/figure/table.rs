@@ -1,4 +1,4 @@
-//! Tables as CSV, LaTeX (booktabs) and Markdown from columns. Symbols and units stand in the heads. Texts stay texts in
+//! Tables as CSV, LaTeX (booktabs) and Markdown from columns. Symbols and units are in the heads. Texts stay texts in
 //! each of them ([`super::escape`]); captions and notes may hold mathematics between dollar signs.
 
 use super::column::{Column, Digits, Values};

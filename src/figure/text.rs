@@ -17,7 +17,7 @@ pub const CAP_HEIGHT: f64 = 0.66;
 /// One typographic point (1/72 inch) in mm.
 pub const POINT: f64 = 25.4 / 72.0;
 
-/// A glyph in its place: mm from the start of the baseline, right and down.
+/// A glyph at its position: mm from the start of the baseline, right and down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glyph {
     /// Face it is taken from.
@@ -26,7 +26,7 @@ pub struct Glyph {
     pub id: u16,
     /// Character it stands for.
     pub character: char,
-    /// Place of its origin.
+    /// Position of its origin.
     pub at: Point,
     /// Size (one em) in mm.
     pub size: f64,
@@ -51,7 +51,7 @@ pub struct Line {
     pub plain: String,
 }
 
-/// What is wrong with a label.
+/// A fault of a label.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
     /// A command that is not known.
@@ -125,7 +125,7 @@ pub fn unit_markup(unit: &str) -> String {
     out
 }
 
-/// A unit cut behind each of its powers: what stands before a power, and the power without `^` and brackets.
+/// A unit cut behind each of its powers: the text before a power, and the power without `^` and brackets.
 pub(crate) fn unit_parts(unit: &str) -> Vec<(&str, &str)> {
     let mut parts = Vec::new();
     let mut rest = unit;
@@ -166,7 +166,7 @@ impl Line {
         Line { glyphs: pen.glyphs, rules: pen.rules, size, width: pen.x, above, below, plain: pen.plain }
     }
 
-    /// The corners of the ink's place when the baseline starts at `at` and is turned by `angle` degrees anticlockwise.
+    /// The corners of the ink when the baseline starts at `at` and is turned by `angle` degrees anticlockwise.
     pub fn corners(&self, at: Point, angle: f64) -> [Point; 4] {
         let (s, c) = sin_cos(angle.to_radians());
         let turn = |x: f64, y: f64| [at[0] + x * c + y * s, at[1] - x * s + y * c];

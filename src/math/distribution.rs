@@ -121,7 +121,7 @@ pub fn weibull_of_deviation(deviation: f64) -> (f64, f64) {
     (exp(-lgamma(1.0 + inverse)), 1.0 / inverse)
 }
 
-/// Regularised incomplete beta function `I_x(a, b)`; `y` is `1 − x`, given apart because a small one loses digits.
+/// Regularised incomplete beta function `I_x(a, b)`; `y` is `1 − x`, passed separately because a small one loses digits.
 fn incomplete_beta(a: f64, b: f64, x: f64, y: f64) -> f64 {
     if x <= 0.0 || y <= 0.0 {
         return if x <= 0.0 { 0.0 } else { 1.0 };

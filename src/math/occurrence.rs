@@ -1,6 +1,6 @@
 //! Which of equal rows each row is.
 
-/// The occurrence of each row among those equal to it, from 1, in the order given. Rows are their bits, `width` words each;
+/// The occurrence of each row among those equal to it, from 1, in the order of the table. Rows are their bits, `width` words each;
 /// rows of no width are all equal.
 pub fn occurrences(words: &[u64], width: usize, rows: usize) -> Vec<u64> {
     assert_eq!(words.len(), width * rows, "BUG: rows of another width");

@@ -32,7 +32,7 @@ impl Scale {
         }
     }
 
-    /// Whether values stand as they are; files leave this scale out.
+    /// Whether values are used unchanged; files leave this scale out.
     pub fn is_linear(&self) -> bool {
         *self == Self::Linear
     }

@@ -68,7 +68,7 @@ pub enum Cooling {
     Geometric,
 }
 
-/// Settings; what is left out is the preset's.
+/// Settings; a setting that is left out has the value of the preset.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -86,7 +86,7 @@ pub struct Settings {
     pub chain: Option<usize>,
     /// Temperature that counts as frozen.
     pub frozen: Option<f64>,
-    /// Descend from what is found, and start anew when frozen.
+    /// Descend from the point found, and start anew when frozen.
     pub descend: Option<bool>,
     /// Chains side by side.
     pub chains: Option<usize>,
@@ -151,7 +151,7 @@ struct Plan {
 /// The algorithm's state.
 pub struct Annealing {
     chains: Vec<Chain>,
-    /// How many points each chain asked for.
+    /// Number of points of each chain.
     asked: Vec<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! Where the parameters may lie: a box, and linear constraints in it.
+//! The domain of the parameters: a box, and linear constraints in it.
 //!
 //! Optimisers see the unit box u ([`super::factor`]). A linear constraint Σ aᵢ xᵢ ≤ b becomes
 //! Σ aᵢ wᵢ uᵢ ≤ b − Σ aᵢ lowᵢ with the widths wᵢ, scaled to a normal of unit length. On logarithmic scales two kinds of
@@ -94,7 +94,7 @@ impl Domain {
         self.factors.iter().zip(unit).map(|(f, &u)| f.natural_beyond(u)).collect()
     }
 
-    /// Place of a natural point in the unit box; outside the range it lies outside 0 … 1.
+    /// Coordinates of a natural point in the unit box; outside the range it lies outside 0 … 1.
     pub fn unit(&self, natural: &[f64]) -> Vec<f64> {
         self.factors.iter().zip(natural).map(|(f, &x)| f.unit(x)).collect()
     }
@@ -201,7 +201,7 @@ fn box_faults(factors: &[Factor]) -> Vec<Error> {
 
 type Wall = (Vec<f64>, f64, String);
 
-/// The constraint in the unit box; nothing when it always holds.
+/// The constraint in the unit box; `None` when it always holds.
 fn wall(constraint: &Linear, factors: &[Factor], known: &[String]) -> Result<Option<Wall>, Vec<Error>> {
     let mut faults = Vec::new();
     let text = written(constraint);
@@ -254,8 +254,8 @@ fn ratio(constraint: &Linear, factors: &[Factor], text: String) -> Result<Wall, 
     // ln x − ln y ≤ ln(limit), where a bound from below has no x and ln y ≥ ln(limit).
     let mut bound = if over.is_none() { -ln(limit) } else { ln(limit) };
     let mut normal = vec![0.0; factors.len()];
-    for (sign, place) in [(1.0, over), (-1.0, under)] {
-        if let Some(i) = place {
+    for (sign, index) in [(1.0, over), (-1.0, under)] {
+        if let Some(i) = index {
             normal[i] = sign * factors[i].span();
             bound -= sign * ln(factors[i].low);
         }

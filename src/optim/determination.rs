@@ -8,7 +8,7 @@
 //!
 //! the profile of the likelihood cut at these intervals. Each end is found by bisection: whether a point with u_k ≥ v
 //! meets all conditions is one projection onto them ([`super::solution_set`]). A parameter whose extent is its whole range
-//! is free: the targets say nothing of it. Where a target is a band, all of it counts as y_j. The intervals are those
+//! is free: the targets do not determine it. Where a target is a band, all of it counts as y_j. The intervals are those
 //! of the responses one by one; a parameter that several responses tie is wider here than jointly at the same level, never
 //! narrower.
 //!
@@ -17,14 +17,14 @@
 use super::level::Level;
 use super::{Interval, Problem};
 
-/// What is expected at a point in natural units, response by response; an end that is NaN is unknown.
+/// The predicted intervals at a point in natural units, by response; an end that is NaN is unknown.
 pub type Outlook<'a> = dyn Fn(&[f64]) -> Option<Vec<Interval>> + 'a;
 
 /// Halvings of a bisection: ends are known to a thousandth of the range.
 const HALVINGS: usize = 10;
 
 /// What each parameter takes over all equally good solutions, in the unit box: from the solution `at` and from others
-/// that are known to be as good. None where nothing is expected there.
+/// that are known to be as good. `None` where nothing is predicted there.
 pub fn extents(problem: &Problem, outlook: &Outlook, at: &[f64], others: &[Vec<f64>]) -> Option<Vec<[f64; 2]>> {
     let expected = outlook(&problem.domain.natural(at))?;
     let bands: Vec<[f64; 2]> = (0..expected.len()).map(|j| band(problem, expected[j].mean, j)).collect();
@@ -45,7 +45,7 @@ fn band(problem: &Problem, y: f64, j: usize) -> [f64; 2] {
     }
 }
 
-/// The furthest place of coordinate `k` in the direction of `sign` over the points whose intervals reach all bands.
+/// The extreme of coordinate `k` in the direction of `sign` over the points whose intervals reach all bands.
 fn furthest(
     problem: &Problem,
     outlook: &Outlook,

@@ -3,7 +3,7 @@
 //! A mutant is made from members of the population, crossed with its parent gene by gene with probability CR (one
 //! gene always crosses), and replaces the parent when it is not worse.
 //! * `rand1`: v = x_r1 + F (x_r2 − x_r3); each individual carries F and CR, redrawn with probability 0.1 as
-//!   F ∈ U(0.1, 1), CR ∈ U(0, 1), and kept when the trial wins (jDE, Brest et al. 2006).
+//!   F ∈ U(0.1, 1), CR ∈ U(0, 1), and stored when the trial wins (jDE, Brest et al. 2006).
 //! * `current-to-best`: v = x + F (x_p − x) + F (x_r1 − x_r2), x_p among the best p, x_r2 also from an archive of
 //!   replaced parents; F from a Cauchy, CR from a normal distribution around a memory of what has won, weighted by
 //!   the gain (SHADE, Tanabe & Fukunaga 2013; JADE, Zhang & Sanderson 2009).
@@ -11,7 +11,7 @@
 //! A gene that leaves the box is set halfway between its parent and the bound; linear constraints by projection.
 //!
 //! The first population is random over the box, or, around a first guess, the guess itself and points off it by up to
-//! `spread` ranges in every parameter. A failed run has an infinite misfit and gives way to any that did not fail.
+//! `spread` ranges in every parameter. A failed run has an infinite misfit and is replaced by any that did not fail.
 //!
 //! The preset `rcc2020` is the adaptive differential evolution by which the contact parameters of a
 //! roller-compacted-concrete dam were found from a stress–strain curve (Math. Probl. Eng. 2020, 6686609,
@@ -53,7 +53,7 @@ pub enum Strategy {
     CurrentToBest,
 }
 
-/// Settings; what is left out is the preset's.
+/// Settings; a setting that is left out has the value of the preset.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -128,7 +128,7 @@ pub struct Differential {
     random: Stream,
     generation: usize,
     population: Vec<Individual>,
-    /// The F and CR of each trial asked for.
+    /// F and CR of each proposed trial.
     asked: Vec<(f64, f64)>,
     archive: Vec<Vec<f64>>,
     memory: Vec<(f64, f64)>,
@@ -266,8 +266,8 @@ impl Differential {
                 if self.archive.len() < trials.len() {
                     self.archive.push(parent.point.clone());
                 } else {
-                    let place = self.random.below(self.archive.len());
-                    self.archive[place].clone_from(&parent.point);
+                    let index = self.random.below(self.archive.len());
+                    self.archive[index].clone_from(&parent.point);
                 }
             }
             *parent = Individual { point: trial.point.clone(), misfit: trial.misfit, f, cr };

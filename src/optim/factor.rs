@@ -1,6 +1,6 @@
 //! A calibrated parameter: its range, and the scale on which it is searched.
 //!
-//! A parameter x of a range a … b stands in the unit box at
+//! A parameter x of a range a … b has in the unit box the coordinate
 //! * u = (x − a) / (b − a) on a linear scale,
 //! * u = ln(x/a) / ln(b/a) on a logarithmic one, which needs a > 0: equal steps of u are equal ratios of x. Stiffnesses
 //!   and strengths whose right order of magnitude is not known are searched there.
@@ -43,7 +43,7 @@ impl Factor {
         }
     }
 
-    /// The value at a place that may lie outside 0 … 1.
+    /// The value at a coordinate that may lie outside 0 … 1.
     pub(super) fn natural_beyond(&self, unit: f64) -> f64 {
         match self.scale {
             Scale::Linear => self.low + unit * (self.high - self.low),
@@ -51,7 +51,7 @@ impl Factor {
         }
     }
 
-    /// Where a value stands; outside the range it lies outside 0 … 1, and a value without logarithm stands at −∞.
+    /// The coordinate of a value; outside the range it lies outside 0 … 1, and a value without logarithm is at −∞.
     pub fn unit(&self, natural: f64) -> f64 {
         match self.scale {
             Scale::Linear => (natural - self.low) / (self.high - self.low),
@@ -68,7 +68,7 @@ impl Factor {
         }
     }
 
-    /// What is wrong with the range, if anything.
+    /// The fault of the range, if it has one.
     pub(super) fn fault(&self) -> Option<Error> {
         let Self { name, low, high, scale } = self;
         if let Some(&value) = [low, high].into_iter().find(|v| !v.is_finite()) {

@@ -45,7 +45,7 @@ pub enum Mutation {
     Gaussian,
 }
 
-/// Settings; what is left out is the preset's.
+/// Settings; a setting that is left out has the value of the preset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -148,16 +148,16 @@ impl Genetic {
         let expectation = |rank: usize| 1.0 / ((rank + 1) as f64).sqrt();
         let total: f64 = (0..self.size).map(expectation).sum();
         let step = total / count as f64;
-        let mut place = step * self.random.uniform();
+        let mut mark = step * self.random.uniform();
         let (mut rank, mut end) = (0, expectation(0));
         let mut chosen = Vec::with_capacity(count);
         for _ in 0..count {
-            while place >= end && rank + 1 < self.size {
+            while mark >= end && rank + 1 < self.size {
                 rank += 1;
                 end += expectation(rank);
             }
             chosen.push(rank);
-            place += step;
+            mark += step;
         }
         self.random.shuffle(&mut chosen);
         chosen

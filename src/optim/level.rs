@@ -22,7 +22,7 @@ pub(super) struct Level<'a> {
     pub(super) wanted: Vec<[f64; 2]>,
 }
 
-/// The end of a band that others are measured by: the lower one unless it is open.
+/// The end of a band that is its reference: the lower one unless it is open.
 fn reference([low, high]: [f64; 2]) -> f64 {
     if low.is_finite() { low } else { high }
 }
@@ -63,7 +63,7 @@ impl Level<'_> {
         self.deviations(unit).is_some_and(|d| d.iter().all(|d| !d.is_nan()) && self.worst(&d) <= SAME)
     }
 
-    /// The sensitivities of the responses that stand at an end of their band: those that tie the parameters.
+    /// The sensitivities of the responses at an end of their band: those that tie the parameters.
     pub(super) fn active(&self, unit: &[f64]) -> Option<Vec<Vec<f64>>> {
         let ends = self.beyond(&self.deviations(unit)?);
         let tied = |[low, high]: &[f64; 2]| *low <= SAME || *high >= -SAME;

@@ -10,8 +10,8 @@
 //! * [`solution_set`]: all the parameters that meet the targets when there is more than one answer
 //! * [`determination`]: how well the responses determine each parameter
 //!
-//! An optimiser hands out points and is told what came back. It never sees the model, a clock or a thread, so the
-//! same history gives the same points: a killed calibration is resumed by replaying what was told.
+//! An optimiser proposes points and receives their results. It never sees the model, a clock or a thread, so the
+//! same history gives the same points: a killed calibration is resumed by replaying its history.
 //!
 //! Optimisers work in the *unit box*: every parameter is mapped from its range to 0 … 1, linearly or by logarithms
 //! ([`factor`]).
@@ -62,7 +62,7 @@ impl Trial {
     }
 }
 
-/// What an optimiser is given: where it may look and what it is judged by, never the model.
+/// The problem of an optimiser: its domain and its targets, never the model.
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// Box and linear constraints.
@@ -73,11 +73,11 @@ pub struct Problem {
     pub start: Option<Vec<f64>>,
 }
 
-/// A minimiser that is asked for points and told what came back.
+/// A minimiser that proposes points and receives their results.
 ///
 /// [`ask`](Self::ask) and [`tell`](Self::tell) alternate; `tell` gets one trial for every point of the last `ask`, in
 /// its order; only the very last batch of a search may be cut short, by its budget. Both are deterministic: all
-/// randomness comes from the seed given at construction.
+/// randomness comes from the seed of its construction.
 pub trait Optimiser {
     /// The next batch of points in the unit box, at least one; they can be evaluated in parallel.
     fn ask(&mut self) -> Vec<Vec<f64>>;
@@ -85,16 +85,16 @@ pub trait Optimiser {
     /// The results of the last batch.
     fn tell(&mut self, trials: &[Trial]);
 
-    /// Why the method itself has nothing more to do, if so. Budgets and wanted misfits are the [`search`]'s affair.
+    /// Why the method itself has ended, if it has. Budgets and target misfits belong to [`search`].
     fn stop(&self) -> Option<Stop>;
 
-    /// The point the method would stand for, when that is not simply the best trial.
+    /// The point that the method recommends, when that is not simply the best trial.
     fn recommended(&self) -> Option<Recommendation> {
         None
     }
 }
 
-/// The point a method stands for, with what it expects there.
+/// The point that a method recommends, with its prediction there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recommendation {
     /// The parameters in the unit box.
@@ -126,7 +126,7 @@ pub enum Stop {
     Settled,
     /// No improvement worth the name over the method's stall window.
     Stalled,
-    /// The last generation, temperature or iteration that was asked for.
+    /// The last requested generation, temperature or iteration.
     Iterations,
     /// The budget of evaluations is used up.
     Evaluations,
@@ -150,7 +150,7 @@ impl fmt::Display for Stop {
     }
 }
 
-/// What is wrong with a calibration problem.
+/// A fault of a calibration problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// A constraint names a factor that is not calibrated.
@@ -161,13 +161,13 @@ pub enum Error {
         /// The names there are.
         known: Vec<String>,
     },
-    /// A factor or a target stands twice.
+    /// A duplicate factor or target.
     #[error("`{name}` is given twice")]
     Twice {
         /// The name.
         name: String,
     },
-    /// Nothing to vary, or nothing to aim at.
+    /// No factor, or no target.
     #[error("no {what} given; at least one is needed")]
     Nothing {
         /// "factor" or "target".
@@ -232,7 +232,7 @@ pub enum Error {
         /// The response.
         response: String,
     },
-    /// A weight that is negative or leaves nothing.
+    /// A weight that is negative, or weights that are all zero.
     #[error("the weight of `{response}` is {weight}; weights must be positive")]
     Weight {
         /// The response.
@@ -250,7 +250,7 @@ pub enum Error {
         /// What would be right.
         expected: &'static str,
     },
-    /// A history that this search did not ask for.
+    /// A history of another search.
     #[error(
         "run {index} of the history stands at {found:?}, but this calibration asked for {asked:?}: \
          the history belongs to other settings or another seed"
@@ -260,7 +260,7 @@ pub enum Error {
         index: usize,
         /// Where the search asks.
         asked: Vec<f64>,
-        /// Where the run stands.
+        /// Strain that the run reached.
         found: Vec<f64>,
     },
     /// A point outside the box or its constraints.
@@ -278,7 +278,7 @@ pub enum Error {
         low: f64,
         /// Last strain of the curve.
         high: f64,
-        /// The strain that was asked for.
+        /// The requested strain.
         wanted: f64,
     },
 }

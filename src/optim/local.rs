@@ -21,9 +21,9 @@ const FIRST: f64 = 0.05;
 const SHORTEST: f64 = 1e-12;
 
 enum Phase {
-    /// The gradient at the current point has been asked for, with these signed differences.
+    /// The gradient at the current point has been requested, with these signed differences.
     Gradient(Vec<f64>),
-    /// A trial at this fraction of the direction has been asked for.
+    /// A trial at this fraction of the direction has been requested.
     Line(f64),
     Done,
 }

@@ -65,7 +65,7 @@ impl Target {
         Self { response: response.to_owned(), low, high, weight, tolerance: None }
     }
 
-    /// The value that stands for the target: the lower end where there is one, else the upper.
+    /// The reference value of the target: the lower end where there is one, else the upper.
     pub fn value(&self) -> f64 {
         if self.low.is_finite() { self.low } else { self.high }
     }

@@ -2,7 +2,7 @@
 //!
 //! y = K x: from a first value x₁, which a slope known beforehand may give as x₁ = t / K, every further run takes the
 //! slope that the last one showed, xᵢ₊₁ = xᵢ t / yᵢ, with the target t. Where proportionality is exact the second run meets
-//! the target; the scatter of single packings is what is left. The tensile strength of a disc of contact bonds against
+//! the target; the scatter of single packings remains. The tensile strength of a disc of contact bonds against
 //! the bond strength is such a response.
 //!
 //! Source: the two-step calibration of a Brazilian disc, doi:10.1038/s41598-024-61410-x, section 5 (steps b and d, eq. 15).

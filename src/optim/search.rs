@@ -45,7 +45,7 @@ pub struct Limits {
     pub polish: bool,
 }
 
-/// What the surrogate may know beforehand; the other methods have no use for it.
+/// Prior knowledge of the surrogate; the other methods do not use it.
 #[derive(Clone, Default)]
 pub struct Knowledge {
     /// Runs of other stages; a response that a run lacks is NaN.
@@ -63,16 +63,16 @@ pub struct Run {
     pub responses: Option<Vec<f64>>,
 }
 
-/// Where a search stands.
+/// State of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Evaluations told.
+    /// Evaluations received.
     pub evaluations: usize,
     /// Evaluations that failed.
     pub failed: usize,
     /// The best trial.
     pub best: Option<Trial>,
-    /// The point the method stands for: its own, or the best trial.
+    /// The recommended point: that of the method, or the best trial.
     pub recommended: Option<Recommendation>,
 }
 
@@ -87,10 +87,10 @@ pub enum Next {
 
 /// The next points or the end, from the history alone.
 ///
-/// Where the history ends within a batch the rest of that batch is asked for.
+/// Where the history ends within a batch the rest of that batch is requested.
 ///
 /// # Errors
-/// [`Error::ForeignHistory`] when the history was not asked for by these settings and this seed.
+/// [`Error::ForeignHistory`] when the history does not belong to these settings and this seed.
 pub fn next(
     problem: &Problem,
     method: &Method,
@@ -102,30 +102,30 @@ pub fn next(
     replay(&mut Search::new(problem, method, limits, seed, knowledge), history, |_| ())
 }
 
-/// Tells a fresh search its history; `seen` is shown the search after every whole batch.
+/// Replays the history in a fresh search; `seen` is shown the search after every whole batch.
 ///
 /// # Errors
 /// As [`next`].
 pub fn replay(search: &mut Search, history: &[Run], mut seen: impl FnMut(&Search)) -> Result<Next, Error> {
-    let mut told = history;
+    let mut received = history;
     loop {
         if let Some(stop) = search.stop() {
             return Ok(Next::Stop(stop, search.state()));
         }
         let asked = search.ask();
-        for (i, (asked, run)) in asked.iter().zip(told).enumerate() {
+        for (i, (asked, run)) in asked.iter().zip(received).enumerate() {
             if *asked != run.point {
-                let index = history.len() - told.len() + i;
+                let index = history.len() - received.len() + i;
                 return Err(Error::ForeignHistory { index, asked: asked.clone(), found: run.point.clone() });
             }
         }
-        if told.len() < asked.len() {
-            return Ok(Next::Ask(asked[told.len()..].to_vec()));
+        if received.len() < asked.len() {
+            return Ok(Next::Ask(asked[received.len()..].to_vec()));
         }
-        let (batch, rest) = told.split_at(asked.len());
+        let (batch, rest) = received.split_at(asked.len());
         search.tell(&batch.iter().map(|run| run.responses.clone()).collect::<Vec<_>>());
         seen(search);
-        told = rest;
+        received = rest;
     }
 }
 
@@ -149,7 +149,7 @@ pub fn minimise(
 
 /// Failures in a row, from the first run, that end a search.
 const HOPELESS: usize = 30;
-/// Part of the budget kept for the final refinement.
+/// Share of the budget reserved for the final refinement.
 const POLISHING: f64 = 0.1;
 
 /// An optimiser with its budget and its best point.
@@ -259,7 +259,7 @@ impl Search {
         }
     }
 
-    /// Where the search stands.
+    /// State of the search.
     pub fn state(&self) -> State {
         let own = self.optimiser.recommended();
         let best = || self.best.as_ref().map(observed);
@@ -273,7 +273,7 @@ impl Search {
 }
 
 /// The best trial as a recommendation: what was seen there in one run. How far another run would be from it is not known,
-/// which is not to say that it is nothing.
+/// which does not mean that it is zero.
 fn observed(trial: &Trial) -> Recommendation {
     let seen = |&y: &f64| Interval { mean: y, low: f64::NAN, high: f64::NAN };
     Recommendation {

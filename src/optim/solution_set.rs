@@ -6,7 +6,7 @@
 //!   [`least_distance`] problem, halved while it makes the responses worse than they were;
 //! * the **sample** takes the solutions nearest random points of the domain;
 //! * the number of **free** directions is d minus the rank of the sensitivities there;
-//! * the **reach** of every response over the domain tells which target cannot be met by itself, and how near one
+//! * the **reach** of every response over the domain shows which target cannot be met by itself, and how near one
 //!   can get; where each can be met alone the misfit that is left is a conflict between them.
 //!
 //! It asks the model far more often than a simulation could bear: give it fitted surfaces.
@@ -43,7 +43,7 @@ pub struct SolutionSet {
 /// Least and greatest value of a response over the domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reach {
-    /// What is wanted of the response.
+    /// The target of the response.
     pub target: Target,
     /// Least value.
     pub low: f64,
@@ -63,7 +63,7 @@ impl Reach {
         }
     }
 
-    /// Whether the target itself can be had.
+    /// Whether the target can be met by itself.
     pub fn holds_target(&self) -> bool {
         self.low <= self.target.high && self.high >= self.target.low
     }
@@ -107,10 +107,10 @@ pub fn explore(
     })
 }
 
-/// Least and greatest value of every response: random places, the best of them refined by descent.
+/// Least and greatest value of every response: random points, the best of them refined by descent.
 fn reach(problem: &Problem, model: &Model, random: &mut Stream) -> Vec<Reach> {
     let domain = &problem.domain;
-    let places: Vec<Vec<f64>> = (0..400).map(|_| domain.sample(random)).collect();
+    let starts: Vec<Vec<f64>> = (0..400).map(|_| domain.sample(random)).collect();
     let targets = problem.misfit.targets().iter().enumerate();
     targets
         .map(|(k, target)| {
@@ -118,18 +118,18 @@ fn reach(problem: &Problem, model: &Model, random: &mut Stream) -> Vec<Reach> {
                 let size = target.value().abs();
                 let scale = if size == 0.0 { sign } else { sign / size };
                 let value = |u: &[f64]| model(&domain.natural(u)).map_or(f64::INFINITY, |y| y[k] * scale);
-                lowest(domain, &places, &value) / scale
+                lowest(domain, &starts, &value) / scale
             };
             Reach { target: target.clone(), low: extreme(1.0), high: extreme(-1.0) }
         })
         .collect()
 }
 
-/// The least value found from the best few of many places.
-fn lowest(domain: &Domain, places: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64) -> f64 {
-    let mut ranked: Vec<(f64, &Vec<f64>)> = places.iter().map(|u| (value(u), u)).collect();
+/// The least value found from the best few of many points.
+fn lowest(domain: &Domain, starts: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let mut ranked: Vec<(f64, &Vec<f64>)> = starts.iter().map(|u| (value(u), u)).collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let descents = ranked.iter().take(4).map(|(start, place)| descend(domain, place, *start, value).1);
+    let descents = ranked.iter().take(4).map(|(start, from)| descend(domain, from, *start, value).1);
     descents.fold(ranked[0].0, f64::min)
 }
 
@@ -137,8 +137,8 @@ fn lowest(domain: &Domain, places: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64) -
 pub(super) fn descend(domain: &Domain, from: &[f64], start: f64, value: &dyn Fn(&[f64]) -> f64) -> (Vec<f64>, f64) {
     let mut descent = Local::new(domain, from, start);
     while descent.stop().is_none() {
-        let told = |point: Vec<f64>| Trial { misfit: value(&point), point, responses: Vec::new() };
-        let trials: Vec<Trial> = descent.ask().into_iter().map(told).collect();
+        let trial = |point: Vec<f64>| Trial { misfit: value(&point), point, responses: Vec::new() };
+        let trials: Vec<Trial> = descent.ask().into_iter().map(trial).collect();
         descent.tell(&trials);
     }
     let (point, misfit) = descent.best();
@@ -183,7 +183,7 @@ mod tests {
         assert!((set.misfit - 2.0 / 3.0).abs() < 1e-9);
     }
 
-    /// Of "at least ¼" the centre itself is a solution, and nothing is tied there; beyond the reach the nearest is told.
+    /// Of "at least ¼" the centre itself is a solution, and nothing is tied there; beyond the reach the nearest is returned.
     #[test]
     fn a_band_leaves_free_what_lies_within() {
         let product = |x: &[f64]| Some(vec![x[0] * x[1]]);

@@ -71,6 +71,9 @@ pub(super) fn workflow(
     })
 }
 
+/// Names of lines in tables of analyses that are no factors.
+const TERMS: [&str; 3] = ["const", "residual", "total"];
+
 fn outline(stages: &[StageNode]) -> Vec<Outline> {
     let one = |stage: &StageNode| {
         let inputs: BTreeSet<usize> = stage.inputs.iter().map(|(_, input)| *input).collect();
@@ -170,6 +173,13 @@ impl Check<'_> {
         if let Some(twice) = names.iter().enumerate().find(|(i, own)| names[..*i].contains(own)).map(|(_, own)| own) {
             complain("levels", format!("level `{twice}` stands here twice"), "name each level once");
         }
+        if let Some(odd) = names.iter().find(|own| own.is_empty() || own.trim() != **own) {
+            complain(
+                "levels",
+                format!("level `{odd}` is empty, or begins or ends with a blank"),
+                "leave the blanks out",
+            );
+        }
         for (key, given) in
             [("range", table.range.is_some()), ("unit", !table.unit.is_empty()), ("sets", !table.sets.0.is_empty())]
         {
@@ -202,6 +212,11 @@ impl Check<'_> {
             let message = format!("{section} `{name}` has the name of a column that flow writes, `{column}`");
             let fault = Fault::new(message).hint("give it another name; its `symbol` says how it is shown");
             self.complain(node, &steps([name.as_str()]), fault);
+        }
+        for name in TERMS.iter().filter(|name| context.factors.contains_key(**name)) {
+            let message = format!("factor `{name}` has the name of a line that analyses write beside those of factors");
+            let fault = Fault::new(message).hint("give it another name; its `symbol` says how it is shown");
+            own("factor").into_iter().for_each(|node| self.complain(node, &steps([*name]), fault.clone()));
         }
         let both = context.responses.keys().filter(|name| context.factors.contains_key(*name));
         for (name, node) in both.filter_map(|name| Some((name, own("response")?))) {

@@ -8,7 +8,7 @@ use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
 use crate::stage::beside::plain;
 use crate::stage::cached::CachedRun;
-use crate::stage::rows::Rows;
+use crate::stage::rows::DesignRows;
 use crate::stage::{FileInput, Library, Memory, Outcome, StageError, Task};
 use crate::store::Store;
 use std::cell::RefCell;
@@ -32,7 +32,7 @@ pub(super) struct Lookups {
     /// The files that it read, with their digests.
     pub(super) files: Files,
     /// The rows of a fan-out.
-    pub(super) rows: Option<Arc<Rows>>,
+    pub(super) rows: Option<Arc<DesignRows>>,
     /// A result that could not be read.
     pub(super) lost: Option<Lost>,
 }
@@ -46,7 +46,7 @@ impl Library for Shelf<'_> {
         })
     }
 
-    fn cached(&self, rows: &Arc<Rows>, index: usize) -> Option<CachedRun<'_>> {
+    fn cached(&self, rows: &Arc<DesignRows>, index: usize) -> Option<CachedRun<'_>> {
         self.lookups.borrow_mut().rows.get_or_insert_with(|| Arc::clone(rows));
         self.run_memo?.cached(rows, index)
     }

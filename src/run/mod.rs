@@ -18,6 +18,7 @@ mod elsewhere;
 mod event;
 mod far;
 mod files;
+mod forecast;
 mod hand;
 mod library;
 mod licences;
@@ -35,6 +36,7 @@ pub use board::{TaskCount, TaskState};
 pub use campaigns::{Past, record};
 pub use commit::commit;
 pub use event::{Event, Silent, Watch};
+pub use forecast::{forecasts, forecasts_of};
 pub use memo::remembered;
 pub use stages::{StageReport, StageStatus};
 pub use worker::{Worked, Worker, program};
@@ -60,7 +62,7 @@ use streamed::Streamed;
 
 /// How a campaign is run.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub struct RunSettings {
     /// Cores that all tasks together may use.
     pub jobs: usize,
     /// Go on with what does not depend on a failed task.
@@ -131,7 +133,7 @@ impl Report {
 }
 
 /// Runs what is missing of `workflow`, or only decides when the settings say so.
-pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn Watch, stop: &AtomicBool) -> Report {
+pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &dyn Watch, stop: &AtomicBool) -> Report {
     let (answers, inbox) = channel();
     let jobs = if settings.dry { 1 } else { settings.jobs };
     let ran = with_threads(jobs, |pool| {
@@ -177,15 +179,15 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &Settings, watch: &dyn 
 
 /// A broken invariant of this program, as the failure of the task that met it.
 fn panicked(panic: &(dyn Any + Send)) -> Failure {
-    let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-    let text = format!("internal error: {}", said.unwrap_or("a panic without words"));
+    let message = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+    let text = format!("internal error: {}", message.unwrap_or("a panic without words"));
     StageError::new(text).hint("please report it with the workflow and what was printed above").into()
 }
 
 /// Decides what is done of `workflow` and what is left, by the decisions of [`run`], and starts nothing. `targets` are the
 /// stages that are wanted, all when empty; without `memos` every task is looked up.
 pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Report {
-    let settings = Settings {
+    let settings = RunSettings {
         jobs: 0,
         keep_going: true,
         dry: true,
@@ -206,7 +208,7 @@ struct Answer {
 struct Loop<'pool, 'env> {
     workflow: &'env Workflow,
     store: &'env Store,
-    settings: &'env Settings,
+    settings: &'env RunSettings,
     watch: &'env dyn Watch,
     stop: &'env AtomicBool,
     pool: Threads<'pool, 'env>,
@@ -223,7 +225,7 @@ struct Loop<'pool, 'env> {
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
     far_nodes: HashMap<Key, NodeId>,
-    /// Earlier runs, where tasks go to workers: a worker is told how long a task may take.
+    /// Earlier runs, where tasks go to workers: a worker learns how long a task may take.
     past: Option<Past<'env>>,
     /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.
     most_seconds: HashMap<String, Option<f64>>,

@@ -3,7 +3,7 @@
 //! When a pin fails, either the change was a mistake, or the numbers moved on purpose: then raise the version of the work
 //! with a line that says what moved, and replace the pins with what the test prints.
 
-use super::{Settings, Silent, StageStatus, run};
+use super::{RunSettings, Silent, StageStatus, run};
 use crate::plan::{Overrides, load};
 use crate::stage::KINDS;
 use crate::store::Store;
@@ -149,10 +149,10 @@ rsm 592833ad92f1
 calibrate e38b40d330ef
 verify 38b0cc910644
 effort cf49a99b0418
-agreement bd06fe72410e
+agreement 7abe77c0ea84
 table 464517716712
 figure e5375085b080
-agreement 2
+agreement 3
 anova 3
 calibrate 4
 command 2
@@ -186,7 +186,7 @@ fn found() -> String {
     });
     let kinds: BTreeSet<&str> = workflow.stages.iter().map(|stage| stage.kind).collect();
     let store = Store::open(&folder.path().join("store")).unwrap();
-    let settings = Settings {
+    let settings = RunSettings {
         jobs: 2,
         keep_going: true,
         dry: false,

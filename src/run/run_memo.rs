@@ -10,7 +10,7 @@ use super::files::{Files, unchanged};
 use crate::artifact::Key;
 use crate::plan::Workflow;
 use crate::stage::cached::{CachedRun, CachedRuns, RunSummaries};
-use crate::stage::rows::{RUN, Rows};
+use crate::stage::rows::{DesignRows, RUN};
 use crate::store::{Memo, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, OnceCell};
@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 
 /// The runs that earlier campaigns made, found by the content of their rows.
 pub(super) struct RunMemo {
-    rows: Rows,
+    rows: DesignRows,
     /// Index at which the next row is expected: an edited design keeps the order of most of its rows.
     next: Cell<usize>,
     /// Indices of the rows in the order of their names, for a row at another index.
@@ -46,12 +46,12 @@ impl RunMemo {
             return None;
         }
         let words = words.as_chunks::<8>().0.iter().map(|word| u64::from_le_bytes(*word)).collect();
-        let rows = Rows::from_parts(factors, words)?;
+        let rows = DesignRows::from_parts(factors, words)?;
         Some(Self { rows, next: Cell::default(), ascending: OnceCell::new(), objects: memo.objects, summaries, files })
     }
 
     /// The cached run of a row of a design.
-    pub(super) fn cached(&self, rows: &Rows, index: usize) -> Option<CachedRun<'_>> {
+    pub(super) fn cached(&self, rows: &DesignRows, index: usize) -> Option<CachedRun<'_>> {
         if rows.factors() != self.rows.factors() {
             return None;
         }
@@ -79,7 +79,7 @@ impl RunMemo {
     /// Stores a memo of the runs of a gathering task for the next campaign. `rows` are the rows of its design, `files` the
     /// files that the runs read. Nothing is written when nearly all runs came from the old memo, which then serves again, or
     /// when nothing was gathered now, because all runs would have to be read for it.
-    pub(super) fn store(store: &Store, key: &Key, board: &Board, gather: NodeId, rows: &Rows, files: &Files) {
+    pub(super) fn store(store: &Store, key: &Key, board: &Board, gather: NodeId, rows: &DesignRows, files: &Files) {
         if !matches!(board.state(gather), TaskState::Done { cached: false, .. }) {
             return;
         }
@@ -135,13 +135,13 @@ mod tests {
     use crate::artifact::ContentHash;
     use crate::artifact::run::{Responses, Run};
 
-    fn rows(values: &[f64]) -> Rows {
+    fn rows(values: &[f64]) -> DesignRows {
         let words = values.iter().flat_map(|value| [value.to_bits(), 1]).collect();
-        Rows::from_parts(vec!["a".to_owned()], words).unwrap()
+        DesignRows::from_parts(vec!["a".to_owned()], words).unwrap()
     }
 
     /// Indices at which the memo of the rows 1, 2, … 6 finds those of a later design.
-    fn indices(new: &Rows) -> Vec<Option<usize>> {
+    fn indices(new: &DesignRows) -> Vec<Option<usize>> {
         let old = rows(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         let mut summaries = RunSummaries::default();
         let run = Run::plain("", Responses::default()).to_artifact();
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(found(&[6.0, 5.0, 4.0, 4.0, 1.0]), [5, 4, 3, 3, 0].map(Some));
         assert_eq!(found(&[1.0, 2.5, 3.0]), [Some(0), None, Some(2)]);
         assert_eq!(found(&[0.5, 1.0, 1.5, 2.0, 7.0]), [None, Some(0), None, Some(1), None]);
-        let other = Rows::from_parts(vec!["b".to_owned()], vec![1_f64.to_bits(), 1]).unwrap();
+        let other = DesignRows::from_parts(vec!["b".to_owned()], vec![1_f64.to_bits(), 1]).unwrap();
         assert_eq!(indices(&other), [None], "another factor");
     }
 }

@@ -8,7 +8,7 @@ use super::run_memo::RunMemo;
 use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
-use crate::stage::rows::Rows;
+use crate::stage::rows::DesignRows;
 use crate::stage::{Input, Known, Library, Memory, StageError, Step, vary};
 use crate::store::{ObjectId, Store};
 use std::cell::RefCell;
@@ -78,7 +78,7 @@ struct Entry {
     /// Key of the memo of its runs, known at the same time.
     run: Option<Key>,
     /// The rows whose runs it gathers.
-    rows: Option<Arc<Rows>>,
+    rows: Option<Arc<DesignRows>>,
     /// Every node it asked for, and the node that is its result.
     asked: Vec<NodeId>,
     files: Files,
@@ -95,16 +95,22 @@ pub(super) struct Stages {
     memos: bool,
 }
 
+/// Which stages are the targets or needed by them; all when no target is named.
+pub(super) fn wanted(workflow: &Workflow, targets: &[String]) -> Vec<bool> {
+    let mut wanted: Vec<bool> =
+        workflow.stages.iter().map(|stage| targets.is_empty() || targets.contains(&stage.name)).collect();
+    for index in (0..workflow.stages.len()).rev() {
+        if wanted[index] {
+            workflow.stages[index].inputs.iter().for_each(|&(_, input)| wanted[input] = true);
+        }
+    }
+    wanted
+}
+
 impl Stages {
     /// All stages before their first step; `memos` says whether memos may complete them.
     pub(super) fn new(workflow: &Workflow, targets: &[String], memos: bool) -> Self {
-        let mut wanted: Vec<bool> =
-            workflow.stages.iter().map(|stage| targets.is_empty() || targets.contains(&stage.name)).collect();
-        for index in (0..workflow.stages.len()).rev().filter(|_| !targets.is_empty()) {
-            if wanted[index] {
-                workflow.stages[index].inputs.iter().for_each(|&(_, input)| wanted[input] = true);
-            }
-        }
+        let wanted = wanted(workflow, targets);
         let entry = |wanted| Entry {
             state: State::Waiting,
             wanted,

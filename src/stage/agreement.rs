@@ -12,6 +12,7 @@ use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names, given::check_given, invalid::Invalid};
 use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
+use crate::artifact::statistics::NoteTable;
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
@@ -124,8 +125,8 @@ impl Kind for Agreement {
     const ABOUT: &'static str = "computed results beside values from elsewhere: ratios, ranks, trends";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::AGREEMENT];
     const CLASS: Class = Class::Statistics;
-    // 2: runs that are not valid are left out
-    const WORKS: &'static [Work] = &[Work { name: "agreement", version: 2, run: compare }];
+    // 2: runs that are not valid are left out. 3: notes on rows without a partner and pairs without a ratio
+    const WORKS: &'static [Work] = &[Work { name: "agreement", version: 3, run: compare }];
 }
 
 /// A pair of values of one point.
@@ -157,16 +158,25 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let of = |port: &'static str| job.inputs.iter().filter(move |(name, _)| name == port).map(|(_, artifact)| artifact);
     let (mut points, mut trends, mut not_valid) = (Vec::new(), Vec::new(), NotValid::default());
+    let mut notes = NoteTable::default();
     for ((pair, ours), theirs) in params.tables.iter().zip(of("of")).zip(of("compare")) {
         let (ours, theirs) = (runs(ours)?, runs(theirs)?);
         not_valid.append(pair.ours.not_valid(ours)?);
         not_valid.append(pair.theirs.not_valid(theirs)?);
         let (ours, theirs) = (pair.ours.sample(ours)?, pair.theirs.sample(theirs)?);
         let rows = pair_rows(&levels(&ours), &levels_like(&theirs, &ours), params.tolerance);
+        for sentence in alone(&pair.name, [ours.rows(), theirs.rows()], rows.len()) {
+            notes.response.push(String::new());
+            notes.note.push(sentence);
+        }
         for response in &ours.responses {
             let Some(other) = theirs.responses.iter().find(|r| r.name == response.name) else { continue };
             let value = |(i, j): &(usize, usize)| Some((*i, *j, response.values[*i]?, other.values[*j]?));
             let paired: Vec<(usize, usize, f64, f64)> = rows.iter().filter_map(value).collect();
+            if let Some(sentence) = without_ratio(&pair.name, &paired) {
+                notes.response.push(response.name.clone());
+                notes.note.push(sentence);
+            }
             trends.extend(trend(&ours, &response.name, &pair.name, &paired));
             points.extend(paired.into_iter().map(|(_, j, computed, reference)| Point {
                 response: response.name.clone(),
@@ -186,8 +196,28 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
         trends: trend_table(&trends),
         pairs: pair_table(&points),
         not_valid: not_valid.some(),
+        notes: (!notes.note.is_empty()).then_some(notes),
     };
     Ok(stored.to_artifact())
+}
+
+/// Rows of a table and of its reference that have no partner in the other.
+fn alone(table: &str, rows: [usize; 2], paired: usize) -> Vec<String> {
+    let sentence = |(rows, whose): (usize, String)| {
+        let alone = rows - paired;
+        let have = if alone == 1 { "has" } else { "have" };
+        (alone > 0).then(|| format!("{alone} of {rows} rows of {whose} {have} no partner in the other table"))
+    };
+    let both = rows.into_iter().zip([format!("`{table}`"), format!("the reference of `{table}`")]);
+    both.filter_map(sentence).collect()
+}
+
+/// Pairs whose reference is zero.
+fn without_ratio(table: &str, paired: &[(usize, usize, f64, f64)]) -> Option<String> {
+    let zero = paired.iter().filter(|pair| pair.3 == 0.0).count();
+    let have = if zero == 1 { "has" } else { "have" };
+    let all = paired.len();
+    (zero > 0).then(|| format!("{zero} of {all} pairs of `{table}` {have} a reference of 0, and so no ratio"))
 }
 
 fn levels(sample: &Sample) -> Vec<&[f64]> {
@@ -200,7 +230,7 @@ fn levels_like<'a>(sample: &'a Sample, other: &Sample) -> Vec<&'a [f64]> {
     other.factors.iter().filter_map(|f| own(&f.name)).map(|f| f.values.as_slice()).collect()
 }
 
-/// Effects on 100 ln(computed/reference) of the factors that vary; none where the pairs cannot tell them apart.
+/// Effects on 100 ln(computed/reference) of the factors that vary; `None` where the pairs cannot separate them.
 fn trend(ours: &Sample, response: &str, table: &str, paired: &[(usize, usize, f64, f64)]) -> Vec<Trend> {
     let usable: Vec<&(usize, usize, f64, f64)> = paired.iter().filter(|(_, _, y, x)| y / x > 0.0).collect();
     let column = |f: &Factor| Factor::new(&f.name, usable.iter().map(|p| f.values[p.0]).collect());

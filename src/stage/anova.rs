@@ -2,7 +2,7 @@
 //!
 //! The result has the tables `anova` (`response,source,df,ss,ms,f,p,significance,eta2,omega2`; sources are the factors,
 //! then interactions, `residual`, `total`), `fit`, and `residuals`, in which runs that the model cannot explain are
-//! flagged; `notes` says what to look at. With `published` the printed F values stand beside the computed ones.
+//! flagged; `notes` lists what to look at. With `published` the table holds the printed F values beside the computed ones.
 
 use super::beside::Beside;
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused_without, runs};

@@ -1,4 +1,4 @@
-//! Files beside the workflow, looked at before anything runs: what is not there, and what is outside every key.
+//! Files beside the workflow, checked before anything runs: missing files, and files outside every key.
 
 use super::Complaint;
 use std::fs::Metadata;
@@ -49,7 +49,7 @@ impl Beside {
     }
 }
 
-/// What is known of a plain file that is not too large; everything else (a folder, a pipe, a device) is refused before it
+/// Metadata of a plain file that is not too large; everything else (a folder, a pipe, a device) is refused before it
 /// is opened, because opening a pipe waits for ever.
 ///
 /// # Errors

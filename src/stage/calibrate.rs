@@ -3,7 +3,7 @@
 //! The misfit of [`optim::misfit`] is minimised over the ranges of the factors, for one or many target sets:
 //! * with `surfaces` alone, on the fitted surfaces, at once;
 //! * with `simulator` (or several `simulators`, all run at every point), by simulations: each is an ordinary task (cached,
-//!   parallel, resumed by replay), because what is asked next is a pure function of the outcomes so far; failed ones tell
+//!   parallel, resumed by replay), because the next points are a pure function of the outcomes so far; failed ones show
 //!   the optimiser where not to go;
 //! * with both, by the surrogate, which takes the surfaces for its first belief and corrects them by simulations;
 //! * with `coarse` twins of the simulators, on these, and a bounded number of runs of the simulators corrects them.
@@ -55,6 +55,7 @@ pub(super) use read::Judgement;
 pub use slope::Slope;
 pub use words::parameters_in_words;
 
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -78,7 +79,7 @@ pub(super) fn read_response(
     Ok(read::evaluation(&parts, from, &[target], invalid)?.map(|values| values[0]))
 }
 
-/// What is said of the runs of a point.
+/// Validity and failures of the runs of a point.
 pub(super) fn judgement(runs: &[(&str, &Artifact)]) -> Result<Judgement, StageError> {
     let parts: Vec<read::Part<'_>> = runs.iter().map(|&(stage, run)| read::Part { stage, run }).collect();
     Judgement::of(&parts)
@@ -110,6 +111,19 @@ impl Stage for Calibrate {
 
     fn gives(&self) -> ArtifactKind {
         ArtifactKind::SOLUTION
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        // A curve alone is one target.
+        let sets = self.targets.len().max(1);
+        let one = Forecast { rows: Some(sets), ..Forecast::ONE };
+        if self.simulators().is_empty() {
+            return one;
+        }
+        let behind = ["simulator", "simulators", "coarse"].into_iter().flat_map(|port| (ahead.behind)(port));
+        let each: usize = behind.map(|simulator| simulator.per_run).sum();
+        let tasks = self.evaluations.map(|count| count.saturating_mul(sets).saturating_mul(each).saturating_add(1));
+        Forecast { tasks: tasks.map(TaskForecast::AtMost), ..one }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -180,7 +194,7 @@ impl Calibrate {
 }
 
 /// Version 3: extents of the parameters, targets met or not, effort; intervals of every method are those of models over all
-/// runs; responses are told in the history, and runs are no inputs. Version 4: effort by expectation counts whole batches.
+/// runs; responses enter by the history, and runs are no inputs. Version 4: effort by expectation counts whole batches.
 impl Kind for Calibrate {
     const NAME: &'static str = "calibrate";
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";

@@ -2,7 +2,7 @@
 
 use super::cached::CachedRun;
 use super::material::Material;
-use super::rows::Rows;
+use super::rows::DesignRows;
 use super::vary::Template;
 use super::{Memory, StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
@@ -23,7 +23,7 @@ pub struct Context {
     pub responses: BTreeMap<String, Response>,
     /// `[material.NAME]` tables.
     pub materials: BTreeMap<String, Material>,
-    /// What the stages say of themselves before anything runs, by name; empty until all are read.
+    /// Sketches of the stages before anything runs, by name; empty until all are read.
     pub sketches: BTreeMap<String, Sketch>,
     /// The tables of stages that factors may set numbers of, by name.
     pub templates: BTreeMap<String, Template>,
@@ -38,7 +38,7 @@ impl Context {
     }
 }
 
-/// What a stage says of itself before anything runs.
+/// What other stages know of a stage before anything runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sketch {
     /// Names of the groups of particles in the specimen that it makes, by their number; empty for other kinds.
@@ -62,7 +62,7 @@ pub struct Outline {
     pub name: String,
     /// The word after `kind =`.
     pub kind: String,
-    /// Places of the stages that it takes results from, each once.
+    /// Indices of the stages that it takes results from, each once.
     pub inputs: Vec<usize>,
 }
 
@@ -164,7 +164,7 @@ pub trait Library {
 
     /// The run of a row that an earlier campaign made, if it knows of one and all that decides a run is as it was. Asked
     /// once for every row of a fan-out, in order.
-    fn cached(&self, _rows: &Arc<Rows>, _index: usize) -> Option<CachedRun<'_>> {
+    fn cached(&self, _rows: &Arc<DesignRows>, _index: usize) -> Option<CachedRun<'_>> {
         None
     }
 

@@ -15,7 +15,8 @@ use super::notes::Notes;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::results::Results;
-use crate::artifact::{Artifact, ArtifactKind, Table};
+use crate::artifact::{Artifact, ArtifactKind, Table, Values};
+use crate::unit::Unit;
 use cells::Cells;
 use dialect::Dialect;
 pub use dialect::{Decimal, Delimiter, Encoding};
@@ -53,6 +54,33 @@ impl Data {
     }
 }
 
+/// Largest file that is looked into before anything runs, in bytes.
+const READ_BEFORE: u64 = 4 << 20;
+
+impl Data {
+    /// Columns whose numbers cannot be read in the unit that the workflow declares for their name.
+    fn units(&self, table: &Table, context: &super::Context, found: &mut Beside) {
+        let declared = |name: &str| {
+            let factor = context.factors.get(name).map(|factor| &factor.unit);
+            factor.or_else(|| context.responses.get(name).map(|response| &response.unit))
+        };
+        for column in table.columns.iter().filter(|column| !matches!(column.values, Values::Texts(_))) {
+            let Some(unit) = declared(&column.name) else { continue };
+            let differ = |given: &Unit| Unit::parse(unit).is_ok_and(|wanted| wanted.dimension != given.dimension);
+            if !Unit::parse(&column.unit).is_ok_and(|given| differ(&given)) {
+                continue;
+            }
+            let (file, name) = (&self.file, &column.name);
+            let words = |unit: &str| if unit.is_empty() { "no unit".to_owned() } else { format!("`{unit}`") };
+            let (given, wanted) = (words(&column.unit), words(unit));
+            let message = format!("{file}: column `{name}` is in {given} and `{name}` of the workflow in {wanted}");
+            let complaint = Complaint::new("file", message).hint("give the unit in the head of the column: `Ec [GPa]`");
+            // Without a unit it may be a column that nothing reads.
+            if column.unit.is_empty() { found.warnings.push(complaint) } else { found.faults.push(complaint) }
+        }
+    }
+}
+
 impl Stage for Data {
     fn inputs(&self) -> Vec<Port> {
         Vec::new()
@@ -67,8 +95,18 @@ impl Stage for Data {
         if self.file.trim().is_empty() { vec![empty] } else { Vec::new() }
     }
 
-    fn beside(&self, _context: &super::Context, found: &mut Beside) {
-        found.file("file", &self.file);
+    fn beside(&self, context: &super::Context, found: &mut Beside) {
+        let Some(path) = found.file("file", &self.file) else { return };
+        // A file that cannot be read now is reported when the stage runs.
+        let small = super::beside::plain(&path).is_ok_and(|meta| meta.len() <= READ_BEFORE);
+        let Some(bytes) = small.then(|| std::fs::read(path).ok()).flatten() else { return };
+        match parse_as(&bytes, &self.dialect()) {
+            Err(StageError { message, hint }) => {
+                let complaint = Complaint::new("file", format!("{}: {message}", self.file));
+                found.faults.push(Complaint { hint, ..complaint });
+            }
+            Ok((table, _)) => self.units(&table, context, found),
+        }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -97,10 +135,10 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
     Ok(Results { runs: table, notes }.to_artifact())
 }
 
-/// Reads the whole table in whatever way it is written, or says what is wrong with it.
+/// Reads the whole table in any dialect, or returns its faults.
 ///
 /// # Errors
-/// What is wrong with it, and where.
+/// A fault of it, and where.
 pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
     parse_as(bytes, &Dialect::default()).map(|(table, _)| table)
 }

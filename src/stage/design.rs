@@ -1,4 +1,4 @@
-//! `kind = "design"`: the runs of an experiment, and what they can tell.
+//! `kind = "design"`: the runs of an experiment, and a report on what they can estimate.
 //!
 //! `method` picks the design; the other keys are its options, and an option of another method is refused. The factors
 //! are those of the workflow, in the order named. Orthogonal, factorial designs take a factor's levels (its range if it
@@ -20,12 +20,13 @@ mod valid;
 pub use config::Design;
 
 use super::beside::Beside;
+use super::forecast::{Ahead, Forecast};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work, data,
 };
 use crate::artifact::{Artifact, ArtifactKind, Table};
 use design::report::power::Question;
-use design::{Factor, Fault, Layout, Method, Order, build, check, report};
+use design::{DesignTable, Factor, Fault, Layout, Method, Order, build, check, report};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -91,6 +92,12 @@ impl Stage for Design {
         Sketch { factors: Some(self.factors.clone()), ..Sketch::default() }
     }
 
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        let Some(table) = self.table_ahead(ahead) else { return Forecast::ONE };
+        let replicates = table.replicate().into_iter().max().unwrap_or(1) as usize;
+        Forecast { rows: Some(table.runs()), replicates, ..Forecast::ONE }
+    }
+
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let design = self.method().map_err(|c| StageError { message: c.message, hint: c.hint })?;
         let layout = self.layout();
@@ -110,6 +117,18 @@ impl Stage for Design {
 }
 
 impl Design {
+    /// The design as it will be.
+    fn table_ahead(&self, ahead: &Ahead) -> Option<DesignTable> {
+        let mut method = self.method().ok()?;
+        let factors = self.factors(ahead.context);
+        if let (Method::Given(given), Some(file)) = (&mut method, &self.file) {
+            given.rows = rows(&data::parse(&(ahead.file)(file)?).ok()?, &factors, given.by_level).ok()?;
+        }
+        let table = build(&method, &factors, self.layout(), ahead.context.seed).ok()?;
+        let broken = valid::broken(&self.valid, &table).ok()?;
+        Some(valid::without(&table, &broken))
+    }
+
     /// Names of the levels of the factors that are categories.
     fn names(&self, context: &Context) -> BTreeMap<String, Vec<String>> {
         let names = |name: &String| Some((name.clone(), context.factors.get(name)?.names.clone()));
@@ -179,7 +198,7 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
 /// What to do about rows that break a rule.
 const LEAVE_OUT: &str = "change the factors, or say `invalid_rows = \"leave-out\"`";
 
-/// So many rows that break a rule are told one by one.
+/// Most rows that break a rule and are named one by one.
 const MOST_TOLD: usize = 10;
 
 impl Design {
@@ -214,7 +233,7 @@ impl Design {
         if !found.is_empty() || self.valid.is_empty() {
             return found;
         }
-        // What cannot be built is told when it runs.
+        // A design that cannot be built is reported when it runs.
         let Ok(table) = build(method, &self.factors(context), self.layout(), context.seed) else { return found };
         match valid::broken(&self.valid, &table) {
             Err(why) => found.push(Complaint::new("valid", why)),

@@ -2,7 +2,7 @@
 //!
 //! `of` names calibrations, each perhaps with several target sets and `seeds`. The artifact `effort` holds
 //! * `effort`: a row per search: stage, method, set, seed, and the evaluations until all responses lay within 10, 5 and
-//!   2 % of their targets, by what a run showed and by what was expected of the recommended point; empty where they never
+//!   2 % of their targets, by a run and by the prediction at the recommended point; empty where they never
 //!   did;
 //! * `distribution`: how large a part of the searches of a stage was done after how many evaluations, level by level:
 //!   the empirical distribution of effort, a row per step. A stage whose searches did not all get there ends below 1

@@ -5,6 +5,7 @@
 //! path with `_` for the dot (`mortar_Ec`, SI); it knows `+ - * / ^`, `abs sqrt exp ln log10 sin cos tan atan tanh min max`.
 //! The grammar and its choices stand in `expression/read.rs`. Scatter is relative, normal, and a function of seed, point and replicate.
 
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
@@ -91,6 +92,10 @@ impl Stage for Formula {
     fn sketch(&self) -> Sketch {
         let responses = Some(self.responses.keys().cloned().collect());
         Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        Forecast::of_design(ahead, |_, _| TaskForecast::Exactly(0))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

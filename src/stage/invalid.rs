@@ -1,9 +1,9 @@
-//! What a stage does with runs that are not valid: the one setting of every kind that takes runs, and the one place that
+//! What a stage does with runs that are not valid: the one setting of every kind that takes runs, and the one module that
 //! applies it.
 //!
 //! A run is not valid when a decisive check of its own is not met: a Brazilian disc that turned, a confining stress that
 //! was not held. Its numbers are there, but the test did not measure what it is called after. Statistics, fits and
-//! calibrations leave such runs out and say how many of how many and why; printed tables keep them and mark them.
+//! calibrations leave such runs out and state how many of how many and why; printed tables show and mark them.
 
 use super::StageError;
 use crate::artifact::results::Results;
@@ -17,10 +17,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Invalid {
-    /// They are left out, and it is said how many of how many and why.
+    /// They are left out; the stage states how many of how many and why.
     #[default]
     LeaveOut,
-    /// They are used like the others, and it is said how many they are.
+    /// They are used like the others; the stage states how many they are.
     Keep,
     /// The stage fails.
     Refuse,
@@ -35,7 +35,7 @@ pub(super) struct Judged<'a> {
 }
 
 impl Invalid {
-    /// Whether it is the choice of statistics when nothing is said.
+    /// Whether it is the default of statistics.
     pub(super) fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -59,7 +59,7 @@ impl Invalid {
         Ok(Judged { all, treated, invalid })
     }
 
-    /// Whether a single run is drawn, and what is said of it.
+    /// Whether a single run is drawn, and the statement on it.
     ///
     /// # Errors
     /// It is not valid and refused.
@@ -99,7 +99,7 @@ impl Judged<'_> {
         self.treated == Treated::LeftOut && self.invalid.binary_search_by_key(&row, |(own, _)| *own).is_ok()
     }
 
-    /// What is said of the runs that are not valid.
+    /// The statement on runs that are not valid.
     pub(super) fn verdict(&self) -> Verdict {
         Verdict::Treated(self.treated)
     }

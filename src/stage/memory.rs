@@ -1,8 +1,8 @@
 //! What a stage remembers between two of its steps in one campaign.
 //!
-//! A stage that asks for outcomes is asked again after every batch, and what it says next is a function of the whole
+//! A stage that asks for outcomes is asked again after every batch, and its next step is a function of the whole
 //! history. A memory spares it from going through that history each time. It may be lost at any moment, and a stage must
-//! say the same with and without it: it holds nothing that could not be worked out again.
+//! take the same step with and without it: it holds only values that can be computed again.
 
 use std::any::Any;
 use std::cell::RefCell;

@@ -8,7 +8,7 @@
 //!   stage that fans out (a simulation per design row, each on its own specimen) finishes at once with a gathering
 //!   task whose inputs are the runs, whose input is the specimen. The runner walks the tree, computes keys from the
 //!   bottom up, runs what is missing in parallel, and shares equal tasks wherever they come from.
-//! * `Ask(tasks)`: a stage that must see outcomes before it can say more (calibration with the simulation in the loop).
+//! * `Ask(tasks)`: a stage that must see outcomes before it can continue (calibration with the simulation in the loop).
 //!   When all are done, `next` is called again and sees their outcomes in [`Known`]; a killed run resumes by replay.
 //!
 //! A [`Task`] holds everything that decides its result and nothing else. Its `work` names a function in
@@ -50,6 +50,7 @@ pub mod design;
 pub mod effort;
 pub mod figure;
 pub mod fitted;
+pub mod forecast;
 pub mod formula;
 mod given;
 pub mod invalid;
@@ -111,7 +112,7 @@ pub const OWN_COLUMNS: [&str; 21] = [
     "remark",
 ];
 
-/// What is wrong with a symbol, which becomes mathematics in figures, pages and LaTeX.
+/// The fault of a symbol, which becomes mathematics in figures, pages and LaTeX.
 pub fn symbol_fault(symbol: &str) -> Option<String> {
     if symbol.is_empty() || ::figure::escape::is_mathematics(symbol) {
         return None;
@@ -154,13 +155,18 @@ pub trait Stage: Settings + Send + Sync {
         Sketch::default()
     }
 
+    /// What it is expected to ask for.
+    fn forecast(&self, _ahead: &forecast::Ahead) -> forecast::Forecast {
+        forecast::Forecast::ONE
+    }
+
     /// What to do next, given all that is known; a pure function.
     ///
     /// # Errors
     /// What makes the stage impossible now that its inputs are known, such as a design that lacks a factor.
     fn next(&self, known: &Known) -> Result<Step, StageError>;
 
-    /// What the workflow asks of the result and it does not give, though it was computed: `flow run` says it and exits
+    /// A requirement of the workflow that the computed result does not meet: `flow run` reports it and exits
     /// with 1.
     fn unmet(&self, _result: &Artifact) -> Option<String> {
         None
@@ -172,7 +178,7 @@ pub trait Stage: Settings + Send + Sync {
         None
     }
 
-    /// The task that tries one point of the factor space on replicate `number` of whatever it is tried on, for kinds
+    /// The task that tries one point of the factor space on replicate `number` of its specimen, for kinds
     /// that can stand as a simulator (`simulate`, `command`): calibration and verification ask for such tasks. Its
     /// artifact is that of a single run. What it looks at is its settings, its inputs, the seed, materials, responses, and
     /// of factors their units and what they set, but not their levels: a run does not depend on the rest of a design.
@@ -255,7 +261,7 @@ impl Complaint {
         Self { path, material: None, message: message.into(), hint: None }
     }
 
-    /// Says that the path lies below this material.
+    /// Sets the material below which the path lies.
     #[must_use]
     pub fn in_material(mut self, name: &str) -> Self {
         self.material = Some(name.to_owned());

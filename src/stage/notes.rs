@@ -49,7 +49,7 @@ impl<'a> Notes<'a> {
         }
     }
 
-    /// What the quality of a fit says.
+    /// Notes on the quality of a fit.
     pub(super) fn fit(&mut self, fit: &Fit) {
         let response = fit.response.as_str();
         self.missing(response, fit.n, fit.missing);
@@ -102,7 +102,7 @@ impl<'a> Notes<'a> {
         }
     }
 
-    /// Coefficients that the runs hardly tell from others.
+    /// Coefficients that the runs hardly separate from others.
     pub(super) fn inflation(&mut self, response: &str, coefficients: &[Coefficient]) {
         let inflated = |c: &&Coefficient| c.vif.is_some_and(|vif| vif > INFLATION);
         for c in coefficients.iter().filter(inflated) {

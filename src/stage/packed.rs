@@ -22,7 +22,7 @@ impl Packed {
         unpack(&mut rest).unwrap_or_else(|| panic!("BUG: packed parameters that cannot be read"))
     }
 
-    /// Its bytes as hexadecimal digits: a text that keeps every bit of every number.
+    /// Its bytes as hexadecimal digits: a text with every bit of every number.
     pub fn to_hex(&self) -> String {
         self.0.iter().fold(String::with_capacity(2 * self.0.len()), |mut text, byte| {
             for digit in [byte >> 4, byte & 15] {

@@ -1,8 +1,8 @@
-//! Printed values beside computed ones: what a paper says, how far off it is, and whether that is explained.
+//! Printed values beside computed ones: the values of a paper, the deviation, and its explanation.
 //!
 //! The file is a CSV with a column `response`, a column that names the line (`source` or `term`), the printed value as
 //! it was printed (its decimals count), an optional `decimals` where the print drops zeros at the end, and an optional
-//! `note` that says what is known about a print that differs.
+//! `note` that explains a printed value that differs.
 
 use super::sheet::Sheet;
 use super::{Failure, Job, StageError};
@@ -59,7 +59,7 @@ pub(super) struct Computed<'a> {
     pub value: Option<f64>,
     /// Standard deviation of the value under rounding of the responses; 0 when they are taken as they stand.
     pub rounding: f64,
-    /// What else is to be said of the line.
+    /// A remark on the line.
     pub remark: &'static str,
 }
 

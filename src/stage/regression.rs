@@ -45,7 +45,7 @@ pub struct Regression {
     pub through_origin: bool,
     /// Coverage of the intervals of coefficients by groups, 0.95 when not given.
     pub confidence: Option<f64>,
-    /// Choose terms by significance, hierarchy kept.
+    /// Choose terms by significance, with hierarchy.
     pub select: Option<Direction>,
     /// Level of the selection, 0.05 when not given.
     pub select_alpha: Option<f64>,

@@ -5,7 +5,7 @@
 
 mod points;
 
-pub use points::Rows;
+pub use points::DesignRows;
 
 use super::cached::{CachedRuns, RunSummaries};
 use super::material::{self, Material};
@@ -92,7 +92,7 @@ pub fn check_response(path: &str, name: &str, unit: &str, context: &Context) -> 
         Ok(given) => given,
         Err(e) => return Some(Complaint::new(path, e.to_string())),
     };
-    // What is wrong with the declared unit itself is told where it stands.
+    // A fault of the declared unit is reported at its declaration.
     let declared = &context.responses.get(name)?.unit;
     Unit::parse(declared).ok().filter(|wanted| wanted.dimension != given.dimension)?;
     let words = |text: &str| if text.is_empty() { "as a pure number".to_owned() } else { format!("in `{text}`") };
@@ -118,7 +118,7 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
     };
     let artifact = known.load(design)?;
     let mut task = gather(known, design, &artifact)?;
-    let rows = Arc::new(Rows::of(&artifact, known.context)?);
+    let rows = Arc::new(DesignRows::of(&artifact, known.context)?);
     task.inputs.reserve(rows.len());
     let mut cached_runs = CachedRuns::with_room(rows.len());
     for index in 0..rows.len() {

@@ -32,7 +32,7 @@ pub struct Rsm {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Vec<String>>")]
     pub terms: BTreeMap<String, Vec<Term>>,
-    /// Choose terms by significance, hierarchy kept.
+    /// Choose terms by significance, with hierarchy.
     pub select: Option<Direction>,
     /// Level of the selection, 0.05 when not given.
     pub select_alpha: Option<f64>,

@@ -23,7 +23,7 @@ fn blank(c: char) -> bool {
 }
 
 impl Sheet {
-    /// Reads a whole file, or says what is wrong with it.
+    /// Reads a whole file, or returns its fault.
     ///
     /// # Errors
     /// It is no text, has other separators, or a line has more or fewer cells than the first.
@@ -43,6 +43,11 @@ impl Sheet {
     ) -> Result<Self, StageError> {
         // Programs that add a mark to a file may find one there.
         let (body, skipped) = below_comments(text.trim_start_matches('\u{feff}'));
+        if let Some(at) = body.find('\0') {
+            let line = skipped + body[..at].matches('\n').count() + 1;
+            return Err(StageError::new(format!("line {line} holds the character NUL, which no text has"))
+                .hint("is it UTF-16 without a mark at its start? save it in UTF-8, or say `encoding = \"utf-16\"`"));
+        }
         if let Some(line) = open_quote(body) {
             let message = format!("line {}: a double quote has no partner", skipped + line);
             return Err(
@@ -122,7 +127,8 @@ fn unequal(error: &csv::Error, skipped: usize) -> StageError {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
             let line = pos.as_ref().map_or(0, |at| at.line() as usize + skipped);
-            StageError::new(format!("line {line} has {len} cells where the first line has {expected_len}"))
+            let cells = if *len == 1 { "cell" } else { "cells" };
+            StageError::new(format!("line {line} has {len} {cells} where the first line has {expected_len}"))
                 .hint("every line must have the cells of the first line; put a cell that holds a comma in quotes")
         }
         _ => StageError::new(error.to_string()),
@@ -161,7 +167,8 @@ mod tests {
         assert_eq!(message(b"# c\ny\n1\n\n3\n"), "line 4 is empty");
         assert_eq!(read("y\n1\n\"\"\n3\n\n\n").columns[0], ["1", "", "3"]);
         assert_eq!(read("a,y\n1,2\n\n3,4\n").rows(), 2);
-        assert_eq!(message(b"# c\na,b\n1\n"), "line 3 has 1 cells where the first line has 2");
+        assert_eq!(message(b"# c\na,b\n1\n"), "line 3 has 1 cell where the first line has 2");
+        assert_eq!(message(b"# c\na,b\n1,\0\n"), "line 3 holds the character NUL, which no text has");
         assert_eq!(message(b"a,b\n1,2,3\n"), "line 2 has 3 cells where the first line has 2");
         assert_eq!(message(b"a,b\n1,2\n\xf6,3\n"), "line 3 holds a byte that is not UTF-8 text");
         assert_eq!(message(b"# c\na,b\n1,\"2\n3,4\n"), "line 3: a double quote has no partner");

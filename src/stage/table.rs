@@ -6,7 +6,7 @@
 //! deviation in per cent after them; with `published` those of a CSV file do. Columns that are factors or responses get
 //! their symbols. `pivot` spreads one column over two others.
 //!
-//! `list` prints what the workflow itself says, instead of a table of a result: `factors` (what each sets, its range and
+//! `list` prints what the workflow itself states, instead of a table of a result: `factors` (what each sets, its range and
 //! levels), `materials` (microparameters of the named materials, in the units of the factors), `aggregate` (polygons of a
 //! specimen by the size classes given), `ranges` (of the named factors, and of the responses that surfaces were fitted to).
 //!
@@ -89,7 +89,7 @@ pub struct Table {
     /// Symbols of single columns in LaTeX notation.
     #[serde(default)]
     pub symbols: BTreeMap<String, String>,
-    /// What becomes of runs that are not valid; kept and marked when nothing is said.
+    /// What becomes of runs that are not valid; shown and marked by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub invalid: Option<Invalid>,
 }
@@ -260,8 +260,13 @@ impl Kind for Table {
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
+<<<<<<< HEAD
     /// 6: names in what is said below the table keep their letters. 5: runs that are not valid are marked, and it is said below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
     const WORKS: &'static [Work] = &[Work { name: "table", version: 6, run: print }];
+=======
+    /// 5: runs that are not valid are marked, which is stated below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 5, run: print }];
+>>>>>>> main
 }
 
 /// The table of that name, or the artifact's main one.

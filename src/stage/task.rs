@@ -72,7 +72,7 @@ impl Task {
         self
     }
 
-    /// Says which design row it computes.
+    /// Sets the design row that it computes.
     #[must_use]
     pub fn row(mut self, row: usize) -> Self {
         self.row = Some(row);
@@ -197,7 +197,7 @@ impl Job<'_> {
 /// Where a task stands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Part done, 0 to 1, when it can be told.
+    /// Part done, 0 to 1, when it is known.
     pub fraction: Option<f64>,
     /// A few words, such as `ε 0.12 %, σ 23.1 MPa`.
     pub note: String,
@@ -211,7 +211,7 @@ impl Progress {
         Self { note, ..Self::default() }
     }
 
-    /// What a reader must know before the result is used; said as early as it is known.
+    /// A warning before the result is used, given as early as it is known.
     pub fn warning(words: &dyn std::fmt::Display) -> Self {
         Self { note: words.to_string(), warning: true, ..Self::default() }
     }

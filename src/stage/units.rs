@@ -5,6 +5,7 @@
 //! a thousand newtons kilonewtons.
 
 use super::Context;
+use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::unit::Conversion;
 
@@ -33,12 +34,15 @@ pub(super) fn shown_unit(declared: Option<&String>, unit: &str, value: f64) -> S
 }
 
 /// A result as people read it: every column and every number of its groups in the declared unit or the field's. Arrays
-/// stay as they are stored, for programs.
+/// stay as they are stored, for programs. What a single run gave has its verdict beside it, as the rows of many have.
 #[must_use]
 pub fn presented(artifact: &Artifact, context: &Context) -> Artifact {
     // printed tables and the numbers of figures are in the units of print already
-    let printed = artifact.is(ArtifactKind::PICTURE) || artifact.is(ArtifactKind::TABLE);
-    if printed { artifact.clone() } else { Artifact { root: group(&artifact.root, context), ..artifact.clone() } }
+    if artifact.is(ArtifactKind::PICTURE) || artifact.is(ArtifactKind::TABLE) {
+        return artifact.clone();
+    }
+    let shown = Artifact { root: group(&artifact.root, context), ..artifact.clone() };
+    if artifact.is(ArtifactKind::RUN) { Run::judged(&shown) } else { shown }
 }
 
 fn group(own: &Group, context: &Context) -> Group {

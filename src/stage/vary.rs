@@ -2,7 +2,7 @@
 //!
 //! A factor may set any number of a stage that makes specimens or runs tests (`sets = "disc.radius_ratio"`: stage and
 //! key). A value is put where the file would have it, in the factor's unit, and the kind of stage reads its table anew; so
-//! whatever the kind can read a factor can set, with the same units, ranges and faults.
+//! a factor can set every number that the kind can read, with the same units, ranges and faults.
 
 use super::{Context, Factor, Point, Stage, StageError, Task};
 use crate::unit::Unit;

@@ -8,6 +8,7 @@
 //! The artifact `verification` holds the tables `summary` and `runs`.
 
 use super::calibrate::{Judgement, Unmet, judgement, read_response};
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::given::check_given;
 use super::invalid::{Invalid, refused};
 use super::notes::short;
@@ -89,6 +90,19 @@ impl Stage for Verify {
 
     fn gives(&self) -> ArtifactKind {
         ArtifactKind::VERIFICATION
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        let sets = (ahead.behind)("solution").first().and_then(|solution| solution.rows);
+        let replicates = usize::try_from(self.replicates).unwrap_or(usize::MAX);
+        let simulators = || ["simulator", "simulators"].into_iter().flat_map(|port| (ahead.behind)(port));
+        // The sets share the specimens, and so may the simulators.
+        let specimens: usize = simulators().map(|simulator| simulator.per_run - 1).sum();
+        let tasks = |sets: usize| {
+            let runs = replicates.saturating_mul(sets.saturating_mul(simulators().count()).saturating_add(specimens));
+            if specimens > 1 { TaskForecast::AtMost(runs) } else { TaskForecast::Exactly(runs) }.and(1)
+        };
+        Forecast { rows: sets, tasks: sets.map(tasks), ..Forecast::ONE }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
@@ -176,7 +190,7 @@ struct Verified {
 }
 
 impl Verified {
-    /// How far a value lies from what is wanted.
+    /// Deviation of a value from its target.
     fn off(&self, value: f64) -> f64 {
         (value - self.target.nearest(value)).abs()
     }

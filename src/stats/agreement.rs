@@ -62,10 +62,10 @@ pub fn pair_rows<V: AsRef<[f64]>>(ours: &[V], theirs: &[V], tolerance: f64) -> V
 
 /// The value that a share of the sorted values does not exceed.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    let below = place.floor() as usize;
+    let rank = share * (sorted.len() - 1) as f64;
+    let below = rank.floor() as usize;
     let above = (below + 1).min(sorted.len() - 1);
-    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+    sorted[below] + (rank - below as f64) * (sorted[above] - sorted[below])
 }
 
 fn spearman(x: &[f64], y: &[f64]) -> Option<f64> {

@@ -59,11 +59,11 @@ pub enum Interactions {
     None,
     /// The named pairs; one that cannot be estimated is an error.
     Named(Vec<(String, String)>),
-    /// Every pair that the rows can tell from what stands before it, as long as one degree of freedom is left.
+    /// Every pair that the rows can tell from the terms before it, as long as one degree of freedom is left.
     Estimable,
 }
 
-/// What an analysis is told beside the table.
+/// Settings of an analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Type of the sums of squares.
@@ -132,7 +132,7 @@ pub struct Anova {
     pub residuals: Vec<Residual>,
     /// Terms pooled into the error.
     pub pooled: Vec<String>,
-    /// Interactions that the rows cannot tell apart, where all estimable ones were asked for.
+    /// Interactions that the rows cannot tell apart, where all estimable ones were requested.
     pub not_estimable: Vec<String>,
 }
 

@@ -1,13 +1,13 @@
 //! The mean of many curves and how far they scatter about it.
 //!
-//! Curves are read at common places by straight lines between their points. At a place the mean is over the curves that
+//! Curves are read at common abscissae by straight lines between their points. At an abscissa the mean is over the curves that
 //! reach it, as long as at least two and at least half of them do, so that the mean does not end as the one curve that is
 //! longest. Scatter is the standard deviation over these curves. Points at which a curve runs back are left out.
 
-/// Mean and scatter of curves at common places.
+/// Mean and scatter of curves at common abscissae.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeanCurve {
-    /// The places, ascending.
+    /// The abscissae, ascending.
     pub x: Vec<f64>,
     /// The mean there.
     pub mean: Vec<f64>,
@@ -15,22 +15,22 @@ pub struct MeanCurve {
     pub deviation: Vec<f64>,
 }
 
-/// The mean of curves, each its places and values, at `places` equally spaced over what they cover.
-pub fn mean_curve(curves: &[(&[f64], &[f64])], places: usize) -> MeanCurve {
+/// The mean of curves, each its abscissae and values, at `count` equally spaced abscissae over what they cover.
+pub fn mean_curve(curves: &[(&[f64], &[f64])], count: usize) -> MeanCurve {
     let clean: Vec<Vec<[f64; 2]>> = curves.iter().map(|(x, y)| ascending(x, y)).filter(|c| !c.is_empty()).collect();
     let low = clean.iter().map(|c| c[0][0]).fold(f64::INFINITY, f64::min);
     let high = clean.iter().map(|c| c[c.len() - 1][0]).fold(f64::NEG_INFINITY, f64::max);
     let mut found = MeanCurve::default();
-    let steps = places.saturating_sub(1).max(1) as f64;
-    for place in (0..places).map(|i| low + (high - low) * i as f64 / steps) {
-        let values: Vec<f64> = clean.iter().filter_map(|curve| at(curve, place)).collect();
+    let steps = count.saturating_sub(1).max(1) as f64;
+    for x in (0..count).map(|i| low + (high - low) * i as f64 / steps) {
+        let values: Vec<f64> = clean.iter().filter_map(|curve| at(curve, x)).collect();
         let n = values.len();
         if n < 2 || 2 * n < clean.len() {
             continue;
         }
         let mean = values.iter().sum::<f64>() / n as f64;
         let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-        found.x.push(place);
+        found.x.push(x);
         found.mean.push(mean);
         found.deviation.push((squares / (n - 1) as f64).sqrt());
     }

@@ -1,9 +1,9 @@
-//! Canonical analysis of a second-order surface: where it is flat, what kind of place that is, and the way up or down.
+//! Canonical analysis of a second-order surface: where it is flat, what kind of point that is, and the way up or down.
 //!
 //! In coded units the surface is `y = b₀ + xᵀb + xᵀBx` with `B` symmetric (half of each interaction on either side).
 //! Stationary point `xₛ = −½ B⁻¹ b`; the eigenvectors of `B` are the principal axes through it and the eigenvalues the
-//! curvatures along them: all negative a maximum, all positive a minimum, mixed a saddle. An eigenvalue that is nothing
-//! beside the largest makes a ridge: the surface is then flat or linear along that axis and no single point stands.
+//! curvatures along them: all negative a maximum, all positive a minimum, mixed a saddle. An eigenvalue that is negligible
+//! beside the largest makes a ridge: the surface is then flat or linear along that axis and no single point is stationary.
 //!
 //! The steepest path follows the best point on spheres about the centre of the design (ridge analysis): on radius `r` it
 //! solves `(B − μI)x = −½ b` with `μ` above the largest eigenvalue (below the least one for the way down).
@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// An eigenvalue counts as zero below this share of the largest.
 const FLAT: f64 = 1e-9;
 
-/// What kind of place the stationary point is.
+/// The kind of the stationary point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Nature {
@@ -63,7 +63,7 @@ pub struct Canonical {
     pub natural: Vec<f64>,
     /// The surface there.
     pub value: f64,
-    /// What kind of place it is.
+    /// The kind of the point.
     pub nature: Nature,
     /// Whether it lies in the domain of every factor.
     pub inside: bool,
@@ -132,7 +132,7 @@ pub fn canonical(model: &Model) -> Option<Canonical> {
     } else {
         Nature::Saddle
     };
-    let (natural, inside) = place(model, &coded);
+    let (natural, inside) = located(model, &coded);
     let factors = model.axes.iter().map(|a| a.name.clone()).collect();
     Some(Canonical { factors, value: model.value_coded(&coded), coded, natural, nature, inside, axes })
 }
@@ -151,7 +151,7 @@ pub fn steepest_path(model: &Model, up: bool, radii: &[f64]) -> Option<Vec<PathP
     let axes = eigen(curved);
     let at = |&radius: &f64| {
         let coded = farthest_up(&linear, &axes, radius);
-        let (natural, inside) = place(model, &coded);
+        let (natural, inside) = located(model, &coded);
         PathPoint { radius, value: model.value_coded(&coded), coded, natural, inside }
     };
     Some(radii.iter().map(at).collect())
@@ -187,7 +187,7 @@ fn farthest_up(linear: &[f64], axes: &[Principal], radius: f64) -> Vec<f64> {
     point(high)
 }
 
-/// The slope has no part along the steepest axis: what is missing to the radius is gone along that axis.
+/// The slope has no part along the steepest axis: the rest of the radius is travelled along that axis.
 fn along_top_axis(mut x: Vec<f64>, axes: &[Principal], top: f64, radius: f64) -> Vec<f64> {
     let rest = (radius * radius - dot(&x, &x)).max(0.0).sqrt();
     if let Some(axis) = axes.iter().find(|a| a.eigenvalue == top) {
@@ -197,7 +197,7 @@ fn along_top_axis(mut x: Vec<f64>, axes: &[Principal], top: f64, radius: f64) ->
 }
 
 /// Natural units of a point and whether it lies in the domain.
-fn place(model: &Model, coded: &[f64]) -> (Vec<f64>, bool) {
+fn located(model: &Model, coded: &[f64]) -> (Vec<f64>, bool) {
     let natural: Vec<f64> = model.axes.iter().zip(coded).map(|(axis, &u)| axis.natural(u)).collect();
     let inside = model.axes.iter().zip(&natural).all(|(axis, &x)| axis.holds(x));
     (natural, inside)

@@ -39,8 +39,8 @@ impl<'a> Matrix<'a> {
     pub(crate) fn new(sample: &'a Sample, usable: &'a Usable, columns: Vec<Column>, levels: &[Vec<f64>]) -> Self {
         let number = |factor: usize, known: &[f64]| {
             let values = &sample.factors[factor].values;
-            let place = |&row: &usize| known.iter().position(|&level| level == values[row]).unwrap_or(known.len());
-            usable.rows.iter().map(place).collect::<Vec<_>>()
+            let index = |&row: &usize| known.iter().position(|&level| level == values[row]).unwrap_or(known.len());
+            usable.rows.iter().map(index).collect::<Vec<_>>()
         };
         Self {
             levels: levels.iter().enumerate().map(|(f, known)| number(f, known)).collect(),

@@ -1,5 +1,6 @@
 //! What can be wrong with a table or a model, each fault with the factor, the row and the remedy.
 
+use math::text::typed;
 use std::fmt;
 use thiserror::Error;
 
@@ -32,9 +33,20 @@ pub enum Fault {
         /// What was found.
         value: f64,
     },
+    /// Squares of a column are beyond what numbers of the machine hold.
+    #[error(
+        "`{column}` has values of the size {size}, whose squares no number of the machine holds; take another unit"
+    )]
+    Magnitude {
+        /// The column.
+        column: String,
+        /// Its largest value, or its spread.
+        size: String,
+    },
     /// A value is none of the declared levels of its factor.
     #[error(
-        "row {row}: `{factor}` is {value}, which is none of its levels {levels:?}; correct the row or add the level"
+        "row {row}: `{factor}` is {}, which is none of its levels {}; correct the row or add the level",
+        typed(*value), numbers(levels)
     )]
     UndeclaredLevel {
         /// The factor.
@@ -56,7 +68,8 @@ pub enum Fault {
     },
     /// A value has no logarithm.
     #[error(
-        "row {row}: factor `{factor}` is {value}, which has no logarithm; a logarithmic scale is for values above zero"
+        "row {row}: factor `{factor}` is {}, which has no logarithm; a logarithmic scale is for values above zero",
+        typed(*value)
     )]
     NotPositive {
         /// The factor.
@@ -82,7 +95,7 @@ pub enum Fault {
         missing: usize,
     },
     /// A response never changes.
-    #[error("response `{response}` is {value} in all {rows} usable rows; there is nothing to explain")]
+    #[error("response `{response}` is {} in all {rows} usable rows; there is nothing to explain", typed(*value))]
     ConstantResponse {
         /// The response.
         response: String,
@@ -106,7 +119,7 @@ pub enum Fault {
         /// Coefficients of the model, the constant counted.
         terms: usize,
     },
-    /// Nothing is left over to estimate the error from.
+    /// No degree of freedom is left to estimate the error.
     #[error(
         "response `{response}`: {rows} usable rows for {terms} coefficients leave no degree of freedom for the error; \
          take the empty columns as error, pool weak factors or add runs"
@@ -119,13 +132,13 @@ pub enum Fault {
         /// Coefficients of the model, the constant counted.
         terms: usize,
     },
-    /// Pure error was asked for and no two rows are replicates.
+    /// Pure error was requested and no two rows are replicates.
     #[error("response `{response}` has no replicated runs, so there is no pure error; use the residual as error")]
     NoReplicates {
         /// The response.
         response: String,
     },
-    /// A term cannot be told from others.
+    /// A term is aliased with others.
     #[error(
         "`{term}` is aliased with {} in the usable rows of `{response}`; drop one of them or use a larger design",
         names(others)
@@ -135,7 +148,7 @@ pub enum Fault {
         response: String,
         /// The term that adds nothing.
         term: String,
-        /// The terms that say the same.
+        /// The terms that are aliased with it.
         others: Vec<String>,
     },
     /// A power of a factor whose levels are names.
@@ -151,7 +164,7 @@ pub enum Fault {
     Unknown {
         /// "factor", "response" or "term".
         what: &'static str,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The names there are.
         known: Vec<String>,
@@ -199,7 +212,7 @@ pub enum Fault {
 pub struct Faults(pub Vec<Fault>);
 
 impl Faults {
-    /// `Ok` when nothing was found.
+    /// `Ok` without a fault.
     pub(crate) fn none_in(faults: Vec<Fault>) -> Result<(), Faults> {
         if faults.is_empty() { Ok(()) } else { Err(Faults(faults)) }
     }
@@ -218,6 +231,16 @@ impl fmt::Display for Faults {
         }
         Ok(())
     }
+}
+
+/// 1, 2.5, 4; the first of many.
+fn numbers(list: &[f64]) -> String {
+    const MOST: usize = 12;
+    let mut all: Vec<String> = list.iter().take(MOST).map(|value| typed(*value)).collect();
+    if list.len() > MOST {
+        all.push("…".to_owned());
+    }
+    all.join(", ")
 }
 
 /// `a`, `b` and `c`.

@@ -59,8 +59,8 @@ pub fn pivot(down: &[f64], across: &[f64], values: &[f64]) -> Pivot {
     let (rows, columns) = (distinct(down), distinct(across));
     let mut cells = vec![None; rows.len() * columns.len()];
     for group in groups(&[down, across]) {
-        let place = |known: &[f64], value: f64| known.iter().position(|k| *k == value);
-        let (Some(row), Some(column)) = (place(&rows, group.key[0]), place(&columns, group.key[1])) else { continue };
+        let index = |known: &[f64], value: f64| known.iter().position(|k| *k == value);
+        let (Some(row), Some(column)) = (index(&rows, group.key[0]), index(&columns, group.key[1])) else { continue };
         let seen: Vec<f64> = group.rows.iter().map(|&i| values[i]).filter(|v| !v.is_nan()).collect();
         cells[row * columns.len() + column] = cell(&seen);
     }

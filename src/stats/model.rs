@@ -53,7 +53,7 @@ impl Axis {
     }
 }
 
-/// A polynomial in the coded axes, with what is needed to say how sure it is.
+/// A polynomial in the coded axes, with what its intervals need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
     /// Its factors with their coding and domain.
@@ -74,7 +74,7 @@ pub struct Model {
     pub greatest_leverage: f64,
 }
 
-/// What a model says of one point.
+/// The prediction of a model at one point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// The value.

@@ -2,7 +2,7 @@
 //!
 //! A [`Twofold`] is an unevaluated sum of two doubles with about 31 digits (Dekker 1971, doi:10.1007/BF01397083;
 //! Joldes, Muller and Popescu 2017, doi:10.1145/3121432). Small designs cost nothing in it, and a regression whose
-//! columns are nearly dependent keeps every digit that its data have. Fused multiply-add is exact in IEEE 754, so the
+//! columns are nearly dependent has every digit of its data. Fused multiply-add is exact in IEEE 754, so the
 //! bits are the same on every machine.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -29,12 +29,12 @@ use super::terms::Term;
 use math::scale::Scale;
 use serde::{Deserialize, Serialize};
 
-/// What a regression is told beside its terms.
+/// Settings of a regression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Level of the outlier test, after Bonferroni's correction.
     pub outlier_alpha: f64,
-    /// How terms are chosen; `None` keeps them all.
+    /// How terms are chosen; `None` takes them all.
     pub selection: Option<Selection>,
 }
 
@@ -74,7 +74,7 @@ pub struct Regression {
     pub residuals: Vec<Residual>,
     /// What predicts.
     pub model: Model,
-    /// What term selection did, in order.
+    /// The steps of term selection, in order.
     pub steps: Vec<Step>,
 }
 
@@ -130,7 +130,7 @@ fn check_terms(sample: &Sample, terms: &[Term]) -> Vec<Fault> {
     faults
 }
 
-/// The table with logarithms in place of the values of factors that a model takes so; `None` when it has none.
+/// The table with logarithms in index of the values of factors that a model takes so; `None` when it has none.
 fn on_scales(sample: &Sample, terms: &[Term]) -> Option<Sample> {
     let logs: Vec<usize> =
         used_factors(sample, terms).into_iter().filter(|&f| sample.factors[f].scale == Scale::Log).collect();
@@ -314,11 +314,11 @@ fn expand<T: Real>(term: &Term, axes: &[Axis], terms: &[Term], line: fn(&Axis) -
         };
         products = products.iter().flat_map(grow).collect();
     }
-    let place = |powers: &[u32]| {
+    let index = |powers: &[u32]| {
         let fits = |t: &Term| axes.iter().zip(powers).all(|(axis, &power)| t.power_of(&axis.name) == power);
         terms.iter().position(fits).unwrap_or_else(|| panic!("BUG: a hierarchical model lacks a divisor of `{term}`"))
     };
-    products.iter().map(|(powers, share)| (place(powers), *share)).collect()
+    products.iter().map(|(powers, share)| (index(powers), *share)).collect()
 }
 
 /// Coefficients of `(constant + slope·x)^power`, from the constant up.

@@ -2,6 +2,7 @@
 
 use super::error::{Fault, Faults};
 use math::scale::Scale;
+use math::text::typed;
 
 /// A column that was set by the experimenter.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +49,7 @@ impl Factor {
     /// A level as it is called: its name, or its number.
     pub fn level_text(&self, level: f64) -> String {
         let name = self.labels.get(level as usize).filter(|_| level >= 0.0);
-        name.cloned().unwrap_or_else(|| level.to_string())
+        name.cloned().unwrap_or_else(|| typed(level))
     }
 
     /// The levels that occur in `rows`, ascending.
@@ -56,8 +57,8 @@ impl Factor {
         let mut found: Vec<f64> = Vec::new();
         for row in rows {
             let value = self.values[row] + 0.0;
-            if let Err(place) = found.binary_search_by(|level| level.total_cmp(&value)) {
-                found.insert(place, value);
+            if let Err(index) = found.binary_search_by(|level| level.total_cmp(&value)) {
+                found.insert(index, value);
             }
         }
         found
@@ -174,6 +175,11 @@ impl Sample {
                 Some(Fault::NotFinite { column: response.name.clone(), row: i + 1, value })
             }));
         }
+        faults.extend(self.factors.iter().filter_map(|factor| magnitude(&factor.name, &factor.values, false)));
+        for response in &self.responses {
+            let values: Vec<f64> = response.values.iter().flatten().copied().collect();
+            faults.extend(magnitude(&response.name, &values, true));
+        }
         for (i, &value) in self.weights.iter().flatten().enumerate() {
             if !(value.is_finite() && value > 0.0) {
                 faults.push(Fault::Weight { row: i + 1, value });
@@ -214,6 +220,26 @@ impl Sample {
     pub(crate) fn weight(&self, row: usize) -> f64 {
         self.weights.as_ref().map_or(1.0, |w| w[row])
     }
+}
+
+/// Sizes between which sums of squares, and the products of their parts in double length, are numbers.
+const SIZES: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+
+/// A column of which squares would be infinite or nothing: by its largest value or, where squares about the mean are
+/// taken, by its spread.
+fn magnitude(column: &str, values: &[f64], about_mean: bool) -> Option<Fault> {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let largest = finite().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let [low, high] = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
+    let spread = high - low;
+    let size = if largest > *SIZES.end() {
+        largest
+    } else if about_mean && spread > 0.0 && spread < *SIZES.start() {
+        spread
+    } else {
+        return None;
+    };
+    Some(Fault::Magnitude { column: column.to_owned(), size: format!("{size:.0e}") })
 }
 
 /// A factor's value that is not finite or not one of its declared levels.

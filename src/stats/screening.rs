@@ -1,7 +1,7 @@
-//! Screening of two-level designs, with or without replicates: which few effects stand out of the noise.
+//! Screening of two-level designs, with or without replicates: which few effects exceed the noise.
 //!
 //! The effect of a term is twice its coefficient in ±1 units: the mean response at the high level minus that at the low
-//! one. Without replicates the noise is judged from the effects themselves, most of which are taken to be nothing:
+//! one. Without replicates the noise is judged from the effects themselves, most of which are assumed to be zero:
 //! Lenth's pseudo standard error is `PSE = 1.5 · median{|e| : |e| < 2.5 s₀}` with `s₀ = 1.5 · median |e|`; with
 //! `d = m/3` for `m` effects, the margin of error is `ME = t(1 − α/2; d) · PSE` and the simultaneous one
 //! `SME = t(γ; d) · PSE`, `γ = (1 + (1 − α)^(1/m))/2`.
@@ -99,8 +99,8 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
     let critical = (freedom_of_error > 0).then(|| t_for_coverage(1.0 - alpha, freedom_of_error as f64));
     let effects = (0..size.len()).map(|i| {
         let own = &fitted.natural[i + 1];
-        let place = (size.iter().filter(|s| **s < size[i]).count()
-            + size[..i].iter().filter(|s| **s == size[i]).count()) as f64;
+        let rank = (size.iter().filter(|s| **s < size[i]).count() + size[..i].iter().filter(|s| **s == size[i]).count())
+            as f64;
         let signed = |c: &regression::Coefficient| c.estimate < own.estimate;
         let below = fitted.natural[1..].iter().filter(|c| signed(c)).count()
             + fitted.natural[1..=i].iter().filter(|c| c.estimate == own.estimate).count();
@@ -114,11 +114,11 @@ pub fn screen(sample: &Sample, response: &str, terms: &[Term], alpha: f64) -> Re
             standardized: own.t,
             significant: own.t.zip(critical).map(|(t, limit)| t.abs() > limit),
             lenth_t: pse.map(|pse| 2.0 * own.estimate / pse),
-            rank: size.len() - place as usize,
+            rank: size.len() - rank as usize,
             share: size[i] * size[i] / squares(0.0),
             cumulative: squares(size[i]) / squares(0.0),
             normal: normal_quantile((below as f64 + 0.5) / m),
-            half_normal: normal_quantile(0.5 + 0.5 * (place + 0.5) / m),
+            half_normal: normal_quantile(0.5 + 0.5 * (rank + 0.5) / m),
             beyond_margin: margin.is_some_and(|limit| size[i] > limit),
             beyond_simultaneous: simultaneous.is_some_and(|limit| size[i] > limit),
         }
@@ -158,7 +158,7 @@ fn in_signs(sample: &Sample) -> Sample {
     signs
 }
 
-/// Effects smaller than this share of the largest response are what rounding leaves of nothing.
+/// Effects smaller than this share of the largest response are rounding errors of zero.
 const ROUNDING: f64 = 1e-15;
 
 /// Lenth's pseudo standard error of absolute effects, those up to `nothing` taken as zero.

@@ -78,10 +78,10 @@ pub fn quantile(values: &[f64], p: f64) -> f64 {
 
 fn quantile_of(sorted: &[f64], p: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
-    let place = p * last as f64;
-    let below = (place.floor() as usize).min(last);
+    let rank = p * last as f64;
+    let below = (rank.floor() as usize).min(last);
     let above = (below + 1).min(last);
-    (sorted[above] - sorted[below]).mul_add(place - below as f64, sorted[below])
+    (sorted[above] - sorted[below]).mul_add(rank - below as f64, sorted[below])
 }
 
 /// A histogram: bin edges, one more than counts. A value on an inner edge counts above it, one on the last edge below.

@@ -105,10 +105,10 @@ impl Term {
 
     /// The terms that stand for this one when `factor` is replaced by each of `names`; itself without the factor.
     pub(crate) fn with_factor_as(&self, factor: &str, names: &[String]) -> Vec<Self> {
-        let Some(place) = self.powers.iter().position(|(name, _)| name == factor) else { return vec![self.clone()] };
+        let Some(index) = self.powers.iter().position(|(name, _)| name == factor) else { return vec![self.clone()] };
         let replaced = |name: &String| {
             let mut term = self.clone();
-            term.powers[place].0.clone_from(name);
+            term.powers[index].0.clone_from(name);
             term
         };
         names.iter().map(replaced).collect()

@@ -20,6 +20,17 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// The file is larger than this user may write.
+    #[error(
+        "could not {doing} {}: the file is larger than the limit on the size of files; raise it (`ulimit -f`) and run \
+         again, what is finished is kept", path.display()
+    )]
+    Limited {
+        /// What was being done.
+        doing: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
     /// The file system is mounted read-only.
     #[error(
         "the store is read-only: could not {doing} {}; results in it can be read, for new ones name another store \
@@ -129,7 +140,8 @@ impl StoreError {
             return Self::Strange { doing, path, why: source.to_string() };
         }
         match source.kind() {
-            ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => Self::Full { doing, path },
+            ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Self::Full { doing, path },
+            ErrorKind::FileTooLarge => Self::Limited { doing, path },
             ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { doing, path },
             ErrorKind::PermissionDenied => Self::Denied { doing, path },
             ErrorKind::NotFound | ErrorKind::NotADirectory if !root.is_dir() => {

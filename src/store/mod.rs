@@ -68,6 +68,7 @@ use crate::artifact::{Artifact, ContentHash, Key};
 use cache::Cache;
 use disk::Disk;
 use journal::{Index, Segments};
+use object::Seal;
 use presence::Presence;
 use prove::Proven;
 use record::{milliseconds, moment};
@@ -173,7 +174,7 @@ impl Store {
             let names = locked(&self.presence).names_of_task(&self.disk, &self.mark, key)?;
             for name in names {
                 let proven = self.if_sound(prove::named(&self.disk, &name))?.filter(|proven| proven.id.key == *key);
-                sound.extend(proven.map(|proven| self.record_again(&proven)));
+                sound.extend(proven.map(|proven| self.record_again(&proven.id, proven.seal)));
             }
         }
         match sound.len() {
@@ -227,7 +228,7 @@ impl Store {
         // Its record may be lost, or not be read yet: its name says what it is.
         for name in object::with_content(&self.disk, content) {
             if let Some(proven) = self.if_sound(prove::named(&self.disk, &name))? {
-                self.record_again(&proven);
+                self.record_again(&proven.id, proven.seal);
                 return Ok(self.cached(*content, proven.artifact));
             }
         }
@@ -315,15 +316,19 @@ impl Store {
 
     /// The record of somebody else, as one's own when its object proves it.
     fn proven(&self, record: &Record) -> Result<Option<Record>, StoreError> {
-        let Some(proven) = self.if_sound(self.read(record))? else { return Ok(None) };
+        Ok(self.if_sound(self.read(record))?.map(|proven| self.own(record, proven.seal)))
+    }
+
+    /// The record of somebody else, whose object was proven just now, as one's own.
+    fn own(&self, record: &Record, seal: Seal) -> Record {
         let timing = Timing { started: moment(record.started), seconds: record.seconds };
-        Ok(Some(self.remember(self.marked(&proven.id, proven.seal, &timing, record.origin.clone()))))
+        self.remember(self.marked(&record.object(), seal, &timing, record.origin.clone()))
     }
 
     /// A record of an object that had none.
-    fn record_again(&self, proven: &Proven) -> Record {
+    fn record_again(&self, id: &ObjectId, seal: Seal) -> Record {
         let timing = Timing { started: UNIX_EPOCH, seconds: 0.0 };
-        self.remember(self.marked(&proven.id, proven.seal, &timing, Arc::default()))
+        self.remember(self.marked(id, seal, &timing, Arc::default()))
     }
 
     /// Records what was proven, so that it need not be proven again. Where the store cannot be written, it is known to

@@ -49,15 +49,17 @@ impl Store {
         self.refresh()?;
         let mut verdict = Verdict { lost_records: locked(self.index()?).damaged(), ..Verdict::default() };
         let records = self.records()?;
-        let checked: Vec<_> = records.par_iter().map(|record| (record, self.read(record))).collect();
+        // Of what was read only its seal is kept: all results of a store together may be larger than memory.
+        let check = |record| (record, self.read(record).map(|proven| proven.seal));
+        let checked: Vec<_> = records.par_iter().map(check).collect();
         let (mut sound, mut lost): (Vec<ObjectId>, Vec<Key>) = Default::default();
         for (record, result) in checked {
             match result {
-                Ok(proven) => {
-                    verdict.sound.add(proven.seal.size);
-                    sound.push(proven.id);
+                Ok(seal) => {
+                    verdict.sound.add(seal.size);
+                    sound.push(record.object());
                     if !record.own {
-                        verdict.proven.extend(self.proven(record)?.map(|record| record.key));
+                        verdict.proven.push(self.own(record, seal).key);
                     }
                 }
                 Err(StoreError::Missing { .. }) => lost.push(record.key),
@@ -92,12 +94,14 @@ impl Store {
                 strays.push(name.to_owned());
             }
         })?;
-        for name in strays {
-            match prove::named(&self.disk, &name) {
-                Ok(proven) => {
-                    verdict.adopted.push(self.record_again(&proven).key);
-                    verdict.sound.add(proven.seal.size);
-                    sound.push(proven.id);
+        let check = |name: &String| prove::named(&self.disk, name).map(|proven| (proven.id, proven.seal));
+        let checked: Vec<_> = strays.par_iter().map(check).collect();
+        for result in checked {
+            match result {
+                Ok((id, seal)) => {
+                    verdict.adopted.push(self.record_again(&id, seal).key);
+                    verdict.sound.add(seal.size);
+                    sound.push(id);
                 }
                 Err(StoreError::Missing { .. }) => {}
                 Err(StoreError::Damaged { fault }) => verdict.damages.push(fault),

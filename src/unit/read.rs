@@ -15,6 +15,17 @@ const DEEPEST: usize = 8;
 /// The raised sign and digits, in the order of `-0123456789`.
 const RAISED: &str = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 
+/// Letters of a unit that a message repeats.
+const QUOTED: usize = 40;
+
+/// The text as a message repeats it.
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(QUOTED) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
 pub(super) struct Reader<'t> {
     text: &'t str,
     rest: &'t str,
@@ -33,7 +44,7 @@ impl<'t> Reader<'t> {
     }
 
     fn incomplete(&self) -> UnitError {
-        UnitError::Incomplete(self.text.to_owned())
+        UnitError::Incomplete(quoted(self.text))
     }
 
     /// Takes one of these characters, after spaces.
@@ -68,12 +79,12 @@ impl<'t> Reader<'t> {
     /// `unit · other^power`.
     fn join(&self, unit: Unit, other: Unit, power: Power) -> Result<Unit, UnitError> {
         let dimension = unit.dimension.times(other.dimension, power);
-        let dimension = dimension.ok_or_else(|| UnitError::Power(self.text.trim().to_owned()))?;
+        let dimension = dimension.ok_or_else(|| UnitError::Power(quoted(self.text.trim())))?;
         let factor = unit.factor * power.of(other.factor);
         if factor.is_normal() {
             Ok(Unit { factor, dimension })
         } else {
-            Err(UnitError::Extreme(self.text.trim().to_owned()))
+            Err(UnitError::Extreme(quoted(self.text.trim())))
         }
     }
 
@@ -81,7 +92,7 @@ impl<'t> Reader<'t> {
         let root = self.take(&['√']);
         let begin = self.rest.trim_start();
         let unit = if self.take(&['(']) { self.bracket()? } else { self.symbol()? };
-        let wrong = |rest: &str| UnitError::Power(begin[..begin.len() - rest.len()].to_owned());
+        let wrong = |rest: &str| UnitError::Power(quoted(&begin[..begin.len() - rest.len()]));
         let power = self.power().map_err(wrong)?;
         let power = match (root, power) {
             (true, Some(_)) => return Err(wrong(self.rest)),
@@ -109,7 +120,7 @@ impl<'t> Reader<'t> {
             return Err(self.incomplete());
         }
         self.rest = rest;
-        symbol_unit(symbol).ok_or_else(|| UnitError::Unknown(symbol.to_owned(), known_symbols()))
+        symbol_unit(symbol).ok_or_else(|| UnitError::Unknown(quoted(symbol), known_symbols()))
     }
 
     /// The power behind a symbol or a bracket; the error is what follows a power that is no number.

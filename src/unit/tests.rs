@@ -9,6 +9,8 @@ fn units_are_products_of_powers() {
     assert_eq!(factor("kg/m^3"), 1.0);
     assert_eq!(factor("g/cm^3"), 1e-3 / 0.01_f64.powi(3));
     assert_eq!(factor("mm"), 1e-3);
+    // The sign of a millionth and the Greek letter.
+    assert_eq!([factor("\u{b5}m"), factor("\u{3bc}m"), factor("um")], [1e-6; 3]);
     assert_eq!(factor("N/mm²"), 1.0 / (1e-3_f64 * 1e-3));
     assert_eq!(Unit::parse("N*m").unwrap().dimension, Unit::parse("J").unwrap().dimension);
 }
@@ -22,6 +24,7 @@ fn quantities_are_read_and_faults_name_the_right_form() {
     assert_eq!(message(Length::parse("5")), "`5` needs a unit; write for example \"0.5 mm\"");
     assert_eq!(message(Length::parse("5 GPa")), "`GPa` is not a unit of length; write for example \"0.5 mm\"");
     assert!(message(Length::parse("5 ell")).starts_with("`ell` is not a unit that flow knows"));
+    assert!(message(Length::parse(&format!("5 m*{}", "m*".repeat(2000)))).chars().count() < 200);
     assert!(message(Length::parse("wide")).contains("does not begin with a number"));
 }
 

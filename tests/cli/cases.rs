@@ -1,6 +1,7 @@
 //! Inputs that went wrong once, each with the value that is right: `tests/cases/NAME`.
 
 use crate::space::{Space, told};
+use rustix::process::{Pid, Signal, kill_process};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -235,4 +236,119 @@ fn a_noisy_simulator_gives_an_interval_with_a_width() {
     assert!(at("high") - at("low") > 0.05, "{rows:?}");
     assert!(at("low") < 12.0 && 12.0 < at("high"), "{rows:?}");
     assert!((at("scatter") - 1.2).abs() < 0.2, "{rows:?}");
+}
+
+/// A run without a peak says so wherever its numbers are, and has none, as the failed row of a table has none.
+#[test]
+fn a_single_run_without_a_result_says_so_everywhere() {
+    let space = case("single-run-failure");
+    let failure = "no peak up to a strain of 2e-9: the largest stress is 0 Pa";
+    let output = space.flow(&["run", "w.toml"]);
+    assert!(told(&output).contains(&format!("note: none: the run gave no result: {failure}")), "{}", told(&output));
+    let shown = space.flow(&["show", "w.toml", "none"]);
+    assert!(told(&shown).contains(&format!("warning: none: the run gave no result: {failure}")), "{}", told(&shown));
+    let rows = table(&space, "none", "responses");
+    assert_eq!(rows[0], ["response", "value", "unit", "failure", "cautions"], "{rows:?}");
+    assert!(rows.iter().any(|row| row[..3] == ["UCS", "", "MPa"] && row[3].contains(failure)), "{rows:?}");
+    space.stdout(&["export", "w.toml", "none", "--quiet"]);
+    let csv = std::fs::read_to_string(space.path("export/none.responses.csv")).expect("the responses");
+    assert!(csv.contains("UCS,,MPa,\"no peak") && !csv.contains("UCS,0"), "{csv}");
+    space.stdout(&["report", "w.toml", "-o", "page.html"]);
+    let page = std::fs::read_to_string(space.path("page.html")).expect("the page");
+    assert!(page.contains(failure), "the report lacks the failure");
+}
+
+/// One sample of this test takes longer than anybody waits: Ctrl-C ends it all the same, and its bound on steps would.
+#[test]
+fn a_test_that_hardly_moves_is_refused_or_ends_when_it_is_told() {
+    let space = case("ctrl-c-ignored");
+    let output = space.flow(&["run", "w.toml"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    assert!(told(&output).contains("steps of 2.1e-7 s, above max_steps = 2.0e7"), "{}", told(&output));
+    let slow = ["--set", "stage.run.max_steps=1000000000", "--set", "stage.run.platen_speed=\"0.5 um/s\""];
+    let mut run = space.start(&[&["run", "w.toml", "--jobs", "1"], &slow[..]].concat());
+    // Long enough to be within the first sample, which takes millions of steps.
+    std::thread::sleep(Duration::from_millis(1500));
+    assert!(run.try_wait().expect("a child").is_none(), "it has ended before it was told to");
+    kill_process(Pid::from_child(&run), Signal::INT).expect("sending a signal");
+    for _ in 0..6000 {
+        if run.try_wait().expect("a child").is_some() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let ended = run.try_wait().expect("a child").is_some();
+    let _ = run.kill();
+    let output = run.wait_with_output().expect("the end of the run");
+    assert!(ended && output.status.code() == Some(130), "{}", told(&output));
+}
+
+/// The seating stress scales with the strength that can be expected.
+#[test]
+fn a_weak_mortar_has_its_tensile_strength() {
+    let space = case("weak-tension");
+    space.run(&[]);
+    for stage in ["t", "t2"] {
+        let rows = table(&space, stage, "responses");
+        let row = rows.iter().find(|row| row[0] == "sigma_t").expect("a strength");
+        assert!(row[2] == "MPa" && (number(&row[1]) - 0.347).abs() < 0.0005, "{rows:?}");
+    }
+}
+
+/// By hand: the means over p are 1.25, 2.2 and 3.25, those over E2 1.96667 and 2.5, the mean of all 2.23333.
+#[test]
+fn levels_are_equal_in_every_unit() {
+    let space = case("level-after-conversion");
+    space.run(&[]);
+    let rows = table(&space, "an", "anova");
+    let at = |head: &str| rows[0].iter().position(|own| own == head).expect("a column");
+    for (row, source, squares) in [(1, "p", 2.0 * 2.001_666_666_666), (2, "E2", 1.5 * 0.533_333_333_333_f64.powi(2))] {
+        assert_eq!(rows[row][at("source")], source);
+        assert!((number(&rows[row][at("ss")]) - squares).abs() < 1e-9, "{rows:?}");
+    }
+}
+
+#[test]
+fn every_reader_of_a_column_converts_it() {
+    let space = case("table-ignores-unit");
+    space.run(&[]);
+    for stage in ["t", "t2"] {
+        let rows = table(&space, stage, "table");
+        assert_eq!(rows[0], ["n", "UCS [MPa]", "UCS published [MPa]", "UCS deviation [%]"]);
+        for (row, value) in rows[1..].iter().zip([31.0, 32.0, 33.0]) {
+            assert_eq!([&row[1], &row[2], &row[3]].map(|cell| number(cell)), [value, value, 0.0], "{rows:?}");
+        }
+    }
+    for row in &table(&space, "cmp", "pairs")[1..] {
+        assert_eq!(number(row.last().expect("a ratio")), 1.0);
+    }
+    space.stdout(&["run", "figures.toml", "--quiet"]);
+    let points = space.stdout(&["show", "figures.toml", "pts", "--table", "data", "--csv", "--quiet"]);
+    assert!(points.starts_with("Ec [GPa],s [MPa],") && points.contains("\n12,12,"), "{points}");
+}
+
+#[test]
+fn a_specimen_that_cannot_be_is_refused_with_its_numbers() {
+    let discs = refused(&case("unbounded-discs"), "w.toml");
+    assert!(discs.contains("a mean radius of 1 nm gives 1.40e15 balls") && discs.contains("GB"), "{discs}");
+    let none = refused(&case("zero-aggregate"), "w.toml");
+    assert!(none.contains("every size class rounds to no particle at all"), "{none}");
+}
+
+/// Numbers of any magnitude: what the labels have in common stands in the title, in the contour lines too.
+#[test]
+fn labels_of_ticks_are_short_and_whole() {
+    let space = case("tick-overlap");
+    let output = space.flow(&["run", "w.toml"]);
+    assert!(output.status.success() && !told(&output).contains("warning:"), "{}", told(&output));
+    space.stdout(&["export", "w.toml", "--quiet"]);
+    let drawn = |name: &str| std::fs::read_to_string(space.path(&format!("export/{name}.svg"))).expect("a figure");
+    let labels = |svg: &str| svg.matches("aria-label=\"").count();
+    for (name, common) in [("me", "near / MPa (+100000)"), ("co", "+100000.2"), ("obs", "neg (×10^9)")] {
+        let svg = drawn(name);
+        assert!(svg.contains(common) && labels(&svg) > 5, "{name}: {svg}");
+        let long = |label: &&str| label.chars().filter(char::is_ascii_digit).count() > 7;
+        let all = svg.split("aria-label=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        assert_eq!(all.filter(|label| !label.contains('(')).find(long), None, "{name}");
+    }
 }

@@ -2,15 +2,12 @@
 
 use crate::space::{Space, told};
 use serde_json::Value;
-use std::path::Path;
-use std::process::Command;
 
 const WORKFLOW: &str = include_str!("columns.toml");
 /// Twelve runs of a Plackett–Burman design that a spreadsheet with German settings wrote.
 const SCREENED: &str = "\u{feff}A;B;C;D;cement;y/MPa\n\
     1;1;-1;1;OPC;12,1\n-1;1;1;-1;OPC;6,2\n1;-1;1;1;OPC;11,8\n-1;1;-1;1;OPC;7,9\n-1;-1;1;-1;OPC;4,1\n-1;-1;-1;1;slag;5,9\n\
     1;-1;-1;-1;slag;9,8\n1;1;-1;-1;slag;10,4\n1;1;1;-1;slag;11,2\n-1;1;1;1;slag;8,3\n1;-1;1;1;slag;12,4\n-1;-1;-1;-1;slag;n/a\n";
-const README: &str = include_str!("../../README.md");
 const MEASURED: &str = "scn/MPa,st/MPa\n4,1.5\n12,4.4\n25,9.2\n";
 
 fn table(space: &Space, stage: &str, name: &str) -> Value {
@@ -54,7 +51,6 @@ fn own_data_are_read_fitted_and_drawn() {
     assert_eq!(terms, ["const", "ratio", "R"]);
     assert!((rises[1] - 0.1).abs() < 1e-9 && rises[2].abs() < 1e-9, "{rises:?}");
     german_data_with_names(&space);
-    python_reads_it_as_the_readme_says(&space);
     for (figure, words) in [
         ("strengths", "20 points in 3 groups"),
         ("matrix", "2 × 3 cells"),
@@ -89,29 +85,6 @@ fn german_data_with_names(space: &Space) {
     assert_eq!(cements, ["OPC", "OPC", "slag", "slag"]);
     let variance = table(space, "variance", "anova");
     assert_eq!(numbers(&variance, "df")[..2], [1.0, 1.0]);
-}
-
-/// Runs the Python of the README on this campaign, where pandas and h5py are installed.
-fn python_reads_it_as_the_readme_says(space: &Space) {
-    let python = Command::new("python3").args(["-c", "import pandas, h5py"]).output();
-    let required = std::env::var("FLOW_TEST_READERS").is_ok();
-    if !required && !python.is_ok_and(|output| output.status.success()) {
-        return;
-    }
-    let start = README.find("```python\n").expect("the README has a block of Python") + "```python\n".len();
-    let block = &README[start..start + README[start..].find("```").expect("the block ends")];
-    let checks = "\nassert len(runs) == 24 and runs['st [MPa]'].max() > 10, runs\n\
-                  assert {'series', 'kind', 'st [MPa]'} <= set(points), points.columns\n\
-                  assert result['runs/st'].shape == (24,), list(result)\n";
-    let binary = Path::new(env!("CARGO_BIN_EXE_flow")).parent().unwrap();
-    let path = format!("{}:{}", binary.display(), std::env::var("PATH").unwrap_or_default());
-    let output = Command::new("python3")
-        .args(["-c", &format!("{block}{checks}")])
-        .env("PATH", path)
-        .current_dir(space.path("."))
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", told(&output));
 }
 
 #[test]

@@ -103,3 +103,55 @@ fn what_cannot_be_exported_is_said(space: &Space) {
     assert!(said(&["export", "w.toml", "orthogonal", "--to", "vtu"]).contains("named as in orthogonal[12]"));
     assert!(said(&["export", "w.toml", "trial[0]"]).contains("rows are counted from 1"));
 }
+
+/// A rock of about two hundred spheres, crushed.
+const SOLID: &str = r#"
+[workflow]
+title = "Spheres"
+seed = 1
+[material.rock]
+rock = { Ec = "60 GPa", kn_ks = 2.5, mu = 0.5, sigma_c = "40 MPa", tau_c = "40 MPa" }
+[stage.cylinder]
+kind = "specimen"
+diameter = "10 mm"
+height = "20 mm"
+packing = { stress = "30 MPa" }
+mean_radius = "1 mm"
+radius_ratio = 1.66
+density = "2600 kg/m^3"
+[stage.crush]
+kind = "simulate"
+specimen = "cylinder"
+material = "rock"
+test = "uniaxial"
+platen_speed = { transits = 10 }
+masses = "equal-step"
+"#;
+
+#[test]
+fn spheres_are_exported_as_discs_are() {
+    let space = Space::new();
+    space.write("w.toml", SOLID);
+    space.run(&[]);
+    for form in ["vtu", "particles"] {
+        space.stdout(&["export", "w.toml", "cylinder", "crush", "--to", form, "--folder", "out"]);
+    }
+    let particles = read(&space, "cylinder.particles.csv");
+    let numbers = |texts: Vec<String>| texts.iter().map(|text| text.parse::<f64>().unwrap()).collect::<Vec<f64>>();
+    let [x, y, z, radius] = ["x", "y", "z", "radius"].map(|name| numbers(particles(name)));
+    assert_eq!(x.len() as f64, quantity(&space, "cylinder", "quality", "spheres"));
+    // They stand in their cylinder, whose axis is y.
+    for i in 0..x.len() {
+        assert!(x[i].hypot(z[i]) + radius[i] < 5.2e-3 && y[i].abs() + radius[i] < 10.2e-3);
+    }
+    let last = |folder: std::fs::ReadDir| {
+        let names = folder.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names.filter(|name| name.starts_with("crush.cracks")).max()
+    };
+    let cracks = last(std::fs::read_dir(space.path("out")).unwrap()).expect("the states have cracks");
+    let text = std::fs::read_to_string(space.path(&format!("out/{cracks}"))).unwrap();
+    // Each crack is a disc of twelve corners, as VTK's polygon 7.
+    let types = text.split("Name=\"types\"").nth(1).and_then(|rest| rest.split(['>', '<']).nth(1)).unwrap();
+    let count = types.split_whitespace().inspect(|kind| assert_eq!(*kind, "7")).count();
+    assert!(text.contains(&format!("NumberOfPoints=\"{}\" NumberOfCells=\"{count}\"", 12 * count)), "{cracks}");
+}

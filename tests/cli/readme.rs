@@ -8,20 +8,22 @@ use std::process::Command;
 
 const README: &str = include_str!("../../README.md");
 
-/// The words of a command line: quotes hold words together, a `#` between blanks begins a remark.
-fn words(line: &str) -> Vec<String> {
+/// The words of a command line: quotes hold words together, a `#` between blanks begins a comment.
+pub(crate) fn words(line: &str) -> Vec<String> {
     let line = line.split(" # ").next().unwrap_or(line);
-    let mut words = vec![String::new()];
-    let mut quote = None;
+    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
     for c in line.trim().chars() {
         match (c, quote) {
-            ('\'' | '"', None) => quote = Some(c),
+            ('\'' | '"', None) => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
             (c, Some(q)) if c == q => quote = None,
-            (' ', None) => words.push(String::new()),
-            (c, _) => words.last_mut().unwrap().push(c),
+            (' ', None) => words.extend(word.take()),
+            (c, _) => word.get_or_insert_default().push(c),
         }
     }
-    words.retain(|word| !word.is_empty());
+    words.extend(word);
     words
 }
 
@@ -68,7 +70,7 @@ fn with_microparameters() -> String {
 
 #[test]
 fn the_microparameters_are_those_that_the_laws_declare() {
-    assert!(with_microparameters() == README, "write the table anew, see the remark above it");
+    assert!(with_microparameters() == README, "write the table anew, see the comment above it");
 }
 
 #[test]
@@ -163,10 +165,23 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
 }
 
 /// Pages for people who look at the repository, by their path in it.
-const PAGES: [&str; 9] = [
+const PAGES: [&str; 22] = [
     "README.md",
+    "CHANGELOG.md",
     "workflows/annealing/README.md",
     "workflows/brazilian/README.md",
+    "workflows/cluster/README.md",
+    "workflows/guide/README.md",
+    "workflows/guide/SUMMARY.md",
+    "workflows/guide/first-ten-minutes.md",
+    "workflows/guide/your-rock.md",
+    "workflows/guide/your-data.md",
+    "workflows/guide/designs.md",
+    "workflows/guide/calibration.md",
+    "workflows/guide/machines.md",
+    "workflows/guide/engines.md",
+    "workflows/guide/store.md",
+    "workflows/guide/messages.md",
     "workflows/c30/README.md",
     "workflows/engines/README.md",
     "store/README.md",

@@ -42,6 +42,11 @@ fn a_pulled_campaign_is_read_without_a_run_and_audited() {
     let refused = space.flow(&["store", "pull", "remote", "--store", "theirs"]);
     assert_eq!(refused.status.code(), Some(2), "{}", told(&refused));
     assert!(told(&refused).contains("there is no file allowed_signers"), "{}", told(&refused));
+    // What no program could look at is no matter of who signed it.
+    space.write("allowed_signers", "");
+    let blind = space.command(&["store", "pull", "remote", "--store", "theirs"]).env("PATH", "/nowhere").output();
+    let blind = told(&blind.expect("running flow"));
+    assert!(blind.contains("`ssh-keygen` of OpenSSH cannot be run"), "{blind}");
     space.write("allowed_signers", &format!("ann@lab namespaces=\"flow-store\" {public}"));
     let pulled = space.stdout(&["store", "pull", "remote", "--store", "theirs"]);
     assert!(pulled.contains("5 results pulled, 0 were here, 0 refused\n  5 signed by ann@lab"), "{pulled}");

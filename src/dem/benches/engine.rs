@@ -1,9 +1,9 @@
 //! Time of a bonded contact and step in a whole uniaxial test: walls, contact search, measurement and cracks included.
 //!
-//! `cargo bench --bench engine -- [2d|3d] [PARTICLES] [books] [full] [joints]`: makes a dense random packing with the engine itself, bonds
+//! `cargo bench --bench engine -- [2d|3d] [PARTICLES] [energy] [full] [joints]`: makes a dense random packing with the engine itself, bonds
 //! it, and compresses it between two platens. Every figure is the best and the median of several stretches of the test,
-//! because other work on the machine only ever adds time. `full` runs one test past its peak instead; `books` keeps the
-//! books of energy, as the stages do. `joints` times the same specimen with flat joints (two elements in the plane, six in
+//! because other work on the machine only ever adds time. `full` runs one test past its peak instead; `energy` tracks the
+//! energy balance, as the stages do. `joints` times the same specimen with flat joints (two elements in the plane, six in
 //! space) beside the parallel bonds.
 //!
 //! Specimens of all sizes go through the same strains: the platens' speed follows the height, and no stretch has more steps
@@ -178,11 +178,11 @@ fn memory() -> Option<f64> {
     Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024.0)
 }
 
-fn rates<S: Space>(count: usize, usual: usize, books: bool, law: Law) {
+fn rates<S: Space>(count: usize, usual: usize, energy: bool, law: Law) {
     let speed = 0.02 * pow(count as f64 / usual as f64, 1.0 / S::DIMENSION as f64);
     let (mut engine, _) = specimen::<S>(count, speed, law);
-    if books {
-        engine.keep_books();
+    if energy {
+        engine.track_energy();
     }
     let steps = (20_000_000 / engine.bond_count().max(1)).clamp(50, 400) as u64;
     for threads in [1, 2] {
@@ -235,14 +235,14 @@ fn main() {
     let solid = words.iter().any(|w| w == "3d");
     let number = words.iter().find_map(|w| w.parse().ok());
     let whole = words.iter().any(|w| w == "full");
-    let books = words.iter().any(|w| w == "books");
+    let energy = words.iter().any(|w| w == "energy");
     let threads = if words.iter().any(|w| w == "one") { 1 } else { 2 };
     let masses = if words.iter().any(|w| w == "equal") { Masses::EqualStep } else { Masses::Real };
     let joints = words.iter().any(|w| w == "joints");
     let laws = if joints { &[Law::Parallel, Law::Flat][..] } else { &[Law::Parallel] };
     match (solid, whole) {
-        (false, false) => laws.iter().for_each(|&law| rates::<D2>(number.unwrap_or(PLANE), PLANE, books, law)),
-        (true, false) => laws.iter().for_each(|&law| rates::<D3>(number.unwrap_or(SOLID), SOLID, books, law)),
+        (false, false) => laws.iter().for_each(|&law| rates::<D2>(number.unwrap_or(PLANE), PLANE, energy, law)),
+        (true, false) => laws.iter().for_each(|&law| rates::<D3>(number.unwrap_or(SOLID), SOLID, energy, law)),
         (false, true) => full::<D2>(number.unwrap_or(PLANE), threads, masses),
         (true, true) => full::<D3>(number.unwrap_or(SOLID), threads, masses),
     }

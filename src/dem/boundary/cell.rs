@@ -89,7 +89,7 @@ impl<S: Space> MovingCell<S> {
         images::<S>().map(way).fold(0.0, f64::max)
     }
 
-    /// Images of the bodies at `positions` that come nearer than `reach` to any of them: body, image, place.
+    /// Images of the bodies at `positions` that come nearer than `reach` to any of them: body, image, position.
     pub(crate) fn images_near(&self, positions: &[Vector<S>], reach: f64) -> Vec<(usize, u8, Vector<S>)> {
         let corner = |far: fn(f64, f64) -> f64, start: f64| {
             Vector::<S>::build(|k| positions.iter().map(|x| x.at(k)).fold(start, far))
@@ -108,7 +108,7 @@ impl<S: Space> MovingCell<S> {
         found
     }
 
-    /// Whether a place is within half an edge of the cell.
+    /// Whether a point is within half an edge of the cell.
     pub(crate) fn holds(&self, x: Vector<S>) -> bool {
         (0..S::DIMENSION).all(|k| {
             let sides = self.edges.map(|edge| edge.at(k));

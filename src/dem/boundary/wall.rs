@@ -11,11 +11,11 @@ use crate::space::{Space, Vector};
 pub enum Motion<S: Space> {
     /// Constant velocity, m/s.
     Velocity(Vector<S>),
-    /// Keeps a pressure.
+    /// Holds a pressure.
     Servo(Servo),
 }
 
-/// A wall that keeps a pressure by moving along its normal.
+/// A wall that holds a pressure by moving along its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Servo {
     /// Target pressure, Pa, compression positive.

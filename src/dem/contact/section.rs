@@ -1,11 +1,11 @@
 //! Contacts of one class, in blocks of eight; between them the classes hold the whole list.
 //!
 //! The order of contacts (class, wall or image, i, j) decides the order of every sum, so it depends on nothing but the contacts.
-//! Blocks stand in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second whole list
-//! stands beside it.
+//! Blocks are stored in chunks, which a [`Reader`] gives back one by one: while a list is written anew, no second list
+//! exists beside it.
 
 use crate::interaction::Bond;
-use crate::law::{LEDGER, Memory, Rows, flat_joint_rows, fresh, idle, smooth_joint_rows};
+use crate::law::{ENERGIES, Memory, RowIndex, flat_joint_rows, fresh, idle, smooth_joint_rows};
 use crate::simd::{Row, WIDEST};
 use crate::space::Space;
 use std::ops::Range;
@@ -39,15 +39,15 @@ impl LawKind {
     /// Rows of memory of a contact.
     fn rows<S: Space>(self) -> usize {
         match self {
-            Self::Linear => Rows::<S>::TENSION,
-            Self::ContactBond => Rows::<S>::BOND,
-            Self::ParallelBond => Rows::<S>::COUNT,
+            Self::Linear => RowIndex::<S>::TENSION,
+            Self::ContactBond => RowIndex::<S>::BOND,
+            Self::ParallelBond => RowIndex::<S>::COUNT,
             Self::FlatJoint { elements } => flat_joint_rows::<S>(elements),
             Self::SmoothJoint => smooth_joint_rows::<S>(),
         }
     }
 
-    /// Whether a contact that is not bonded comes to the same bits by the linear law, with fewer rows.
+    /// Whether a contact that is not bonded gives the same bits by the linear law, with fewer rows.
     pub(crate) fn begins_linear(self) -> bool {
         matches!(self, Self::ParallelBond | Self::FlatJoint { .. })
     }
@@ -66,12 +66,12 @@ pub(crate) struct Key {
     pub(crate) image: u8,
 }
 
-/// What the contacts of a section have in common; sections stand in this order.
+/// What the contacts of a section have in common; sections are in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Rank {
     /// True when the second ends are walls.
     pub(crate) at_wall: bool,
-    /// Place in the contact table.
+    /// Index in the contact table.
     pub(crate) class: usize,
     /// The wall, or the image of the second ends in a periodic cell (0 for themselves).
     pub(crate) second: u32,
@@ -96,8 +96,8 @@ pub(crate) struct Chunk {
     pub(crate) rows: Vec<Row>,
     /// Force on the wall, `DIMENSION` rows a block; empty between particles.
     pub(crate) reactions: Vec<Row>,
-    /// What the contacts have spent, `LEDGER` rows a block; empty unless a run keeps the books.
-    pub(crate) ledger: Vec<Row>,
+    /// What the contacts have spent, `ENERGIES` rows a block; empty unless a run tracks its energy.
+    pub(crate) account: Vec<Row>,
 }
 
 /// Contacts of one class: between particles, or with one wall.
@@ -106,7 +106,7 @@ pub(crate) struct Section {
     /// What they have in common.
     pub(crate) rank: Rank,
     /// The law that they follow: that of the class, or the linear one as long as no parallel bond was installed in the
-    /// class. It comes to the same bits with fewer rows.
+    /// class. It gives the same bits with fewer rows.
     pub(crate) law: LawKind,
     /// Real contacts; the last block is filled up with idle ones.
     pub(crate) count: usize,
@@ -119,12 +119,12 @@ pub(crate) struct Section {
 }
 
 /// Chunk, block and lane of a contact.
-fn place(c: usize) -> (usize, usize, usize) {
+fn locate(c: usize) -> (usize, usize, usize) {
     (c / (CHUNK * WIDEST), c / WIDEST % CHUNK, c % WIDEST)
 }
 
 impl Section {
-    /// Without contacts. The two dummies stand after the `particles` real ones.
+    /// Without contacts. The two dummies follow the `particles` real ones.
     pub(crate) fn new(rank: Rank, law: LawKind, particles: usize) -> Self {
         Self { rank, law, count: 0, own_from: 0, chunks: Vec::new(), dummy: particles as u32 }
     }
@@ -136,29 +136,29 @@ impl Section {
 
     /// The key of contact `c`.
     pub(crate) fn key(&self, c: usize) -> Key {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         self.rank.key(self.chunks[chunk].ends[block].map(|end| end[lane]))
     }
 
     /// Row `row` of contact `c`.
     pub(crate) fn value<S: Space>(&self, c: usize, row: usize) -> f64 {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         let rows = self.law.rows::<S>();
         if row < rows { self.chunks[chunk].rows[block * rows + row].0[lane] } else { fresh::<S>()[row] }
     }
 
     /// The memory of contact `c`.
     pub(crate) fn memory<S: Space>(&self, c: usize) -> Memory {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         let rows = self.law.rows::<S>();
         let mut memory = fresh::<S>();
         let own = &self.chunks[chunk].rows[block * rows..(block + 1) * rows];
-        let (shared, tail) = own.split_at(rows.min(Rows::<S>::COUNT));
+        let (shared, tail) = own.split_at(rows.min(RowIndex::<S>::COUNT));
         for (value, row) in memory.iter_mut().zip(shared) {
             *value = row.0[lane];
         }
         // Rows of elements matter where there is an interface.
-        if memory[Rows::<S>::BOND] > 0.0 {
+        if memory[RowIndex::<S>::BOND] > 0.0 {
             memory.tail.extend(tail.iter().map(|row| row.0[lane]));
         }
         memory
@@ -166,7 +166,7 @@ impl Section {
 
     /// Adds a contact at the end; `room` contacts are expected from here on, this one among them.
     pub(crate) fn push<S: Space>(&mut self, key: Key, memory: &Memory, room: usize) {
-        let (chunk, block, lane) = place(self.count);
+        let (chunk, block, lane) = locate(self.count);
         let rows = self.law.rows::<S>();
         if chunk == self.chunks.len() {
             let blocks = room.div_ceil(WIDEST).clamp(1, CHUNK);
@@ -176,7 +176,7 @@ impl Section {
         let chunk = &mut self.chunks[chunk];
         if block == chunk.ends.len() {
             chunk.ends.push([[self.dummy; WIDEST], [self.dummy + 1; WIDEST]]);
-            let (idle_memory, shared) = (fresh::<S>(), Rows::<S>::COUNT);
+            let (idle_memory, shared) = (fresh::<S>(), RowIndex::<S>::COUNT);
             let flat = matches!(self.law, LawKind::FlatJoint { .. });
             let tail = |row| if flat { idle::<S>(row) } else { 0.0 };
             let value = |row| if row < shared { idle_memory[row] } else { tail(row) };
@@ -191,7 +191,7 @@ impl Section {
             ends[1][lane] = key.j;
         }
         let own = &mut chunk.rows[block * rows..(block + 1) * rows];
-        let (shared, tail) = own.split_at_mut(rows.min(Rows::<S>::COUNT));
+        let (shared, tail) = own.split_at_mut(rows.min(RowIndex::<S>::COUNT));
         for (row, value) in shared.iter_mut().zip(&**memory) {
             row.0[lane] = *value;
         }
@@ -203,17 +203,17 @@ impl Section {
 
     /// Whether contact `c` is bonded.
     pub(crate) fn bonded<S: Space>(&self, c: usize) -> bool {
-        self.value::<S>(c, Rows::<S>::TENSION) < f64::INFINITY
+        self.value::<S>(c, RowIndex::<S>::TENSION) < f64::INFINITY
     }
 
     /// Whether contact `c` is bonded or an interface, bonded or not.
     pub(crate) fn joined<S: Space>(&self, c: usize) -> bool {
-        self.bonded::<S>(c) || self.value::<S>(c, Rows::<S>::BOND) > 0.0
+        self.bonded::<S>(c) || self.value::<S>(c, RowIndex::<S>::BOND) > 0.0
     }
 
     /// Force of contact `c` on the wall; the third component is 0 in the plane.
     pub(crate) fn reaction<S: Space>(&self, c: usize) -> [f64; 3] {
-        let (chunk, block, lane) = place(c);
+        let (chunk, block, lane) = locate(c);
         let rows = &self.chunks[chunk].reactions[block * S::DIMENSION..];
         std::array::from_fn(|k| if k < S::DIMENSION { rows[k].0[lane] } else { 0.0 })
     }
@@ -221,28 +221,28 @@ impl Section {
     /// Opens the books.
     pub(crate) fn open_ledger(&mut self) {
         for chunk in &mut self.chunks {
-            chunk.ledger = vec![Row::default(); chunk.ends.len() * LEDGER];
+            chunk.account = vec![Row::default(); chunk.ends.len() * ENERGIES];
         }
     }
 
     /// What one contact has spent.
-    pub(crate) fn spent(&self, c: usize) -> [f64; LEDGER] {
-        let (chunk, block, lane) = place(c);
-        std::array::from_fn(|row| self.chunks[chunk].ledger[block * LEDGER + row].0[lane])
+    pub(crate) fn spent(&self, c: usize) -> [f64; ENERGIES] {
+        let (chunk, block, lane) = locate(c);
+        std::array::from_fn(|row| self.chunks[chunk].account[block * ENERGIES + row].0[lane])
     }
 
     /// Writes what one contact has spent.
-    pub(crate) fn book(&mut self, c: usize, spent: [f64; LEDGER]) {
-        let (chunk, block, lane) = place(c);
+    pub(crate) fn set_spent(&mut self, c: usize, spent: [f64; ENERGIES]) {
+        let (chunk, block, lane) = locate(c);
         for (row, energy) in spent.into_iter().enumerate() {
-            self.chunks[chunk].ledger[block * LEDGER + row].0[lane] = energy;
+            self.chunks[chunk].account[block * ENERGIES + row].0[lane] = energy;
         }
     }
 
-    /// Adds one row of the ledger of some contacts to `sum`, one by one: the order of the list decides the bits.
+    /// Adds one row of the account of some contacts to `sum`, one by one: the order of the list decides the bits.
     pub(crate) fn add_spent(&self, row: usize, contacts: Range<usize>, sum: &mut f64) {
-        for (chunk, block, lane) in contacts.map(place) {
-            *sum += self.chunks[chunk].ledger.get(block * LEDGER + row).map_or(0.0, |r| r.0[lane]);
+        for (chunk, block, lane) in contacts.map(locate) {
+            *sum += self.chunks[chunk].account.get(block * ENERGIES + row).map_or(0.0, |r| r.0[lane]);
         }
     }
 }
@@ -254,7 +254,7 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
-    /// At the first contact of `sections`, which stand in the order of their stretches.
+    /// At the first contact of `sections`, which are in the order of their stretches.
     pub(crate) fn new(sections: Vec<Section>) -> Self {
         let mut reader = Self { sections: sections.into_iter(), now: None };
         reader.open();
@@ -280,7 +280,7 @@ impl Reader {
         let memory = section.memory::<S>(*next);
         *next += 1;
         if *next % (CHUNK * WIDEST) == 0 {
-            section.chunks[place(*next - 1).0] = Chunk::default();
+            section.chunks[locate(*next - 1).0] = Chunk::default();
         }
         if *next == section.count {
             self.open();
@@ -305,7 +305,7 @@ impl<'a> Writer<'a> {
         Self { cuts, expected: expected.div_ceil(stretches), sections }
     }
 
-    /// Adds a contact, after all that stand before it in the order of the list.
+    /// Adds a contact, behind those that precede it in the order of the list.
     pub(crate) fn push<S: Space>(&mut self, key: Key, memory: &Memory) {
         let stretch = |p: u32| self.cuts.partition_point(|&cut| cut <= p as usize) - 1;
         let first = stretch(key.i);

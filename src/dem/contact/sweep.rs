@@ -2,7 +2,9 @@
 
 use super::section::{Chunk, LawKind, Rank, Section};
 use crate::boundary::Image;
-use crate::law::{BOUNDARY, Constants, ContactBondLaw, FlatJointLaw, LEDGER, Law, Ledger, LinearLaw, ParallelBondLaw};
+use crate::law::{
+    Account, BOUNDARY, Constants, ContactBondLaw, ENERGIES, FlatJointLaw, Law, LinearLaw, ParallelBondLaw,
+};
 use crate::law::{Piece, SmoothJointLaw, Viscous};
 use crate::simd::{Lane, Quad, Row, WIDEST, prefetch, prefetch_rows};
 use crate::space::{End, Load, Space, Touch, Tuple, Vector};
@@ -164,19 +166,19 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
             };
             let balls = (!matches!(second, Second::Wall(_))).then_some(others);
             let drag = viscous.then(|| drag(constants, task, first, balls, K::stiffness::<L>(rows, at)));
-            let mut ledger = Ledger(chunk.ledger.get_mut(b * LEDGER..(b + 1) * LEDGER));
-            let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at, &mut ledger);
+            let mut account = Account(chunk.account.get_mut(b * ENERGIES..(b + 1) * ENERGIES));
+            let (load, broken) = K::respond::<L>(constants, &touch, drag, rows, at, &mut account);
             match second {
                 Second::Balls => S::push_both(loads, [first, others], &touch, &load),
                 Second::Images(image) => {
-                    if ledger.open() {
-                        ledger.charge(BOUNDARY, at, work(image.velocity, task.dt, &touch, &load));
+                    if account.open() {
+                        account.charge(BOUNDARY, at, work(image.velocity, task.dt, &touch, &load));
                     }
                     S::push_both(loads, [first, others], &touch, &load);
                 }
                 Second::Wall(face) => {
-                    if ledger.open() {
-                        ledger.charge(BOUNDARY, at, work(face.velocity, task.dt, &touch, &load));
+                    if account.open() {
+                        account.charge(BOUNDARY, at, work(face.velocity, task.dt, &touch, &load));
                     }
                     S::push_one(loads, first, &touch, &load);
                     react(&mut chunk.reactions[b * S::DIMENSION..], at, &touch, &load);
@@ -184,9 +186,9 @@ fn blocks<S: Space, L: Lane, K: Law<S>>(
             }
             if let Some(broken) = broken {
                 let (tension, shear) = (L::bits(broken.tension), L::bits(broken.shear));
-                let places = Places::new(&i, &touch);
+                let geometry = Geometry::new(&i, &touch);
                 let masks = [tension, tension | shear];
-                note::<S, K>(constants, rank, [first, others], masks, &places, (rows, at), breaks);
+                note::<S, K>(constants, rank, [first, others], masks, &geometry, (rows, at), breaks);
             }
         }
     }
@@ -217,7 +219,7 @@ fn work<S: Space, L: Lane>(velocity: Vector<S>, dt: f64, touch: &Touch<S, L>, lo
     S::force(touch, load).dot(S::Vector::<L>::build(|k| L::splat(way.at(k))))
 }
 
-/// Keeps the force on the wall.
+/// Stores the force on the wall.
 #[inline(always)]
 fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L>, load: &Load<S, L>) {
     let force = S::force(touch, load);
@@ -228,25 +230,25 @@ fn react<S: Space, L: Lane>(reactions: &mut [Row], at: usize, touch: &Touch<S, L
 
 /// Where the contacts of a lane are, out of the registers.
 #[derive(Default)]
-struct Places {
+struct Geometry {
     gap: Row,
     normal: [Row; 3],
     point: [Row; 3],
     radius: Row,
 }
 
-impl Places {
+impl Geometry {
     #[inline(always)]
     fn new<S: Space, L: Lane>(i: &End<S, L>, touch: &Touch<S, L>) -> Self {
-        let mut places = Self::default();
-        touch.gap.store(&mut places.gap, 0);
-        touch.radius.store(&mut places.radius, 0);
+        let mut geometry = Self::default();
+        touch.gap.store(&mut geometry.gap, 0);
+        touch.radius.store(&mut geometry.radius, 0);
         let point = i.position.plus(touch.normal.times(touch.arm_i));
         for k in 0..S::DIMENSION {
-            touch.normal.at(k).store(&mut places.normal[k], 0);
-            point.at(k).store(&mut places.point[k], 0);
+            touch.normal.at(k).store(&mut geometry.normal[k], 0);
+            point.at(k).store(&mut geometry.point[k], 0);
         }
-        places
+        geometry
     }
 }
 
@@ -258,12 +260,12 @@ fn note<S: Space, K: Law<S>>(
     rank: Rank,
     ends: [&[u32]; 2],
     masks: [u8; 2],
-    places: &Places,
+    geometry: &Geometry,
     (rows, at): (&mut [Row], usize),
     breaks: &mut Vec<Break>,
 ) {
     for k in (0..ends[0].len()).filter(|k| masks[1] >> k & 1 == 1) {
-        let (normal, point) = (places.normal.map(|row| row.0[k]), places.point.map(|row| row.0[k]));
+        let (normal, point) = (geometry.normal.map(|row| row.0[k]), geometry.point.map(|row| row.0[k]));
         K::pieces(constants, rows, at + k, masks[0] >> k & 1 == 1, |piece| {
             let arm = offset::<S>(&piece, normal);
             breaks.push(Break {
@@ -273,9 +275,9 @@ fn note<S: Space, K: Law<S>>(
                 at_wall: rank.at_wall,
                 element: piece.element,
                 tensile: piece.tensile,
-                gap: places.gap.0[k],
+                gap: geometry.gap.0[k],
                 normal,
-                point: std::array::from_fn(|a| point[a] + arm[a] * places.radius.0[k]),
+                point: std::array::from_fn(|a| point[a] + arm[a] * geometry.radius.0[k]),
             });
         });
     }
@@ -296,7 +298,7 @@ fn offset<S: Space>(piece: &Piece, n: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::interaction::{Bond, BondStiffness, Interaction, Linear, ParallelBond};
-    use crate::law::Rows;
+    use crate::law::RowIndex;
     use crate::space::{D2, D3};
     use crate::strength::Scatter;
 
@@ -315,13 +317,13 @@ mod tests {
         };
         let constants =
             Constants::new::<S>(&Interaction { linear: Linear::direct(1.0, 1.0, 0.0), bond: Bond::Parallel(bond) });
-        let mut rows = vec![Row::default(); Rows::<S>::COUNT];
-        rows[Rows::<S>::TENSION] = Row([f64::MAX; WIDEST]);
-        rows[Rows::<S>::COHESION] = Row([f64::MAX; WIDEST]);
-        rows[Rows::<S>::BOND] = Row([1e9; WIDEST]);
+        let mut rows = vec![Row::default(); RowIndex::<S>::COUNT];
+        rows[RowIndex::<S>::TENSION] = Row([f64::MAX; WIDEST]);
+        rows[RowIndex::<S>::COHESION] = Row([f64::MAX; WIDEST]);
+        rows[RowIndex::<S>::BOND] = Row([1e9; WIDEST]);
         let mut answer = |ends: &[End<S, f64>; 2]| {
             let touch = pair_touch(&ends[0], &ends[1], 1.0);
-            let (load, _) = ParallelBondLaw::respond(&constants, &touch, None, &mut rows, 0, &mut Ledger(None));
+            let (load, _) = ParallelBondLaw::respond(&constants, &touch, None, &mut rows, 0, &mut Account(None));
             [load.normal, load.shear.norm(), (load.bend.norm().powi(2) + load.twist.powi(2)).sqrt()]
         };
         let vector = |x: [f64; 3]| Vector::<S>::build(|k| x[k]);

@@ -6,16 +6,16 @@ use crate::space::{Space, Spin, Tuple, Vector};
 /// The other end of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Other {
-    /// A particle, by its place in the caller's list.
+    /// A particle, by its index in the caller's list.
     Particle(usize),
-    /// A wall, by its place in the caller's list.
+    /// A wall, by its index in the caller's list.
     Wall(usize),
 }
 
 /// State of one contact. Forces and moments act on `particle`; the other end feels the opposite.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<S: Space> {
-    /// First end, by its place in the caller's list.
+    /// First end, by its index in the caller's list.
     pub particle: usize,
     /// Second end.
     pub other: Other,
@@ -25,7 +25,7 @@ pub struct Contact<S: Space> {
     pub point: Vector<S>,
     /// From the centre of the first end to that of the second (to the contact point at a wall), m.
     pub branch: Vector<S>,
-    /// From the second end to its image that is meant, m; zero but across the faces of a periodic cell.
+    /// From the second end to its image, m; zero but across the faces of a periodic cell.
     pub shift: Vector<S>,
     /// Distance of the surfaces, m.
     pub gap: f64,

@@ -1,10 +1,10 @@
-//! What a caller may read. Particles, clumps and walls are named by their places in the caller's list; reading a place that
+//! What a caller may read. Particles, clumps and walls are named by their indices in the caller's list; reading an index that
 //! there is not panics, as it does on a slice.
 
 use super::{Engine, Settings};
 use crate::body::{self, Rigid};
 use crate::contact::{Contact, Key, LawKind, Other, Section};
-use crate::law::{Interface, KN, REFERENCE, Rows, SHEAR, joint_energy};
+use crate::law::{Interface, KN, REFERENCE, RowIndex, SHEAR, joint_energy};
 use crate::measure::Crack;
 use crate::particle::{Clump, Group, Particle};
 use crate::space::{Load, Space, Spin, Touch, Tuple, Vector};
@@ -42,48 +42,48 @@ impl<S: Space> Engine<S> {
 
     /// Centre of a particle, m.
     pub fn position(&self, particle: usize) -> Vector<S> {
-        self.position_of(self.place[particle] as usize)
+        self.position_of(self.index[particle] as usize)
     }
 
     /// Velocity of a particle, m/s.
     pub fn velocity(&self, particle: usize) -> Vector<S> {
-        body::velocity::<S>(&self.records, self.place[particle] as usize)
+        body::velocity::<S>(&self.records, self.index[particle] as usize)
     }
 
     /// Spin of a particle, rad/s.
     pub fn spin(&self, particle: usize) -> Spin<S> {
-        body::spin::<S>(&self.records, self.place[particle] as usize)
+        body::spin::<S>(&self.records, self.index[particle] as usize)
     }
 
     /// Radius of a particle, m.
     pub fn radius(&self, particle: usize) -> f64 {
-        self.radii[self.place[particle] as usize]
+        self.radii[self.index[particle] as usize]
     }
 
     /// Group of a particle.
     pub fn group(&self, particle: usize) -> Group {
-        self.groups[self.place[particle] as usize]
+        self.groups[self.index[particle] as usize]
     }
 
     /// Mass and inertia that move a ball: its own, or those of [`super::Masses::EqualStep`].
     pub fn moving_mass(&self, particle: usize) -> [f64; 2] {
-        self.moving[self.place[particle] as usize]
+        self.moving[self.index[particle] as usize]
     }
 
     /// Mass of a particle that belongs to no clump, kg.
     pub fn mass(&self, particle: usize) -> f64 {
-        self.masses[self.place[particle] as usize]
+        self.masses[self.index[particle] as usize]
     }
 
-    /// The clump of a particle, by its place in the caller's list of clumps.
+    /// The clump of a particle, by its index in the caller's list of clumps.
     pub fn clump_of(&self, particle: usize) -> Option<usize> {
-        let body = self.bodies[self.place[particle] as usize] as usize;
+        let body = self.bodies[self.index[particle] as usize] as usize;
         self.clump_caller.get(body).map(|&clump| clump as usize)
     }
 
     /// A particle as it is now.
     pub fn particle(&self, particle: usize) -> Particle<S> {
-        let p = self.place[particle] as usize;
+        let p = self.index[particle] as usize;
         Particle {
             position: self.position(particle),
             radius: self.radii[p],
@@ -110,7 +110,7 @@ impl<S: Space> Engine<S> {
 
     /// The constant force that [`apply`](Engine::apply) put on the body of a particle, N.
     pub fn applied_force(&self, particle: usize) -> Vector<S> {
-        let p = self.place[particle] as usize;
+        let p = self.index[particle] as usize;
         self.applied.get(&p).map_or(Vector::<S>::zero(), |load| load.0)
     }
 
@@ -126,11 +126,11 @@ impl<S: Space> Engine<S> {
 
     /// Whether a particle's velocity is prescribed.
     pub fn is_fixed(&self, particle: usize) -> bool {
-        self.fixed[self.place[particle] as usize][0]
+        self.fixed[self.index[particle] as usize][0]
     }
 
     fn rigid(&self, clump: usize) -> &Rigid<S> {
-        &self.clumps[self.clump_place[clump] as usize]
+        &self.clumps[self.clump_index[clump] as usize]
     }
 
     /// Number of clumps.
@@ -202,13 +202,13 @@ impl<S: Space> Engine<S> {
         let push = value(KN) * if point_bond { overlap } else { overlap.max(0.0) };
         let shear = |first: usize| S::Shear::<f64>::build(|k| value(first + k));
         let interface = self.interface(section, c, gap);
-        let touches = interface.is_some() && value(Rows::<S>::BOND_NORMAL) != 0.0;
+        let touches = interface.is_some() && value(RowIndex::<S>::BOND_NORMAL) != 0.0;
         let solid = S::DIMENSION == 3;
         let cement = Load::<S, f64> {
-            normal: value(Rows::<S>::BOND_NORMAL),
-            shear: shear(Rows::<S>::BOND_SHEAR),
-            twist: if solid { value(Rows::<S>::BOND_TWIST) } else { 0.0 },
-            bend: shear(Rows::<S>::BOND_BEND),
+            normal: value(RowIndex::<S>::BOND_NORMAL),
+            shear: shear(RowIndex::<S>::BOND_SHEAR),
+            twist: if solid { value(RowIndex::<S>::BOND_TWIST) } else { 0.0 },
+            bend: shear(RowIndex::<S>::BOND_BEND),
         };
         let spring = Load::<S, f64> { normal: -push, shear: shear(SHEAR), ..cement };
         let touch = Touch::<S, f64>::still(normal, gap);
@@ -227,8 +227,8 @@ impl<S: Space> Engine<S> {
             bonded,
             active: bonded || touches || (interface.is_none() && overlap > 0.0),
             stiffness: [value(KN), value(KN) * constants.shear_share],
-            bond_stiffness: [value(Rows::<S>::BOND), value(Rows::<S>::BOND) * constants.bond_share],
-            capacity: if bonded { [Rows::<S>::TENSION, Rows::<S>::COHESION].map(value) } else { [0.0; 2] },
+            bond_stiffness: [value(RowIndex::<S>::BOND), value(RowIndex::<S>::BOND) * constants.bond_share],
+            capacity: if bonded { [RowIndex::<S>::TENSION, RowIndex::<S>::COHESION].map(value) } else { [0.0; 2] },
             gyration: S::GYRATION * bond_radius * bond_radius,
             spring: S::force(&touch, &spring),
             cement: S::force(&touch, &cement),

@@ -4,7 +4,7 @@ use super::Engine;
 use crate::contact::Key;
 use crate::error::Faults;
 use crate::interaction::{Bond, FlatJoint};
-use crate::law::{Memory, REFERENCE, Rows, SHEAR, join};
+use crate::law::{Memory, REFERENCE, RowIndex, SHEAR, join};
 use crate::space::Space;
 use crate::strength::Strength;
 use math::random::Stream;
@@ -51,7 +51,7 @@ impl<S: Space> Engine<S> {
         Ok(chosen.len())
     }
 
-    /// Strengths of the chosen contacts, drawn in the caller's order; each stands at the number of its contact.
+    /// Strengths of the chosen contacts, drawn in the caller's order; each at the index of its contact.
     fn draw_strengths(&self, chosen: &mut [(Key, u32)], stream: &mut Stream) -> Vec<[f64; 2]> {
         chosen.sort_unstable_by_key(|&(key, order)| (self.caller_ends(key), order));
         let laws: Vec<Option<[Strength; 2]>> =
@@ -82,7 +82,7 @@ impl<S: Space> Engine<S> {
         drawn
     }
 
-    /// The caller's places of the two ends, the smaller first; walls after all particles.
+    /// The caller's indices of the two ends, the smaller first; walls after all particles.
     fn caller_ends(&self, key: Key) -> (usize, usize) {
         let i = self.caller[key.i as usize] as usize;
         let j = if key.at_wall { self.caller.len() + key.j as usize } else { self.caller[key.j as usize] as usize };
@@ -104,10 +104,10 @@ impl<S: Space> Engine<S> {
         let capacity = strengths.map(|strength| (strength * section).min(f64::MAX));
         rows[REFERENCE] = reference;
         rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
-        rows[Rows::<S>::BOND..].fill(0.0);
-        rows[Rows::<S>::TENSION] = capacity[0];
-        rows[Rows::<S>::COHESION] = capacity[1];
-        rows[Rows::<S>::BOND] = stiffness;
+        rows[RowIndex::<S>::BOND..].fill(0.0);
+        rows[RowIndex::<S>::TENSION] = capacity[0];
+        rows[RowIndex::<S>::COHESION] = capacity[1];
+        rows[RowIndex::<S>::BOND] = stiffness;
     }
 
     /// An interface in place of the contact.
@@ -118,7 +118,7 @@ impl<S: Space> Engine<S> {
         let origin = if kind == Kind::Gapped { gap - joint.shares.gap } else { gap };
         let layout = &self.classes[self.class_of(key) as usize].constants.layout;
         rows[SHEAR..SHEAR + S::SHEAR].fill(0.0);
-        rows[Rows::<S>::BOND..].fill(0.0);
+        rows[RowIndex::<S>::BOND..].fill(0.0);
         join::<S>(rows, layout, origin, joint.normal::<S>(radii), capacity, self.normal_of(key));
     }
 

@@ -43,11 +43,11 @@ impl<S: Space> Engine<S> {
 
     fn empty(model: &Model<S>, caller: Vec<u32>, clump_of: &[u32]) -> Self {
         let n = caller.len();
-        let mut place = vec![0; n];
+        let mut index = vec![0; n];
         let mut bodies = vec![0; n];
         let mut single = model.clumps.len() as u32;
         for (p, &id) in caller.iter().enumerate() {
-            place[id as usize] = p as u32;
+            index[id as usize] = p as u32;
             bodies[p] = clump_of[id as usize];
             if bodies[p] == NO_CLUMP {
                 bodies[p] = single;
@@ -60,7 +60,7 @@ impl<S: Space> Engine<S> {
             table: model.contacts.clone(),
             classes: classes::<S>(&model.contacts),
             caller,
-            place,
+            index,
             groups: Vec::with_capacity(n),
             bodies,
             radii: Vec::with_capacity(n),
@@ -75,7 +75,7 @@ impl<S: Space> Engine<S> {
             inverse_mass: vec![0.0; n + 2],
             weights: Vec::new(),
             clumps: Vec::with_capacity(model.clumps.len()),
-            clump_place: vec![0; model.clumps.len()],
+            clump_index: vec![0; model.clumps.len()],
             clump_caller: Vec::with_capacity(model.clumps.len()),
             walls: Vec::with_capacity(model.walls.len()),
             cell: model.settings.cell.as_ref().map(MovingCell::new),
@@ -94,7 +94,7 @@ impl<S: Space> Engine<S> {
             dt: 0.0,
             step: 0,
             epoch: (0.0, 0),
-            books: None,
+            energy_sums: None,
         }
     }
 
@@ -119,12 +119,12 @@ impl<S: Space> Engine<S> {
 
     fn add_clumps(&mut self, model: &Model<S>) {
         // Pebbles of a clump stand together in the engine's order.
-        let first = |clump: &Clump<S>| clump.pebbles.iter().map(|&id| self.place[id] as usize).min().unwrap_or(0);
+        let first = |clump: &Clump<S>| clump.pebbles.iter().map(|&id| self.index[id] as usize).min().unwrap_or(0);
         let mut order: Vec<(usize, usize)> = model.clumps.iter().map(first).zip(0..).collect();
         order.sort_unstable();
         for (k, &(first, id)) in order.iter().enumerate() {
             let clump = &model.clumps[id];
-            self.clump_place[id] = k as u32;
+            self.clump_index[id] = k as u32;
             self.clump_caller.push(id as u32);
             let pebbles = first..first + clump.pebbles.len();
             self.bodies[pebbles.clone()].fill(k as u32);
@@ -230,7 +230,7 @@ pub(super) fn moving<S: Space>(wall: &Wall<S>) -> MovingWall<S> {
     }
 }
 
-/// The caller's places in the engine's order (bodies along a Morton curve, pebbles of a clump together), and the clump
+/// The caller's indices in the engine's order (bodies along a Morton curve, pebbles of a clump together), and the clump
 /// of each of the caller's particles.
 fn numbering<S: Space>(model: &Model<S>) -> (Vec<u32>, Vec<u32>) {
     let mut clump_of = vec![NO_CLUMP; model.particles.len()];

@@ -1,4 +1,4 @@
-//! What a caller may change between runs. Particles are named by their places in the caller's list.
+//! What a caller may change between runs. Particles are named by their indices in the caller's list.
 //!
 //! A call that is refused has changed nothing; calls that return nothing cannot be wrong.
 
@@ -49,15 +49,15 @@ impl<S: Space> Engine<S> {
     }
 
     /// Multiplies the velocity and spin of every body, those that are held among them, and the velocity of every wall but a
-    /// servo's, which sets its own. The books take what that adds to the kinetic energy as given from outside.
+    /// servo's, which sets its own. The energy sums take what that adds to the kinetic energy as given from outside.
     ///
     /// # Errors
     /// A factor that is negative or not finite.
     pub fn scale_motion(&mut self, factor: f64) -> Result<(), Faults> {
         super::validate::check_factor(factor)?;
-        if self.books.is_some() {
+        if self.energy_sums.is_some() {
             let given = (factor * factor - 1.0) * kinetic(self);
-            self.books.iter_mut().for_each(|books| books.bodies[1] += given);
+            self.energy_sums.iter_mut().for_each(|sums| sums.bodies[1] += given);
         }
         for p in (0..self.caller.len()).filter(|&p| self.bodies[p] as usize >= self.clumps.len()) {
             let (x, v) = (self.position_of(p), crate::body::velocity::<S>(&self.records, p));
@@ -105,7 +105,7 @@ impl<S: Space> Engine<S> {
     }
 
     /// Multiplies the radius of some balls; mass and inertia follow at constant density. Stiffnesses of the springs (and
-    /// the masses of [`Masses::EqualStep`](super::Masses)) are derived anew; bonds keep theirs.
+    /// the masses of [`Masses::EqualStep`](super::Masses)) are derived anew; bonds do not change.
     ///
     /// # Errors
     /// Every particle that does not exist or is a pebble of a clump, every factor that is not above 0 or makes a radius or
@@ -126,7 +126,7 @@ impl<S: Space> Engine<S> {
         Ok(())
     }
 
-    /// Replaces the contact table. Contacts keep their reference gaps and forces; bonds stay with the values of their
+    /// Replaces the contact table. Contacts keep their reference gaps and forces; bonds retain the values of their
     /// installation as long as the law of the pair stays the same, and vanish otherwise.
     ///
     /// # Errors
@@ -157,7 +157,7 @@ impl<S: Space> Engine<S> {
     }
 
     /// Strains a periodic cell from now on with the velocity gradient `rate` (1/s). The bodies take part from the start:
-    /// their velocities gain what the change of the gradient gives at their places.
+    /// their velocities gain what the change of the gradient gives at their positions.
     ///
     /// # Errors
     /// No cell, or a rate that is not finite.
@@ -181,7 +181,7 @@ impl<S: Space> Engine<S> {
         Ok(())
     }
 
-    /// Adds a wall; its place.
+    /// Adds a wall and returns its index.
     ///
     /// # Errors
     /// All faults of the wall, and every ball that is deeper in it than a start may be.
@@ -196,10 +196,10 @@ impl<S: Space> Engine<S> {
         Ok(self.walls.len() - 1)
     }
 
-    /// Takes a wall away. The places of the others stay.
+    /// Removes a wall. The indices of the others do not change.
     ///
     /// # Errors
-    /// No such wall, or one that was taken away.
+    /// No such wall, or one that was removed.
     pub fn remove_wall(&mut self, w: usize) -> Result<(), Faults> {
         self.admit_wall(w)?;
         self.walls[w].present = false;
@@ -212,7 +212,7 @@ impl<S: Space> Engine<S> {
     /// Changes how a wall moves.
     ///
     /// # Errors
-    /// No such wall, one that was taken away, or all faults of the motion.
+    /// No such wall, one that was removed, or all faults of the motion.
     pub fn move_wall(&mut self, w: usize, motion: Motion<S>) -> Result<(), Faults> {
         self.admit_motion(w, &motion)?;
         self.walls[w].motion = motion;
@@ -241,10 +241,10 @@ impl<S: Space> Engine<S> {
     /// Threads of a run from now on: at least one, at most one for every 64 particles. Results do not depend on it.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = threads.max(1);
-        let ledgers = self.ledgers();
+        let accounts = self.accounts();
         self.rewrite(&[], |_, _, _| ());
-        if let Some(ledgers) = ledgers {
-            self.reopen(ledgers);
+        if let Some(accounts) = accounts {
+            self.reopen(accounts);
         }
     }
 

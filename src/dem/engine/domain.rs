@@ -23,17 +23,17 @@ pub(crate) struct Domain {
     pub(crate) sections: Vec<Section>,
     /// Loads on all particles; only the own ones are complete.
     pub(crate) loads: Table,
-    /// Bonds that broke, with the step; each is kept by the owner of its first particle.
+    /// Bonds that broke, with the step; the owner of its first particle stores it.
     pub(crate) breaks: Vec<(u64, Break)>,
-    /// Work of local damping and of prescribed motion on each particle, J; empty unless a run keeps the books.
+    /// Work of local damping and of prescribed motion on each particle, J; empty unless a run tracks its energy.
     pub(crate) spent: Vec<[f64; 2]>,
     /// The same for its clumps.
     pub(crate) clump_spent: Vec<f64>,
 }
 
 impl Domain {
-    /// Begins to keep the books of energy.
-    pub(super) fn open_books(&mut self) {
+    /// Begins to track the energy.
+    pub(super) fn track_energy(&mut self) {
         self.sections.iter_mut().for_each(Section::open_ledger);
         self.spent = vec![[0.0; 2]; self.particles.len()];
         self.clump_spent = vec![0.0; self.clumps.len()];

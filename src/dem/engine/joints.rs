@@ -1,4 +1,4 @@
-//! Fractures laid into a specimen: which contacts they cross, and the smooth joints that stand there.
+//! Fractures laid into a specimen: which contacts they cross, and the smooth joints on those contacts.
 //!
 //! A contact is of a fracture when the line between the centres of its grains, as they stood when the fracture was laid,
 //! crosses it within its extent: so a pair that meets only later, because the sides slid along each other, is of it as well. Of
@@ -25,7 +25,7 @@ pub struct Fracture<S: Space> {
     pub normal: Vector<S>,
     /// Half its length, or its radius, m; infinite for one that cuts through.
     pub radius: f64,
-    /// Which of the joints it has, by its place in their list.
+    /// Which of the joints it has, by its index in their list.
     pub set: usize,
 }
 

@@ -83,7 +83,7 @@ impl<S: Space> Engine<S> {
     /// found stays if it must not be forgotten. `change` sees every contact in the order of the list. The old list is
     /// given back piece by piece.
     fn deal(&mut self, mut found: Found, bonded: &[usize], mut change: impl FnMut(&Self, Key, &mut Memory)) {
-        self.close_ledgers();
+        self.close_accounts();
         let cuts = self.cuts(&found);
         let mut old: BTreeMap<Rank, Vec<Section>> = BTreeMap::new();
         let mut loads = Vec::new();
@@ -109,8 +109,8 @@ impl<S: Space> Engine<S> {
                 domain.sections.extend((section.count > 0).then_some(section));
             }
         }
-        if self.books.is_some() {
-            domains.iter_mut().for_each(Domain::open_books);
+        if self.energy_sums.is_some() {
+            domains.iter_mut().for_each(Domain::track_energy);
         }
         self.domains = domains;
     }
@@ -151,14 +151,14 @@ impl<S: Space> Engine<S> {
     /// Everything nearer than the margin.
     fn candidates(&self) -> Found {
         let n = self.caller.len();
-        let places: Vec<[f64; 3]> = (0..n).map(|p| flat::<S>(position::<S>(&self.records, p))).collect();
+        let centres: Vec<[f64; 3]> = (0..n).map(|p| flat::<S>(position::<S>(&self.records, p))).collect();
         let mut found = Found::new();
         let mut put = |key: Key| {
             let second = if key.at_wall { key.j } else { u32::from(key.image) };
             let rank = Rank { at_wall: key.at_wall, class: self.class_of(key) as usize, second };
             found.entry(rank).or_default().push([key.i, key.j]);
         };
-        pairs(&places, &self.radii, &self.bodies, self.margin, |i, j| put(Key { i, at_wall: false, j, image: 0 }));
+        pairs(&centres, &self.radii, &self.bodies, self.margin, |i, j| put(Key { i, at_wall: false, j, image: 0 }));
         for (w, wall) in self.walls.iter().enumerate().filter(|(_, wall)| wall.present) {
             for p in 0..n {
                 let x = position::<S>(&self.records, p);
@@ -168,22 +168,22 @@ impl<S: Space> Engine<S> {
                 }
             }
         }
-        self.across(places, put);
+        self.across(centres, put);
         found
     }
 
     /// Contacts across the faces of a periodic cell, each once: from the particle that comes first.
-    fn across(&self, mut places: Vec<[f64; 3]>, mut put: impl FnMut(Key)) {
+    fn across(&self, mut centres: Vec<[f64; 3]>, mut put: impl FnMut(Key)) {
         let Some(cell) = &self.cell else { return };
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
-        let n = places.len();
+        let n = centres.len();
         let positions: Vec<Vector<S>> = (0..n).map(|p| position::<S>(&self.records, p)).collect();
         let images = cell.images_near(&positions, 2.0 * largest + self.margin);
-        places.extend(images.iter().map(|(_, _, y)| flat::<S>(*y)));
+        centres.extend(images.iter().map(|(_, _, y)| flat::<S>(*y)));
         let origins: Vec<usize> = (0..n).chain(images.iter().map(|&(p, ..)| p)).collect();
         let radii: Vec<f64> = origins.iter().map(|&p| self.radii[p]).collect();
         let bodies: Vec<u32> = origins.iter().map(|&p| self.bodies[p]).collect();
-        pairs(&places, &radii, &bodies, self.margin, |i, k| {
+        pairs(&centres, &radii, &bodies, self.margin, |i, k| {
             if (i as usize) < n && k as usize >= n && (i as usize) < origins[k as usize] {
                 let (j, image, _) = images[k as usize - n];
                 put(Key { i, at_wall: false, j: j as u32, image });
@@ -209,7 +209,7 @@ impl<S: Space> Engine<S> {
         if key.image == 0 { apart } else { apart.plus(self.shift(key)) }
     }
 
-    /// From the second particle of a pair to the image that is meant, m.
+    /// From the second particle of a pair to the image of the pair, m.
     pub(super) fn shift(&self, key: Key) -> Vector<S> {
         match &self.cell {
             Some(cell) if key.image != 0 => cell.image(key.image).shift,
@@ -234,7 +234,7 @@ impl<S: Space> Engine<S> {
         rows[KN] = if rows.tail.is_empty() { kn } else { 0.0 };
     }
 
-    /// Radii that a contact stands between, ∞ for a wall.
+    /// Radii on both sides of a contact, ∞ for a wall.
     pub(super) fn contact_radii(&self, key: Key) -> [f64; 2] {
         let second = if key.at_wall { f64::INFINITY } else { self.radii[key.j as usize] };
         [self.radii[key.i as usize], second]

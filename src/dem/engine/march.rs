@@ -2,7 +2,7 @@
 //!
 //! Order of a step: contact forces at x(t) from velocities at t − dt/2; clumps and balls gain velocity, then position
 //! (leapfrog); walls move; the threads meet; servo walls take the speed that the forces of this step ask for. Every
-//! thread moves its own copy of the walls with the same numbers, and every thread comes to the same decision to stop.
+//! thread moves its own copy of the walls with the same numbers, and every thread takes the same decision to stop.
 
 use super::domain::Domain;
 use super::{Class, Engine, MovingWall};
@@ -29,23 +29,23 @@ pub(super) struct Orders<'a> {
     pub(super) reach: f64,
     /// Largest way in one step, m.
     pub(super) stride: f64,
-    pub(super) notes: &'a Notes,
+    pub(super) shared: &'a Shared,
 }
 
-/// What the threads tell each other: for even and odd steps, the largest speed of each stretch, and the normal force of
+/// Values that the threads exchange: for even and odd steps, the largest speed of each stretch, and the normal force of
 /// each contact of a servo wall in the order of the list.
-pub(super) struct Notes {
+pub(super) struct Shared {
     speeds: [Vec<AtomicU64>; 2],
     forces: [Vec<AtomicU64>; 2],
     /// Servo walls and their stretch of `forces`.
     servos: Vec<(usize, std::ops::Range<usize>)>,
-    /// First place in `forces` of each section, by stretch and section.
-    places: Vec<Vec<Option<usize>>>,
+    /// First index in `forces` of each section, by stretch and section.
+    first: Vec<Vec<Option<usize>>>,
 }
 
-impl Notes {
+impl Shared {
     pub(super) fn new<S: Space>(engine: &Engine<S>) -> Self {
-        let mut places: Vec<Vec<Option<usize>>> = engine.domains.iter().map(|d| vec![None; d.sections.len()]).collect();
+        let mut first: Vec<Vec<Option<usize>>> = engine.domains.iter().map(|d| vec![None; d.sections.len()]).collect();
         let mut servos = Vec::new();
         let mut count = 0;
         for (w, wall) in engine.walls.iter().enumerate() {
@@ -59,14 +59,14 @@ impl Notes {
             let mut own: Vec<_> = sections.filter(|(rank, ..)| rank.at_wall && rank.second == w as u32).collect();
             own.sort_unstable();
             for (_, d, s, contacts) in own {
-                places[d][s] = Some(count);
+                first[d][s] = Some(count);
                 count += contacts;
             }
             servos.push((w, start..count));
         }
         let cells = |n: usize| (0..n).map(|_| AtomicU64::new(0)).collect();
         let stretches = engine.domains.len();
-        Self { speeds: [cells(stretches), cells(stretches)], forces: [cells(count), cells(count)], servos, places }
+        Self { speeds: [cells(stretches), cells(stretches)], forces: [cells(count), cells(count)], servos, first }
     }
 }
 
@@ -114,7 +114,7 @@ impl<S: Space> Kernel for March<'_, S> {
             self.board.meet();
             end.steps += 1;
             serve(&mut self.walls, orders, parity);
-            let speeds = &orders.notes.speeds[parity];
+            let speeds = &orders.shared.speeds[parity];
             let balls = speeds.iter().map(|s| f64::from_bits(s.load(Ordering::Relaxed))).fold(0.0, f64::max);
             let fastest = self.walls.iter().map(|w| w.face.velocity.norm()).fold(balls, f64::max);
             let fastest = self.cell.as_ref().map_or(fastest, |cell| fastest + 0.5 * cell.speed());
@@ -152,18 +152,18 @@ impl<S: Space> March<'_, S> {
         breaks.extend(broken.into_iter().filter(|b| particles.contains(&(b.i as usize))).map(|b| (step, b)));
     }
 
-    /// Leaves the own numbers for the others.
+    /// Publishes the numbers of this stretch to the other threads.
     #[inline(always)]
     fn tell(&self, parity: usize, fastest: f64) {
-        let notes = self.orders.notes;
-        notes.speeds[parity][self.index].store(fastest.to_bits(), Ordering::Relaxed);
-        for (section, place) in self.domain.sections.iter().zip(&notes.places[self.index]) {
-            if let (Some(place), Some(wall)) = (place, section.wall()) {
+        let shared = self.orders.shared;
+        shared.speeds[parity][self.index].store(fastest.to_bits(), Ordering::Relaxed);
+        for (section, first) in self.domain.sections.iter().zip(&shared.first[self.index]) {
+            if let (Some(first), Some(wall)) = (first, section.wall()) {
                 let normal = self.walls[wall as usize].face.normal;
-                let mut next = *place;
+                let mut next = *first;
                 Engine::<S>::visit_reactions(section, |force| {
                     let normal: f64 = (0..S::DIMENSION).map(|k| force[k] * normal.at(k)).sum();
-                    notes.forces[parity][next].store(normal.to_bits(), Ordering::Relaxed);
+                    shared.forces[parity][next].store(normal.to_bits(), Ordering::Relaxed);
                     next += 1;
                 });
             }
@@ -179,10 +179,10 @@ fn move_walls<S: Space>(walls: &mut [MovingWall<S>], dt: f64) {
 
 /// New speeds of the servo walls from the forces of this step.
 fn serve<S: Space>(walls: &mut [MovingWall<S>], orders: &Orders<'_>, parity: usize) {
-    for (w, range) in &orders.notes.servos {
+    for (w, range) in &orders.shared.servos {
         let wall = &mut walls[*w];
         let Motion::Servo(servo) = wall.motion else { continue };
-        let forces = &orders.notes.forces[parity][range.clone()];
+        let forces = &orders.shared.forces[parity][range.clone()];
         let force: f64 = forces.iter().map(|f| f64::from_bits(f.load(Ordering::Relaxed))).sum();
         let stress = -force / servo.area;
         let gain = servo.relaxation * servo.area / (wall.stiffness.max(f64::MIN_POSITIVE) * orders.dt);
@@ -219,17 +219,17 @@ impl<S: Space> Update<f64> for Integrate<'_, S> {
         for p in self.domain.singles.iter().flat_map(|run| run.clone()) {
             let mut way = Quad::default();
             for q in 0..S::LOADS {
-                let place = p * S::LOADS + q;
-                let mut load = loads[place];
+                let slot = p * S::LOADS + q;
+                let mut load = loads[slot];
                 if !weights.is_empty() {
-                    load = load.plus(weights[place]);
+                    load = load.plus(weights[slot]);
                 }
-                loads[place] = Quad::default();
+                loads[slot] = Quad::default();
                 let before = rows.read(p * S::RECORD + 1 + q);
-                let velocity = accelerated(before, load, inverse[place], damping, dt);
+                let velocity = accelerated(before, load, inverse[slot], damping, dt);
                 if books {
                     let spent = &mut self.domain.spent[p - self.domain.particles.start];
-                    book(spent, load, inverse[place], [before, velocity], damping, dt);
+                    book(spent, load, inverse[slot], [before, velocity], damping, dt);
                 }
                 rows.write(p * S::RECORD + 1 + q, velocity);
                 // 0 · v is 0 unless v is not finite; such a sum never comes back to 0.
@@ -263,7 +263,7 @@ fn accelerated(velocity: Quad, load: Quad, inverse: Quad, damping: f64, dt: f64)
     next
 }
 
-/// Work of local damping, and of whatever holds the prescribed components, with the mean of the old and new velocity.
+/// Work of local damping, and of the agent that prescribes components, with the mean of the old and new velocity.
 #[inline(always)]
 fn book(spent: &mut [f64; 2], load: Quad, inverse: Quad, [before, after]: [Quad; 2], damping: f64, dt: f64) {
     for k in 0..4 {

@@ -2,10 +2,10 @@
 
 mod access;
 mod bonding;
-mod books;
 mod build;
 mod change;
 mod domain;
+mod energy;
 mod joints;
 mod list;
 mod march;
@@ -20,7 +20,7 @@ use super::body::Rigid;
 use super::boundary::{Cell, Motion, MovingCell, Wall};
 use super::contact::{Face, LawKind};
 use super::interaction::ContactTable;
-use super::law::{Constants, LEDGER};
+use super::law::{Constants, ENERGIES};
 use super::particle::{Clump, Group, Particle};
 use super::simd::{Quad, Table, Width};
 use super::space::{Space, Spin, Vector};
@@ -118,9 +118,9 @@ pub struct Engine<S: Space> {
     settings: Settings<S>,
     table: ContactTable,
     classes: Vec<Class>,
-    /// Particles stand in the engine's own order; `caller[p]` is the caller's place of p, `place` the other way round.
+    /// Particles are in the engine's own order: `caller[p]` is the caller's index of particle p, and `index` the reverse.
     caller: Vec<u32>,
-    place: Vec<u32>,
+    index: Vec<u32>,
     groups: Vec<Group>,
     /// Body of each particle: clumps first, then single balls.
     bodies: Vec<u32>,
@@ -137,10 +137,10 @@ pub struct Engine<S: Space> {
     inverse: Table,
     inverse_mass: Vec<f64>,
     weights: Vec<Quad>,
-    /// Clumps stand in the order of their pebbles; `clump_place` leads from the caller's place to theirs,
+    /// Clumps are in the order of their pebbles; `clump_index` leads from the caller's index to theirs,
     /// `clump_caller` back.
     clumps: Vec<Rigid<S>>,
-    clump_place: Vec<u32>,
+    clump_index: Vec<u32>,
     clump_caller: Vec<u32>,
     walls: Vec<MovingWall<S>>,
     cell: Option<MovingCell<S>>,
@@ -161,15 +161,15 @@ pub struct Engine<S: Space> {
     step: u64,
     /// Time at the step from which `dt` holds, s, and that step.
     epoch: (f64, u64),
-    /// Energy spent up to the last renewal of the list, and the total at the start, if a run keeps the books.
-    books: Option<Books>,
+    /// Energy spent up to the last renewal of the list, and the total at the start, if a run tracks its energy.
+    energy_sums: Option<EnergySums>,
 }
 
-/// The books of energy, J.
+/// The energy balance, J.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Books {
-    /// Rows of the contacts' ledgers.
-    pub(crate) contacts: [f64; LEDGER],
+pub(crate) struct EnergySums {
+    /// Rows of the contacts' accounts.
+    pub(crate) contacts: [f64; ENERGIES],
     /// Local damping, prescribed motion.
     pub(crate) bodies: [f64; 2],
     /// Kinetic, strain and potential energy when the books were opened.
@@ -181,7 +181,7 @@ pub(crate) struct Books {
 pub enum Watch {
     /// Go on.
     Continue,
-    /// Go on, with up to so many threads from now on.
+    /// Continue, with up to this many threads from now on.
     Threads(usize),
     /// End the run here.
     Stop,

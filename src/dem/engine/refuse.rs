@@ -7,14 +7,14 @@ use crate::error::{Fault, Faults};
 use crate::space::{Space, Spin, Tuple, Vector};
 
 impl<S: Space> Engine<S> {
-    /// A particle that there is, by the engine's place of it.
+    /// A particle that there is, by the engine's index of it.
     fn known(&self, particle: usize) -> Result<usize, Fault> {
-        let count = self.place.len();
-        let place = self.place.get(particle).map(|&p| p as usize);
-        place.ok_or(Fault::Missing { what: "particle", place: particle, count })
+        let count = self.index.len();
+        let index = self.index.get(particle).map(|&p| p as usize);
+        index.ok_or(Fault::Missing { what: "particle", index: particle, count })
     }
 
-    /// A ball of its own. `problem` says what a pebble of a clump cannot.
+    /// A ball of its own. `problem` names what a pebble of a clump cannot do.
     fn single(&self, particle: usize, problem: &'static str) -> Result<usize, Fault> {
         let p = self.known(particle)?;
         match self.clump_of(particle) {
@@ -23,7 +23,7 @@ impl<S: Space> Engine<S> {
         }
     }
 
-    /// The engine's place of a particle that is given a vector and a spin (or moment), both named.
+    /// The engine's index of a particle that is given a vector and a spin (or moment), both named.
     pub(super) fn admit(
         &self,
         particle: usize,
@@ -39,13 +39,13 @@ impl<S: Space> Engine<S> {
         Ok(p)
     }
 
-    /// The engine's places of balls that are to be fixed.
+    /// The engine's indices of balls that are to be fixed.
     pub(super) fn admit_fixing(&self, particles: &[usize]) -> Result<Vec<usize>, Faults> {
-        let place = |&particle: &usize| self.single(particle, "cannot be fixed: it moves with its clump");
-        gathered(particles.iter().map(place))
+        let index = |&particle: &usize| self.single(particle, "cannot be fixed: it moves with its clump");
+        gathered(particles.iter().map(index))
     }
 
-    /// The engine's places of balls whose radii are to be multiplied. Radius and mass must stay numbers, and a periodic
+    /// The engine's indices of balls whose radii are to be multiplied. Radius and mass must stay numbers, and a periodic
     /// cell large enough.
     pub(super) fn admit_scaling(&self, factors: &[(usize, f64)]) -> Result<Vec<usize>, Faults> {
         let mut radii = self.radii.clone();
@@ -64,25 +64,25 @@ impl<S: Space> Engine<S> {
                 None => Ok(p),
             }
         });
-        let places = gathered(scaled)?;
+        let indices = gathered(scaled)?;
         let largest = radii.iter().copied().fold(0.0, f64::max);
         let edges = self.cell.iter().flat_map(|cell| cell.edges[..S::DIMENSION].iter().map(|edge| edge.norm()));
         ok(edges.filter_map(|edge| cell_edge(edge, largest)).collect())?;
-        Ok(places)
+        Ok(indices)
     }
 
     /// A new wall: sound, in no ball deeper than a start may be.
     pub(super) fn admit_new_wall(&self, wall: &Wall<S>) -> Result<(), Faults> {
         let w = self.walls.len();
         check_wall(w, wall, self.cell.is_some())?;
-        let balls = (0..self.place.len()).map(|particle| (self.position(particle), self.radius(particle)));
+        let balls = (0..self.index.len()).map(|particle| (self.position(particle), self.radius(particle)));
         ok(wall_overlaps(w, wall, balls, self.settings.overlap_limit))
     }
 
     /// A wall that is there.
     pub(super) fn admit_wall(&self, w: usize) -> Result<(), Faults> {
         let fault = match self.walls.get(w) {
-            None => Fault::Missing { what: "wall", place: w, count: self.walls.len() },
+            None => Fault::Missing { what: "wall", index: w, count: self.walls.len() },
             Some(wall) if !wall.present => Fault::Removed { wall: w },
             Some(_) => return Ok(()),
         };
@@ -105,10 +105,10 @@ impl<S: Space> Engine<S> {
 }
 
 /// All of them, or all faults.
-fn gathered(places: impl Iterator<Item = Result<usize, Fault>>) -> Result<Vec<usize>, Faults> {
+fn gathered(indices: impl Iterator<Item = Result<usize, Fault>>) -> Result<Vec<usize>, Faults> {
     let (mut good, mut faults) = (Vec::new(), Vec::new());
-    for place in places {
-        match place {
+    for index in indices {
+        match index {
             Ok(p) => good.push(p),
             Err(fault) => faults.push(fault),
         }

@@ -1,6 +1,6 @@
 //! Many steps: marches between renewals of the contact list, and what can end a run.
 
-use super::march::{March, Notes, Orders, Outcome};
+use super::march::{March, Orders, Outcome, Shared};
 use super::{Ended, Engine, Watch};
 use crate::body::velocity;
 use crate::contact::{Break, Key, Other};
@@ -52,6 +52,11 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// Why the run failed.
     pub fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        S::advance(self, steps)
+    }
+
+    /// The loop itself, called by each space.
+    pub(crate) fn march_on(&mut self, steps: u64) -> Result<(), Failure> {
         let end = self.step.saturating_add(steps);
         while self.step < end {
             if self.stale {
@@ -70,7 +75,7 @@ impl<S: Space> Engine<S> {
 
     /// Makes up to `steps` steps on all threads, until the contact list may miss something.
     fn march(&mut self, steps: u64) -> Outcome<S> {
-        let notes = Notes::new(self);
+        let shared = Shared::new(self);
         let mut domains = std::mem::take(&mut self.domains);
         let mut records = std::mem::take(&mut self.records);
         let mut clumps = std::mem::take(&mut self.clumps);
@@ -86,7 +91,7 @@ impl<S: Space> Engine<S> {
             travelled: self.travelled,
             reach: self.margin,
             stride: STRIDE * self.smallest_radius,
-            notes: &notes,
+            shared: &shared,
         };
         let ranges: Vec<_> =
             domains.iter().map(|d| d.particles.start * S::RECORD..d.particles.end * S::RECORD).collect();

@@ -9,7 +9,7 @@
 
 use super::{Engine, Masses};
 use crate::body::position;
-use crate::law::{KN, REFERENCE, Rows};
+use crate::law::{KN, REFERENCE, RowIndex};
 use crate::space::{Space, Tuple, flat};
 
 /// Stiffness of one body along and about the axes.
@@ -83,7 +83,7 @@ impl<S: Space> Engine<S> {
     fn add_stiffness(&self, section: &crate::contact::Section, c: usize, bodies: &mut [Diagonal]) {
         let key = section.key(c);
         let gap = self.gap(key);
-        let kb = section.value::<S>(c, Rows::<S>::BOND);
+        let kb = section.value::<S>(c, RowIndex::<S>::BOND);
         // An interface that is open at its middle may still touch at its rim.
         if !section.joined::<S>(c) && gap >= section.value::<S>(c, REFERENCE) {
             return;

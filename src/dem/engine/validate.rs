@@ -269,7 +269,7 @@ fn table_faults<S: Space>(table: &ContactTable, meetings: &[(Group, Group)]) -> 
     faults
 }
 
-/// Told of a quantity, its value, whether that is right, and what it must be.
+/// Called with a quantity, its value, whether that is allowed, and the allowed range.
 type Check<'a> = &'a mut dyn FnMut(&'static str, f64, bool, &'static str);
 
 fn cement_faults(stiffness: BondStiffness, check: Check<'_>) {
@@ -384,16 +384,16 @@ fn interaction_faults(interaction: &Interaction, dimension: usize, check: Check<
 
 /// Starts too deep in one another, or with one centre, also across the faces of a cell.
 fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
-    let mut places: Vec<Vector<S>> = model.particles.iter().map(|p| p.position).collect();
-    let mut origins: Vec<usize> = (0..places.len()).collect();
+    let mut centres: Vec<Vector<S>> = model.particles.iter().map(|p| p.position).collect();
+    let mut origins: Vec<usize> = (0..centres.len()).collect();
     if let Some(cell) = model.settings.cell.as_ref().map(MovingCell::new) {
         let largest = model.particles.iter().map(|p| p.radius).fold(0.0, f64::max);
-        for (p, _, place) in cell.images_near(&places, 2.0 * largest) {
+        for (p, _, centre) in cell.images_near(&centres, 2.0 * largest) {
             origins.push(p);
-            places.push(place);
+            centres.push(centre);
         }
     }
-    let flat: Vec<[f64; 3]> = places.iter().map(|&x| flat::<S>(x)).collect();
+    let flat: Vec<[f64; 3]> = centres.iter().map(|&x| flat::<S>(x)).collect();
     let radii: Vec<f64> = origins.iter().map(|&p| model.particles[p].radius).collect();
     let bodies: Vec<u32> = origins.iter().map(|&p| body[p]).collect();
     let n = model.particles.len();
@@ -404,7 +404,7 @@ fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
         if i >= n || (j >= n && a > b) {
             return;
         }
-        let distance = places[j].minus(places[i]).norm();
+        let distance = centres[j].minus(centres[i]).norm();
         let overlap = (radii[i] + radii[j] - distance) / radii[i].min(radii[j]);
         if overlap > model.settings.overlap_limit || distance == 0.0 {
             faults.push(Fault::Overlap { a, b, overlap });
@@ -412,7 +412,7 @@ fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
     });
 }
 
-/// Balls, by place and radius, that start too deep in a wall.
+/// Balls, by position and radius, that start too deep in a wall.
 pub(super) fn wall_overlaps<S: Space>(
     wall: usize,
     face: &Wall<S>,

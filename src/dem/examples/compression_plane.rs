@@ -22,8 +22,8 @@ fn block(columns: usize, rows: usize) -> Vec<Particle<D2>> {
         let shift = if row.is_multiple_of(2) { 0.0 } else { RADIUS };
         [2.0 * RADIUS * column as f64 + shift, RADIUS + pitch * row as f64]
     };
-    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
-    places.map(|(row, column)| Particle::ball(centre(row, column), RADIUS, 2500.0, GRAIN)).collect()
+    let sites = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    sites.map(|(row, column)| Particle::ball(centre(row, column), RADIUS, 2500.0, GRAIN)).collect()
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,4 +1,4 @@
-//! The loose cloud that a packing grows from: radii scaled to a porosity, places at half size.
+//! The loose cloud that a packing grows from: radii scaled to a porosity, positions at half size.
 //!
 //! ```text
 //! m = R̄ / R̄₀ = ((1 − n) / (1 − n₀))^(1/d)                                               Su et al. 2021 eq. (5, 6)
@@ -29,7 +29,7 @@ pub fn scale_to_porosity<S: Space>(radii: &mut [f64], volume: f64, porosity: f64
     factor
 }
 
-/// Random centres for balls of half the given radii, inside `region` and without overlap. A ball that finds no place in
+/// Random centres for balls of half the given radii, inside `region` and without overlap. A ball that finds no position in
 /// a thousand tries is put at the last one tried; the relaxation moves it.
 pub fn scatter<S: Space>(radii: &[f64], region: &Region, stream: &mut Stream) -> Vec<Vector<S>> {
     let largest = radii.iter().copied().fold(0.0, f64::max);
@@ -51,7 +51,7 @@ pub fn scatter<S: Space>(radii: &[f64], region: &Region, stream: &mut Stream) ->
     centres
 }
 
-/// Bins of equal edges over the box around a region; balls are added one by one while places are looked for.
+/// Bins of equal edges over the box around a region; balls are added one by one while positions are sought.
 struct Bins {
     low: [f64; 3],
     side: f64,

@@ -129,8 +129,8 @@ mod tests {
         let (n, e) = (6, 0.01);
         let side = 2.0 * f64::from(n) * (1.0 - e);
         let step = side / f64::from(n);
-        let place = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
-        let centres = (0..n * n).map(|k| [place(k % n), place(k / n)]).collect();
+        let at = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
+        let centres = (0..n * n).map(|k| [at(k % n), at(k / n)]).collect();
         let heap =
             Heap::<D2> { region: Region::Rectangle { width: side, height: side }, centres, radii: vec![1.0; 36] };
         let fabric = Fabric::of(&heap);
@@ -149,8 +149,8 @@ mod tests {
         let (n, e) = (4, 0.01);
         let side = 2.0 * f64::from(n) * (1.0 - e);
         let step = side / f64::from(n);
-        let place = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
-        let centres = (0..n * n * n).map(|k| [place(k % n), place(k / n % n), place(k / n / n)]).collect();
+        let at = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
+        let centres = (0..n * n * n).map(|k| [at(k % n), at(k / n % n), at(k / n / n)]).collect();
         let region = Region::Box { width: side, height: side, depth: side };
         let heap = Heap::<D3> { region, centres, radii: vec![1.0; 64] };
         let fabric = Fabric::of(&heap);

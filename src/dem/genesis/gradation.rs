@@ -11,7 +11,7 @@
 //! * `Walraven`: the probability that a point of the section lies in a circle smaller than D when the solid follows
 //!   Fuller's curve, p = P_k (1.065 x^½ − 0.053 x⁴ − 0.012 x⁶ − 0.0045 x⁸ + 0.0025 x¹⁰), x = D / D_max; eq. (9).
 //!   The polynomial ends at 0.998 for x = 1, as published.
-//! * `Fuller`: p = P_k xⁿ taken as it stands for the plane, n = 0.5 by custom.
+//! * `Fuller`: p = P_k xⁿ applied unchanged to the plane, n = 0.5 by custom.
 //! * `Table`: passing at given sizes, straight lines in between; below the first size the line runs to the origin.
 //!
 //! Sizes in metres, fractions of the section's area. Valid for sizes in (0, D_max]; above D_max all passes.

@@ -1,7 +1,7 @@
 //! Groups of particles: minerals by their share of the volume.
 //!
 //! Balls are taken in random order, and each group takes the next ones until its share is full. So each share is met to
-//! the volume of one ball, and neither the place nor the size of a ball has a part in it.
+//! the volume of one ball, and it depends neither on the position nor on the size of a ball.
 
 use super::heap::ball_volume;
 use crate::particle::Group;
@@ -35,7 +35,7 @@ pub enum GroupError {
     /// Shares that do not make a whole.
     #[error("groups: the shares add up to {0}; they must add up to 1")]
     Sum(f64),
-    /// A name that stands twice.
+    /// A duplicate name.
     #[error("groups: `{0}` is the name of two groups")]
     Twice(String),
 }

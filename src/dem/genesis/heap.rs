@@ -58,10 +58,10 @@ const UNIT: Stiffness = Stiffness::Modulus { modulus: 1.0, ratio: 1.0, conventio
 impl<S: Space> Heap<S> {
     /// All pairs whose surfaces are nearer than `margin` (m), each once with the smaller index first, sorted.
     pub fn pairs(&self, margin: f64) -> Vec<(usize, usize)> {
-        let places: Vec<[f64; 3]> = self.centres.iter().map(|&x| flat::<S>(x)).collect();
+        let centres: Vec<[f64; 3]> = self.centres.iter().map(|&x| flat::<S>(x)).collect();
         let bodies: Vec<u32> = (0..self.radii.len() as u32).collect();
         let mut pairs = Vec::with_capacity(4 * self.radii.len());
-        neighbour::pairs(&places, &self.radii, &bodies, margin, |i, j| pairs.push((i as usize, j as usize)));
+        neighbour::pairs(&centres, &self.radii, &bodies, margin, |i, j| pairs.push((i as usize, j as usize)));
         pairs
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Distance of neighbours l = 2 R. The rows (or layers) lie across the axis of loading y; the lattice is centred.
 //!
-//! | lattice | dimension | repeat over l | places in it | contacts of a ball |
+//! | lattice | dimension | repeat over l | sites in it | contacts of a ball |
 //! |---|---|---|---|---|
 //! | square | 2 | 1 × 1 | 1 | 4 |
 //! | hexagonal | 2 | 1 × √3 | 2 | 6 |
@@ -47,7 +47,7 @@ impl Lattice {
         }
     }
 
-    /// Edges of one repeat over l, and the places in it over its edges.
+    /// Edges of one repeat over l, and the sites in it over its edges.
     fn repeat(self) -> ([f64; 3], &'static [[f64; 3]]) {
         const HALF: f64 = 0.5;
         match self {
@@ -62,8 +62,8 @@ impl Lattice {
 
     /// Distance of rows along the load over l.
     fn row(self) -> f64 {
-        let ([_, y, _], places) = self.repeat();
-        if places.len() > 1 { 0.5 * y } else { y }
+        let ([_, y, _], sites) = self.repeat();
+        if sites.len() > 1 { 0.5 * y } else { y }
     }
 
     /// The radius nearest to `radius` with which a whole number of rows fills `height` (m).
@@ -76,16 +76,16 @@ impl Lattice {
 
     /// About how many balls of `radius` (m) the region holds.
     pub fn count<S: Space>(self, region: &Region, radius: f64) -> f64 {
-        let (repeat, places) = self.repeat();
+        let (repeat, sites) = self.repeat();
         let cell: f64 = (0..S::DIMENSION).map(|k| 2.0 * radius * repeat[k]).product();
-        places.len() as f64 * region.volume() / cell
+        sites.len() as f64 * region.volume() / cell
     }
 
     /// The lattice of the balls that lie in `region`.
     pub fn fill<S: Space>(self, region: &Region, radius: f64) -> Heap<S> {
         let edges = region.edges();
         let radius = self.fitted_radius(radius, edges[1]);
-        let (repeat, places) = self.repeat();
+        let (repeat, sites) = self.repeat();
         let edge = repeat.map(|r| 2.0 * radius * r);
         // From the first row on the lower platen; across, whole distances from the middle of what fits.
         let start: [f64; 3] = std::array::from_fn(|k| match k {
@@ -100,9 +100,8 @@ impl Lattice {
             for y in 0..counts[1] {
                 for x in 0..counts[0] {
                     let cell = [x, y, z];
-                    let at =
-                        |place: &[f64; 3]| Vector::<S>::build(|k| start[k] + edge[k] * (cell[k] as f64 + place[k]));
-                    centres.extend(places.iter().map(at).filter(|&x| inside(x)));
+                    let at = |site: &[f64; 3]| Vector::<S>::build(|k| start[k] + edge[k] * (cell[k] as f64 + site[k]));
+                    centres.extend(sites.iter().map(at).filter(|&x| inside(x)));
                 }
             }
         }
@@ -110,7 +109,7 @@ impl Lattice {
         Heap { region: *region, centres, radii }
     }
 
-    /// Largest whole number of half repeats (whole ones where there is one place) in `room`.
+    /// Largest whole number of half repeats (whole ones where there is one site) in `room`.
     fn filled(self, room: f64, edge: f64) -> f64 {
         let step = if self.repeat().1.len() > 1 { 0.5 * edge } else { edge };
         step * (room / step * (1.0 + 1e-9)).floor().max(0.0)

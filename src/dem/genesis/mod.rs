@@ -5,7 +5,7 @@
 //! * [`packing`]: to a porosity, to a stress ([`compress`]) or as a [`lattice`]; [`fabric`]: its contacts and stress
 //! * [`groups`]: minerals by their share
 //! * [`gradation`]: how many particles of aggregate of each size; [`polygon`]: random convex outlines; [`placement`]: their
-//!   places without overlap; [`clump`]: balls inside a polygon as pebbles of a rigid body (plane only)
+//!   positions without overlap; [`clump`]: balls inside a polygon as pebbles of a rigid body (plane only)
 //! * [`network`]: fractures by their statistics
 //! * [`specimen`]: all of it put together; [`quality`]: the report on it
 

@@ -1,6 +1,6 @@
 //! A network of fractures by its statistics.
 //!
-//! * **Place**: uniform, in the box of the region widened by half the largest size on every side, so that the edges see what the
+//! * **Position**: uniform, in the box of the region widened by half the largest size on every side, so that the edges see what the
 //!   middle sees.
 //! * **Size** (length; diameter of the disc in space): density ∝ l^(−a) between two ends.
 //! * **Orientation**: in space Fisher's law about the mean normal, density ∝ exp(κ cos θ) (Fisher 1953,

@@ -1,7 +1,7 @@
 //! A packing of balls in a vessel: to a porosity, to a stress, or as a lattice.
 //!
 //! **To a porosity**, by radius expansion:
-//! 1. Number and radii as [`super::sizes`] says; balls placed at half size without overlap ([`super::cloud`]).
+//! 1. Number and radii by [`super::sizes`]; balls placed at half size without overlap ([`super::cloud`]).
 //! 2. Full size at once (m = 2), then the rest state without friction ([`super::relax`]): all stresses come from the
 //!    overlaps, and the walls being fixed the stress is isotropic up to the noise of the packing (reported).
 //! 3. Floaters (fewer than 3 contacts in the plane, 4 in the solid): each is enlarged in small steps and everything rescaled
@@ -29,6 +29,7 @@ use super::relax::Until;
 use super::sizes::{GivesWay, Sizes};
 use crate::Watch;
 use crate::space::{D2, Space, Tuple, Vector};
+use crate::words::{Number, Quantity};
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -104,7 +105,8 @@ pub enum PackingError {
     },
     /// Too few balls.
     #[error(
-        "packing: a mean radius of {mean_radius} m gives {count} balls in the specimen; at least 30 are needed, reduce it"
+        "packing: a mean radius of {} gives {count} balls in the specimen; at least 30 are needed, reduce it",
+        Quantity(*.mean_radius, "m")
     )]
     Few {
         /// Mean radius asked for (m).
@@ -114,8 +116,9 @@ pub enum PackingError {
     },
     /// Too many balls.
     #[error(
-        "packing: a mean radius of {mean_radius} m gives {count:.3e} balls in the specimen, which would take about {gigabytes:.0} GB \
-         of memory and {hours:.1} h to pack; at most {MOST_BALLS:e} are packed, enlarge the radius"
+        "packing: a mean radius of {} gives {count:.2e} balls in the specimen, which would take about {} GB of memory and \
+         {} h to pack; at most {MOST_BALLS:e} are packed, enlarge the radius",
+        Quantity(*.mean_radius, "m"), Number(*.gigabytes), Number(*.hours)
     )]
     Many {
         /// Mean radius asked for (m).
@@ -129,8 +132,9 @@ pub enum PackingError {
     },
     /// Balls too large for the vessel.
     #[error(
-        "packing: the largest ball has a diameter of {diameter:.3e} m and the specimen is {narrowest:.3e} m across; at most half of that fits, \
-         reduce the radius or the ratio of radii"
+        "packing: the largest ball has a diameter of {} and the specimen is {} across; at most half of that fits, \
+         reduce the radius or the ratio of radii",
+        Quantity(*.diameter, "m"), Quantity(*.narrowest, "m")
     )]
     Large {
         /// Largest diameter (m).
@@ -192,7 +196,8 @@ pub enum PackingError {
     },
     /// The stress was not reached.
     #[error(
-        "packing: the stress is {reached:.3e} Pa after {scalings} scalings of the radii, not {target:.3e} Pa; widen the tolerance"
+        "packing: the stress is {} after {scalings} scalings of the radii, not {}; widen the tolerance",
+        Quantity(*.reached, "Pa"), Quantity(*.target, "Pa")
     )]
     Unsettled {
         /// Stress asked for (Pa).
@@ -295,7 +300,7 @@ fn to_porosity<S: Space>(
     Packed { radius_factor, iterations: first.iterations, unbalanced: first.unbalanced, ..Packed::of(heap) }
 }
 
-/// Balls of full size at the places of the cloud, and the factor on their stated radii.
+/// Balls of full size at the positions of the cloud, and the factor on their stated radii.
 fn cloud<S: Space>(sizes: &Sizes, porosity: f64, region: &Region, stream: &mut Stream) -> (Heap<S>, f64) {
     let volume = region.volume();
     let mut radii = sizes.draw::<S>(sizes.count::<S>(volume, porosity) as usize, stream);
@@ -395,7 +400,7 @@ fn to_stress<S: Space>(
     })
 }
 
-/// Takes random balls out, or puts some of the law at random places, until there are `wanted`. New balls grow in steps,
+/// Takes random balls out, or puts some of the law at random positions, until there are `wanted`. New balls grow in steps,
 /// so that none is squeezed through its neighbours or a wall.
 fn recount<S: Space>(heap: &mut Heap<S>, sizes: &Sizes, wanted: usize, stream: &mut Stream, watch: &dyn Fn() -> Watch) {
     let count = heap.radii.len();

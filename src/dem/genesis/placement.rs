@@ -1,9 +1,9 @@
 //! Aggregate placed in a region: largest first, at random, without overlap.
 //!
-//! Each polygon is drawn once and then tried at uniformly random places until it lies inside the region with its gap
+//! Each polygon is drawn once and then tried at uniformly random positions until it lies inside the region with its gap
 //! to the walls and to every polygon placed before. Random sequential placement jams near an area fraction of one
 //! half for equal convex shapes, so contents beyond about 0.45 of enclosing circles need smaller gaps or a settled
-//! packing; the error says how far it came.
+//! packing; the error says how many were placed.
 //!
 //! Lengths in metres.
 
@@ -46,7 +46,7 @@ pub struct Placement {
     placed + 1, size * 1e3, area_fraction * 100.0, gap * 1e3, wall_gap * 1e3
 )]
 pub struct DoesNotFit {
-    /// Diameter of the particle that found no place (m).
+    /// Diameter of the particle that found no position (m).
     pub size: f64,
     /// Particles placed before it.
     pub placed: usize,
@@ -65,7 +65,7 @@ pub struct DoesNotFit {
 /// Polygons of all `classes` placed in `region`, largest size first.
 ///
 /// # Errors
-/// [`DoesNotFit`] with the first particle that found no place.
+/// [`DoesNotFit`] with the first particle that found no position.
 pub fn place(
     classes: &[SizeClass],
     recipe: &PolygonRecipe,

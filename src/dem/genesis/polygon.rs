@@ -1,6 +1,6 @@
 //! Convex polygons as the outline of aggregate.
 //!
-//! Points are put on a circle and joined in order, so the polygon is convex whatever the points:
+//! Points are put on a circle and joined in order, so the polygon is convex for all points:
 //!
 //! ```text
 //! N   = round(N_min + u (N_max − N_min)),  u uniform in [0, 1)                             Su et al. 2021 eq. (7)

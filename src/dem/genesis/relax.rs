@@ -31,7 +31,7 @@ pub struct Until {
     /// Mean unbalanced force over the mean contact force.
     pub unbalanced: f64,
     /// Mean contact force, in units of the stiffness between mean balls (m), below which the heap hangs together by nothing:
-    /// without stress all forces vanish together and their ratio says nothing.
+    /// without stress all forces vanish together and their ratio means nothing.
     pub slack: f64,
     /// Iterations at most.
     pub iterations: usize,
@@ -62,7 +62,7 @@ const UNANSWERED: f64 = 0.1;
 
 impl<S: Space> Heap<S> {
     /// Moves the centres to a minimum of the overlap energy: until the mean unbalanced force is below the limit, or no
-    /// ball overlaps anything, or the iterations are spent, or `watch` says stop.
+    /// ball overlaps anything, or the iterations are spent, or `watch` stops it.
     pub fn relax(&mut self, until: Until, watch: &dyn Fn() -> Watch) -> Rest {
         self.relax_swelling(until, Swelling { balls: &[], pushes: &[] }, watch)
     }

@@ -8,7 +8,7 @@
 //! | uniform by number | a + (b − a) u |
 //! | uniform by volume: equal volumes in equal steps of R, number density ∝ R⁻ᵈ | (a^(1−d) − u (a^(1−d) − b^(1−d)))^(1/(1−d)) |
 //! | log-normal, cut at its median times ρ^±½ | exp(s z), s² = ln(1 + c²), c deviation over mean before the cut |
-//! | sieve curve | uniform by volume between neighbouring sieves, which hold the masses that the curve says |
+//! | sieve curve | uniform by volume between neighbouring sieves, with the masses of the curve |
 //! | classes | stated radii in stated numbers |
 //!
 //! Number of balls at the porosity n in the volume Ω:
@@ -49,14 +49,14 @@ pub enum SizeLaw {
         /// Standard deviation over mean before the cut.
         deviation: f64,
     },
-    /// Mass that passes each sieve; sizes are as they stand.
+    /// Mass that passes each sieve; sizes are not scaled.
     Sieve {
         /// Increasing diameters (m).
         diameters: Vec<f64>,
         /// Share of the mass below each diameter, from 0 to 1.
         passing: Vec<f64>,
     },
-    /// Radii in given numbers; sizes are as they stand.
+    /// Radii in given numbers; sizes are not scaled.
     Classes {
         /// Radii (m).
         radii: Vec<f64>,

@@ -4,9 +4,9 @@
 //! centres lie in a polygon become the pebbles of its clump. So the grain of the aggregate's surface is that of the mortar,
 //! and no ball is squeezed against a smooth face. N of eq. (4) counts balls before clumps.
 //!
-//! The specimen is **stress-free**: whatever is built on it takes the gaps of the packing as reference gaps, so that
+//! The specimen is **stress-free**: a test on it takes the gaps of the packing as reference gaps, so that
 //! the overlaps of the packing (their mean stress is in the report) carry no load. No load is locked in, and nothing
-//! has to relax when the vessel is taken away.
+//! has to relax when the vessel is removed.
 //!
 //! Seeds: aggregate, packing and groups have streams of their own, so another polygon recipe keeps the packing.
 
@@ -22,6 +22,7 @@ use super::region::Region;
 use crate::Watch;
 use crate::particle::Group;
 use crate::space::{D2, Space, Vector, flat};
+use crate::words::Quantity;
 use math::random::Stream;
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +35,7 @@ pub struct Aggregate {
     pub classes: Vec<f64>,
     /// Shapes.
     pub polygons: PolygonRecipe,
-    /// Places.
+    /// Positions.
     pub placement: Placement,
     /// Density (kg/m³).
     pub density: f64,
@@ -59,7 +60,7 @@ pub struct Recipe {
     pub aggregate: Option<Aggregate>,
 }
 
-/// A specimen, stress-free as it stands.
+/// A specimen, free of stress.
 #[derive(Clone, Debug)]
 pub struct Specimen<S: Space = D2> {
     /// Outline; the origin is its centre.
@@ -124,7 +125,8 @@ pub enum SpecimenError {
     },
     /// Aggregate larger than the specimen.
     #[error(
-        "aggregate: particles of {size:.3e} m with {gap:.3e} m to the walls do not fit into a specimen {narrowest:.3e} m across"
+        "aggregate: particles of {} with {} to the walls do not fit into a specimen {} across",
+        Quantity(*.size, "m"), Quantity(*.gap, "m"), Quantity(*.narrowest, "m")
     )]
     LargeAggregate {
         /// Largest diameter (m).
@@ -135,7 +137,7 @@ pub enum SpecimenError {
         narrowest: f64,
     },
     /// More polygons than can be placed.
-    #[error("aggregate: {0:.3e} particles are too many; at most {MOST_POLYGONS:e} are placed: take larger sizes")]
+    #[error("aggregate: {0:.2e} particles are too many; at most {MOST_POLYGONS:e} are placed: take larger sizes")]
     ManyAggregate(f64),
 }
 
@@ -288,7 +290,7 @@ fn solid<S: Space>(clump: Clump) -> Clump<S> {
 }
 
 impl<S: Space> Specimen<S> {
-    /// The clump of every ball, none for the others.
+    /// The clump of every ball that is in one.
     pub fn clump_of_balls(&self) -> Vec<Option<usize>> {
         clump_of_balls(self.radii.len(), &self.clumps)
     }

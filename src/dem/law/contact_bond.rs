@@ -1,13 +1,13 @@
 //! Contact bond: the linear spring pulls too and does not slip, until F_n (tension) > T_F or |F_s| > S_F.
 //!
-//! PFC `linearcbond`. Broken in tension the contact carries nothing; broken in shear it keeps what friction allows
+//! PFC `linearcbond`. Broken in tension the contact carries nothing; broken in shear it carries what friction allows
 //! (PFC 3), or drops its shear force (present PFC) when the class says so. No moment. The bond is in force where its
 //! tensile capacity is finite.
 
 use super::linear::{followed, slip_energy};
 use super::{
-    BROKEN, Broken, Constants, DASHPOT, KN, Law, Layout, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear,
-    store_shear,
+    Account, BROKEN, Broken, Constants, DASHPOT, KN, Law, Layout, REFERENCE, RowIndex, SHEAR, SLIP, Viscous,
+    load_shear, store_shear,
 };
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple};
@@ -18,7 +18,7 @@ pub(crate) struct ContactBondLaw;
 impl<S: Space> Law<S> for ContactBondLaw {
     #[inline(always)]
     fn rows(_layout: &Layout) -> usize {
-        Rows::<S>::BOND
+        RowIndex::<S>::BOND
     }
 
     #[inline(always)]
@@ -28,11 +28,11 @@ impl<S: Space> Law<S> for ContactBondLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
         let (zero, infinite) = (L::splat(0.0), L::splat(f64::INFINITY));
         let kn = L::load(&rows[KN], at);
-        let capacity = [L::load(&rows[Rows::<S>::TENSION], at), L::load(&rows[Rows::<S>::COHESION], at)];
+        let capacity = [L::load(&rows[RowIndex::<S>::TENSION], at), L::load(&rows[RowIndex::<S>::COHESION], at)];
         let before = infinite.above(capacity[0]);
         let reference = L::load(&rows[REFERENCE], at);
         let overlap = reference - touch.gap;
@@ -57,7 +57,7 @@ impl<S: Space> Law<S> for ContactBondLaw {
             let held = L::select(broken, free, reference);
             L::select(before, held, free).store(&mut rows[REFERENCE], at);
         }
-        if ledger.open() {
+        if account.open() {
             // A break spends the pull of the spring and the shear force that is not kept; a slip what friction takes.
             let pull = (-elastic).max(zero);
             let half = L::splat(0.5);
@@ -65,12 +65,12 @@ impl<S: Space> Law<S> for ContactBondLaw {
             let lost = half * (trial.dot(trial) - shear.dot(shear)) / floor(ks);
             let broke = L::select(broken, half * pull * pull / floor(kn) + lost, zero);
             let slip = slip_energy::<S, L>(old, trial, shear, ks);
-            ledger.charge(BROKEN, at, broke);
-            ledger.charge(SLIP, at, L::select(broken, zero, slip));
+            account.charge(BROKEN, at, broke);
+            account.charge(SLIP, at, L::select(broken, zero, slip));
         }
         let breaks = (L::bits(broken) != 0).then(|| {
-            L::select(broken, infinite, capacity[0]).store(&mut rows[Rows::<S>::TENSION], at);
-            L::select(broken, infinite, capacity[1]).store(&mut rows[Rows::<S>::COHESION], at);
+            L::select(broken, infinite, capacity[0]).store(&mut rows[RowIndex::<S>::TENSION], at);
+            L::select(broken, infinite, capacity[1]).store(&mut rows[RowIndex::<S>::COHESION], at);
             Broken { tension, shear: sheared }
         });
         let mut load = Load::<S, L> { normal: -compression, shear, twist: zero, bend: S::Shear::<L>::zero() };
@@ -82,8 +82,8 @@ impl<S: Space> Law<S> for ContactBondLaw {
             let shear = touch.slide.times(active * viscous.shear);
             load.normal = load.normal + normal;
             load.shear = load.shear.plus(shear);
-            if ledger.open() {
-                ledger.charge(DASHPOT, at, normal * touch.opening + shear.dot(touch.slide));
+            if account.open() {
+                account.charge(DASHPOT, at, normal * touch.opening + shear.dot(touch.slide));
             }
         }
         (load, breaks)

@@ -1,8 +1,8 @@
 //! Flat joint: two flat faces instead of a point of contact (Potyondy 2012, ARMA 12-501; PFC `flatjoint`).
 //!
-//! Between two grains stands an interface of radius R = λ min(R₁, R₂): a strip 2R wide in the plane, a disc in space. It is
+//! Between two grains is an interface of radius R = λ min(R₁, R₂): a strip 2R wide in the plane, a disc in space. It is
 //! divided into N elements of equal area A/N, each with its own state. With u the opening of the faces since they
-//! were made, g₀ the gap that they were made with, ψ the slope of one face against the other and r the place of an element:
+//! were made, g₀ the gap that they were made with, ψ the slope of one face against the other and r the position of an element:
 //!
 //! * gap g = g₀ + u + ψ·r; u is absolute, from the distance of the grains, and ψ the sum of the bending rotations;
 //! * bonded: F = k_n (A/N) g, tension positive; the shear force adds k_s (A/N) Δ_s at r, twist included;
@@ -17,7 +17,9 @@
 //! There is no linear spring beside the interface. A contact that never had one is linear.
 
 use super::linear::spring;
-use super::{BROKEN, Broken, Constants, KN, Law, Ledger, Memory, Piece, Rows, SLIP, Viscous, load_shear, store_shear};
+use super::{
+    Account, BROKEN, Broken, Constants, KN, Law, Memory, Piece, RowIndex, SLIP, Viscous, load_shear, store_shear,
+};
 use crate::interaction::Division;
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple, Vector};
@@ -78,7 +80,7 @@ struct Own<S>(std::marker::PhantomData<S>);
 
 impl<S: Space> Own<S> {
     /// Gap of the grains at which the faces touch, m.
-    const ORIGIN: usize = Rows::<S>::COUNT;
+    const ORIGIN: usize = RowIndex::<S>::COUNT;
     /// First row of the slope ψ.
     const SLOPE: usize = Self::ORIGIN + 1;
     /// First row of the frame t₁ (space only).
@@ -119,11 +121,11 @@ pub(crate) fn join<S: Space>(
     let holds = if capacity.is_some() { HOLDS } else { FREE };
     let [tension, cohesion] = capacity.unwrap_or([f64::INFINITY; 2]);
     memory[KN] = 0.0;
-    memory[Rows::<S>::TENSION] = tension;
-    memory[Rows::<S>::COHESION] = cohesion;
-    memory[Rows::<S>::BOND] = stiffness;
-    memory.tail = (Rows::<S>::COUNT..rows::<S>(layout.count)).map(idle::<S>).collect();
-    let first = Rows::<S>::COUNT;
+    memory[RowIndex::<S>::TENSION] = tension;
+    memory[RowIndex::<S>::COHESION] = cohesion;
+    memory[RowIndex::<S>::BOND] = stiffness;
+    memory.tail = (RowIndex::<S>::COUNT..rows::<S>(layout.count)).map(idle::<S>).collect();
+    let first = RowIndex::<S>::COUNT;
     memory.tail[Own::<S>::ORIGIN - first] = origin;
     if S::DIMENSION == 3 {
         // Across the axis that is furthest from the normal.
@@ -159,11 +161,11 @@ pub struct Interface {
 impl Interface {
     /// Reads the interface of a contact from its memory; nothing if it has none.
     pub(crate) fn read<S: Space>(memory: &Memory, constants: &Constants, gap: f64, radius: f64) -> Option<Self> {
-        let stiffness = memory[Rows::<S>::BOND];
+        let stiffness = memory[RowIndex::<S>::BOND];
         if stiffness == 0.0 || memory.tail.is_empty() {
             return None;
         }
-        let (layout, first) = (&constants.layout, Rows::<S>::COUNT);
+        let (layout, first) = (&constants.layout, RowIndex::<S>::COUNT);
         let n = f64::from(layout.count);
         let shear_stiffness = stiffness / n * constants.bond_share;
         let opening = gap - memory.tail[Own::<S>::ORIGIN - first];
@@ -269,7 +271,7 @@ fn limited<S: Space, L: Lane>(shear: [L; 2], limit: L) -> [L; 2] {
 }
 
 impl<L: Lane> Faces<L> {
-    /// Lets one element answer; adds to the sums and says which broke.
+    /// Computes the response of one element; adds it to the sums and returns whether it broke.
     #[inline(always)]
     fn element<S: Space>(
         &self,
@@ -277,7 +279,7 @@ impl<L: Lane> Faces<L> {
         arm: [f64; 2],
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
         sums: &mut Sums<L>,
     ) -> Option<Broken<L>> {
         let (zero, infinite, solid) = (L::splat(0.0), L::splat(f64::INFINITY), S::DIMENSION == 3);
@@ -309,8 +311,8 @@ impl<L: Lane> Faces<L> {
             let limit = L::splat(constants.friction) * (-normal).max(zero);
             let held = limited::<S, L>(trial, limit);
             shear = [0, 1].map(|k| L::select(after, trial[k], held[k]));
-            if ledger.open() {
-                self.charge([old, trial, shear], [before, broken], gap, half, at, ledger);
+            if account.open() {
+                self.charge([old, trial, shear], [before, broken], gap, half, at, account);
             }
         }
         shear[0].store(&mut rows[1], at);
@@ -331,7 +333,7 @@ impl<L: Lane> Faces<L> {
         })
     }
 
-    /// Books what a slip or a break spent; shear forces: before, unlimited, now.
+    /// EnergySums what a slip or a break spent; shear forces: before, unlimited, now.
     #[inline(always)]
     fn charge(
         &self,
@@ -340,17 +342,17 @@ impl<L: Lane> Faces<L> {
         gap: L,
         half: L,
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) {
         let zero = L::splat(0.0);
         let floor = |x: L| x.max(L::splat(f64::MIN_POSITIVE));
         let lost = trial.minus(now);
         let slip = L::splat(0.5) * old.plus(now).dot(lost) / floor(self.ks);
-        ledger.charge(SLIP, at, L::select(before, zero, slip));
+        account.charge(SLIP, at, L::select(before, zero, slip));
         let swing = half * self.tilt[0].abs();
         let normal = self.kn * (square(gap, swing, true) - square(gap, swing, false));
         let shear = L::splat(0.5) * (trial.dot(trial) - now.dot(now)) / floor(self.ks);
-        ledger.charge(BROKEN, at, L::select(broken, normal + shear, zero));
+        account.charge(BROKEN, at, L::select(broken, normal + shear, zero));
     }
 }
 
@@ -363,7 +365,7 @@ impl<S: Space> Law<S> for FlatJointLaw {
     #[inline(always)]
     fn stiffness<L: Lane>(rows: &[Row], at: usize) -> L {
         // One of the two is 0.
-        L::load(&rows[KN], at) + L::load(&rows[Rows::<S>::BOND], at)
+        L::load(&rows[KN], at) + L::load(&rows[RowIndex::<S>::BOND], at)
     }
 
     fn pieces(constants: &Constants, rows: &mut [Row], lane: usize, _tensile: bool, mut put: impl FnMut(Piece)) {
@@ -380,8 +382,8 @@ impl<S: Space> Law<S> for FlatJointLaw {
             whole |= *state == HOLDS;
         }
         if !whole {
-            rows[Rows::<S>::TENSION].0[lane] = f64::INFINITY;
-            rows[Rows::<S>::COHESION].0[lane] = f64::INFINITY;
+            rows[RowIndex::<S>::TENSION].0[lane] = f64::INFINITY;
+            rows[RowIndex::<S>::COHESION].0[lane] = f64::INFINITY;
         }
     }
 
@@ -392,9 +394,9 @@ impl<S: Space> Law<S> for FlatJointLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
-        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, ledger);
+        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, account);
         let zero = L::splat(0.0);
         let (solid, share) = (S::DIMENSION == 3, L::splat(1.0 / f64::from(constants.layout.count)));
         let radius = L::splat(constants.multiplier) * touch.radius;
@@ -409,7 +411,7 @@ impl<S: Space> Law<S> for FlatJointLaw {
             slope[k] = L::load(&rows[Own::<S>::SLOPE + k], at) + steeper[k];
             slope[k].store(&mut rows[Own::<S>::SLOPE + k], at);
         }
-        let kn = L::load(&rows[Rows::<S>::BOND], at) * share;
+        let kn = L::load(&rows[RowIndex::<S>::BOND], at) * share;
         let faces = Faces {
             opening: touch.gap - L::load(&rows[Own::<S>::ORIGIN], at),
             tilt: slope.times(radius),
@@ -417,13 +419,13 @@ impl<S: Space> Law<S> for FlatJointLaw {
             twist: touch.twist * radius,
             kn,
             ks: kn * L::splat(constants.bond_share),
-            capacity: [Rows::<S>::TENSION, Rows::<S>::COHESION].map(|row| L::load(&rows[row], at) * share),
+            capacity: [RowIndex::<S>::TENSION, RowIndex::<S>::COHESION].map(|row| L::load(&rows[row], at) * share),
         };
         let mut sums = Sums { normal: zero, shear: [zero; 2], moments: [zero; 2], twist: zero };
         let mut breaks: Option<Broken<L>> = None;
         let elements = rows[Own::<S>::ELEMENTS..].chunks_exact_mut(Own::<S>::STRIDE);
         for (element, arm) in elements.zip(&constants.layout.arms) {
-            let broken = faces.element::<S>(constants, *arm, element, at, ledger, &mut sums);
+            let broken = faces.element::<S>(constants, *arm, element, at, account, &mut sums);
             breaks = match (breaks, broken) {
                 (Some(a), Some(b)) => {
                     Some(Broken { tension: L::or(a.tension, b.tension), shear: L::or(a.shear, b.shear) })
@@ -434,11 +436,11 @@ impl<S: Space> Law<S> for FlatJointLaw {
         let shear = S::raised(sums.shear, frame, touch.normal);
         let bend = S::bend(sums.moments.times(radius), frame, touch.normal);
         let twist = sums.twist * radius;
-        sums.normal.store(&mut rows[Rows::<S>::BOND_NORMAL], at);
-        store_shear::<S, L>(rows, Rows::<S>::BOND_SHEAR, at, shear);
-        store_shear::<S, L>(rows, Rows::<S>::BOND_BEND, at, bend);
+        sums.normal.store(&mut rows[RowIndex::<S>::BOND_NORMAL], at);
+        store_shear::<S, L>(rows, RowIndex::<S>::BOND_SHEAR, at, shear);
+        store_shear::<S, L>(rows, RowIndex::<S>::BOND_BEND, at, bend);
         if solid {
-            twist.store(&mut rows[Rows::<S>::BOND_TWIST], at);
+            twist.store(&mut rows[RowIndex::<S>::BOND_TWIST], at);
         }
         let load = Load { normal: sums.normal - compression, shear: spring_shear.plus(shear), twist, bend };
         (load, breaks)

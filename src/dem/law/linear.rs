@@ -7,7 +7,8 @@
 //! displacement of j's surface relative to i's, F_s acts on i.
 
 use super::{
-    Broken, Constants, DASHPOT, KN, Law, Layout, Ledger, REFERENCE, Rows, SHEAR, SLIP, Viscous, load_shear, store_shear,
+    Account, Broken, Constants, DASHPOT, KN, Law, Layout, REFERENCE, RowIndex, SHEAR, SLIP, Viscous, load_shear,
+    store_shear,
 };
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple};
@@ -23,7 +24,7 @@ pub(crate) fn spring<S: Space, L: Lane>(
     viscous: Option<Viscous<L>>,
     rows: &mut [Row],
     at: usize,
-    ledger: &mut Ledger<'_>,
+    account: &mut Account<'_>,
 ) -> (L, S::Shear<L>) {
     let zero = L::splat(0.0);
     let kn = L::load(&rows[KN], at);
@@ -39,8 +40,8 @@ pub(crate) fn spring<S: Space, L: Lane>(
     let trial = old.plus(touch.slide.times(ks));
     let shear = S::limited(trial, limit);
     store_shear::<S, L>(rows, SHEAR, at, shear);
-    if ledger.open() {
-        charge_slip::<S, L>(old, trial, shear, ks, ledger, at);
+    if account.open() {
+        charge_slip::<S, L>(old, trial, shear, ks, account, at);
     }
     let Some(viscous) = viscous else { return (compression, shear) };
     let touching = overlap.above(zero);
@@ -48,9 +49,9 @@ pub(crate) fn spring<S: Space, L: Lane>(
     let damped = if constants.tensile_dashpot { damped } else { damped.max(zero) };
     let slipping = trial.norm().above(limit);
     let drag = touch.slide.times(L::select(slipping, zero, L::select(touching, viscous.shear, zero)));
-    if ledger.open() {
+    if account.open() {
         let normal = (compression - L::select(touching, damped, zero)) * touch.opening;
-        ledger.charge(DASHPOT, at, normal + drag.dot(touch.slide));
+        account.charge(DASHPOT, at, normal + drag.dot(touch.slide));
     }
     (L::select(touching, damped, zero), shear.plus(drag))
 }
@@ -70,27 +71,27 @@ pub(crate) fn slip_energy<S: Space, L: Lane>(old: S::Shear<L>, trial: S::Shear<L
     L::splat(0.5) * old.plus(new).dot(slip) / ks.max(L::splat(f64::MIN_POSITIVE))
 }
 
-/// Books the friction work where there is any: most contacts stick in most steps.
+/// EnergySums the friction work where there is any: most contacts stick in most steps.
 #[inline(always)]
 fn charge_slip<S: Space, L: Lane>(
     old: S::Shear<L>,
     trial: S::Shear<L>,
     new: S::Shear<L>,
     ks: L,
-    ledger: &mut Ledger<'_>,
+    account: &mut Account<'_>,
     at: usize,
 ) {
     let work = old.plus(new).dot(trial.minus(new));
     let none = L::splat(f64::from_bits(1)).above(work.abs());
     if L::bits(none) != L::ALL {
-        ledger.charge(SLIP, at, slip_energy::<S, L>(old, trial, new, ks));
+        account.charge(SLIP, at, slip_energy::<S, L>(old, trial, new, ks));
     }
 }
 
 impl<S: Space> Law<S> for LinearLaw {
     #[inline(always)]
     fn rows(_layout: &Layout) -> usize {
-        Rows::<S>::TENSION
+        RowIndex::<S>::TENSION
     }
 
     #[inline(always)]
@@ -100,9 +101,9 @@ impl<S: Space> Law<S> for LinearLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
-        let (compression, shear) = spring(constants, touch, viscous, rows, at, ledger);
+        let (compression, shear) = spring(constants, touch, viscous, rows, at, account);
         let zero = L::splat(0.0);
         (Load { normal: -compression, shear, twist: zero, bend: S::Shear::<L>::zero() }, None)
     }

@@ -1,20 +1,20 @@
-//! The rows of one contact outside its block, as they stand while a list is written anew.
+//! The rows of one contact outside its block, while a list is written anew.
 
-use super::Rows;
+use super::RowIndex;
 use crate::space::{D3, Space};
 use std::ops::{Deref, DerefMut};
 
-/// Rows of one contact: those that all laws share, and after them those of the elements of a flat joint. A law with fewer
+/// RowIndex of one contact: those that all laws share, and after them those of the elements of a flat joint. A law with fewer
 /// rows has the first ones.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Memory {
     rows: [f64; LONGEST],
-    /// Rows from [`Rows::COUNT`] on; empty unless the contact is a flat joint.
+    /// RowIndex from [`RowIndex::COUNT`] on; empty unless the contact is a flat joint.
     pub(crate) tail: Vec<f64>,
 }
 
 /// Shared rows in the space that has most.
-const LONGEST: usize = Rows::<D3>::COUNT;
+const LONGEST: usize = RowIndex::<D3>::COUNT;
 
 impl Deref for Memory {
     type Target = [f64; LONGEST];
@@ -39,13 +39,13 @@ pub(crate) fn fresh<S: Space>() -> Memory {
 
 /// Takes the bond out of a contact's memory.
 pub(crate) fn unbond<S: Space>(memory: &mut Memory) {
-    memory[Rows::<S>::TENSION..].fill(0.0);
-    memory[Rows::<S>::TENSION] = f64::INFINITY;
-    memory[Rows::<S>::COHESION] = f64::INFINITY;
+    memory[RowIndex::<S>::TENSION..].fill(0.0);
+    memory[RowIndex::<S>::TENSION] = f64::INFINITY;
+    memory[RowIndex::<S>::COHESION] = f64::INFINITY;
     memory.tail.clear();
 }
 
 /// Whether a contact's memory holds a bond.
 pub(crate) fn bonded<S: Space>(memory: &Memory) -> bool {
-    memory[Rows::<S>::TENSION] < f64::INFINITY
+    memory[RowIndex::<S>::TENSION] < f64::INFINITY
 }

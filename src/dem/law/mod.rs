@@ -29,10 +29,10 @@ pub(crate) const REFERENCE: usize = 1;
 /// First row of the shear force of the linear spring, N.
 pub(crate) const SHEAR: usize = 2;
 
-/// Places of the other rows, which depend on the space.
-pub(crate) struct Rows<S>(std::marker::PhantomData<S>);
+/// Indices of the other rows, which depend on the space.
+pub(crate) struct RowIndex<S>(std::marker::PhantomData<S>);
 
-impl<S: Space> Rows<S> {
+impl<S: Space> RowIndex<S> {
     /// Tensile capacity σ_c A (∞ where nothing is bonded), N.
     pub(crate) const TENSION: usize = SHEAR + S::SHEAR;
     /// Shear capacity c A (∞ where nothing is bonded), N.
@@ -163,11 +163,11 @@ pub(crate) struct Broken<L: Lane> {
     pub(crate) shear: L::Mask,
 }
 
-/// What contacts have spent, if a run keeps the books: rows of a block in J.
-pub(crate) struct Ledger<'a>(pub(crate) Option<&'a mut [Row]>);
+/// What contacts have spent, if a run tracks its energy: rows of a block in J.
+pub(crate) struct Account<'a>(pub(crate) Option<&'a mut [Row]>);
 
-/// Rows of a block's ledger.
-pub(crate) const LEDGER: usize = 4;
+/// Rows of a block's account.
+pub(crate) const ENERGIES: usize = 4;
 /// Friction.
 pub(crate) const SLIP: usize = 0;
 /// Dashpots.
@@ -177,8 +177,8 @@ pub(crate) const BROKEN: usize = 2;
 /// Work of a moving wall.
 pub(crate) const BOUNDARY: usize = 3;
 
-impl Ledger<'_> {
-    /// Whether anybody keeps the books.
+impl Account<'_> {
+    /// Whether the run tracks its energy.
     #[inline(always)]
     pub(crate) fn open(&self) -> bool {
         self.0.is_some()
@@ -205,7 +205,7 @@ pub(crate) trait Law<S: Space> {
     }
 
     /// Calls `put` with every piece of contact `lane` that broke in this step, in a lane of which [`respond`](Self::respond)
-    /// said that something broke; `tensile` is what it said of this contact. A bond breaks in one piece.
+    /// reported a break; `tensile` is its report on this contact. A bond breaks in one piece.
     fn pieces(_constants: &Constants, _rows: &mut [Row], _lane: usize, tensile: bool, mut put: impl FnMut(Piece)) {
         put(Piece { tensile, ..Piece::default() });
     }
@@ -217,7 +217,7 @@ pub(crate) trait Law<S: Space> {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>);
 }
 

@@ -8,7 +8,7 @@
 //! (both sides multiplied by A). A broken bond vanishes at once; the linear contact stays.
 
 use super::linear::spring;
-use super::{BROKEN, Broken, Constants, Law, Layout, Ledger, Rows, Viscous, load_shear, store_shear};
+use super::{Account, BROKEN, Broken, Constants, Law, Layout, RowIndex, Viscous, load_shear, store_shear};
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple};
 
@@ -32,20 +32,20 @@ impl<S: Space, L: Lane> Cement<S, L> {
     fn load(rows: &[Row], at: usize) -> Self {
         let solid = S::DIMENSION == 3;
         Self {
-            normal: L::load(&rows[Rows::<S>::BOND_NORMAL], at),
-            shear: load_shear::<S, L>(rows, Rows::<S>::BOND_SHEAR, at),
-            bend: load_shear::<S, L>(rows, Rows::<S>::BOND_BEND, at),
-            twist: if solid { L::load(&rows[Rows::<S>::BOND_TWIST], at) } else { L::splat(0.0) },
+            normal: L::load(&rows[RowIndex::<S>::BOND_NORMAL], at),
+            shear: load_shear::<S, L>(rows, RowIndex::<S>::BOND_SHEAR, at),
+            bend: load_shear::<S, L>(rows, RowIndex::<S>::BOND_BEND, at),
+            twist: if solid { L::load(&rows[RowIndex::<S>::BOND_TWIST], at) } else { L::splat(0.0) },
         }
     }
 
     #[inline(always)]
     fn store(self, rows: &mut [Row], at: usize) {
-        self.normal.store(&mut rows[Rows::<S>::BOND_NORMAL], at);
-        store_shear::<S, L>(rows, Rows::<S>::BOND_SHEAR, at, self.shear);
-        store_shear::<S, L>(rows, Rows::<S>::BOND_BEND, at, self.bend);
+        self.normal.store(&mut rows[RowIndex::<S>::BOND_NORMAL], at);
+        store_shear::<S, L>(rows, RowIndex::<S>::BOND_SHEAR, at, self.shear);
+        store_shear::<S, L>(rows, RowIndex::<S>::BOND_BEND, at, self.bend);
         if S::DIMENSION == 3 {
-            self.twist.store(&mut rows[Rows::<S>::BOND_TWIST], at);
+            self.twist.store(&mut rows[RowIndex::<S>::BOND_TWIST], at);
         }
     }
 
@@ -109,7 +109,7 @@ impl<S: Space, L: Lane> Cement<S, L> {
 impl<S: Space> Law<S> for ParallelBondLaw {
     #[inline(always)]
     fn rows(_layout: &Layout) -> usize {
-        Rows::<S>::COUNT
+        RowIndex::<S>::COUNT
     }
 
     #[inline(always)]
@@ -119,11 +119,11 @@ impl<S: Space> Law<S> for ParallelBondLaw {
         viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
-        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, ledger);
+        let (compression, spring_shear) = spring(constants, touch, viscous, rows, at, account);
         let radius = L::splat(constants.multiplier) * touch.radius;
-        let k = L::load(&rows[Rows::<S>::BOND], at);
+        let k = L::load(&rows[RowIndex::<S>::BOND], at);
         let ks = k * L::splat(constants.bond_share);
         let gyration = L::splat(S::GYRATION) * (radius * radius);
         let old = Cement::<S, L>::load(rows, at);
@@ -133,7 +133,7 @@ impl<S: Space> Law<S> for ParallelBondLaw {
             bend: S::turned(old.bend, touch).plus(touch.bend.times(k * gyration)),
             twist: old.twist + ks * gyration * L::splat(2.0) * touch.twist,
         };
-        let capacity = [L::load(&rows[Rows::<S>::TENSION], at), L::load(&rows[Rows::<S>::COHESION], at)];
+        let capacity = [L::load(&rows[RowIndex::<S>::TENSION], at), L::load(&rows[RowIndex::<S>::COHESION], at)];
         // In the plane there are no roots to save.
         let breaks = if S::SHEAR > 1 && cement.surely_holds(constants, radius, capacity) {
             None
@@ -141,13 +141,13 @@ impl<S: Space> Law<S> for ParallelBondLaw {
             let [tension, sheared] = cement.exceeds(constants, radius, capacity);
             let broken = L::or(tension, sheared);
             (L::bits(broken) != 0).then(|| {
-                if ledger.open() {
+                if account.open() {
                     let energy = cement.energy(k, ks, gyration);
-                    ledger.charge(BROKEN, at, L::select(broken, energy, L::splat(0.0)));
+                    account.charge(BROKEN, at, L::select(broken, energy, L::splat(0.0)));
                 }
                 cement = cement.without(broken);
-                L::select(broken, L::splat(0.0), k).store(&mut rows[Rows::<S>::BOND], at);
-                for (row, value) in [Rows::<S>::TENSION, Rows::<S>::COHESION].into_iter().zip(capacity) {
+                L::select(broken, L::splat(0.0), k).store(&mut rows[RowIndex::<S>::BOND], at);
+                for (row, value) in [RowIndex::<S>::TENSION, RowIndex::<S>::COHESION].into_iter().zip(capacity) {
                     L::select(broken, L::splat(f64::INFINITY), value).store(&mut rows[row], at);
                 }
                 Broken { tension, shear: sheared }

@@ -12,7 +12,7 @@
 //!
 //! The forces act at the contact point; there is no moment of the joint's own. n stays as it was laid.
 
-use super::{BROKEN, Broken, Constants, KN, Law, Layout, Ledger, Memory, Rows, SLIP, Viscous, store_shear};
+use super::{Account, BROKEN, Broken, Constants, KN, Law, Layout, Memory, RowIndex, SLIP, Viscous, store_shear};
 use crate::simd::{Lane, Row};
 use crate::space::{Load, Space, Touch, Tuple, Vector};
 
@@ -24,7 +24,7 @@ struct Own<S>(std::marker::PhantomData<S>);
 
 impl<S: Space> Own<S> {
     /// First row of the plane's normal.
-    const NORMAL: usize = Rows::<S>::COUNT;
+    const NORMAL: usize = RowIndex::<S>::COUNT;
     /// Opening, m.
     const OPENING: usize = Self::NORMAL + S::DIMENSION;
     /// First row of the shear force, a vector, N.
@@ -49,21 +49,21 @@ pub(crate) fn lay<S: Space>(
 ) {
     let [tension, cohesion] = capacity.map_or([f64::INFINITY; 2], |whole| whole.map(|c| c.min(f64::MAX)));
     memory[KN] = 0.0;
-    memory[Rows::<S>::TENSION] = tension;
-    memory[Rows::<S>::COHESION] = cohesion;
-    memory[Rows::<S>::BOND] = stiffness;
+    memory[RowIndex::<S>::TENSION] = tension;
+    memory[RowIndex::<S>::COHESION] = cohesion;
+    memory[RowIndex::<S>::BOND] = stiffness;
     memory.tail = (0..S::DIMENSION).map(|k| normal.at(k)).chain([opening]).collect();
-    memory.tail.resize(Own::<S>::COUNT - Rows::<S>::COUNT, 0.0);
+    memory.tail.resize(Own::<S>::COUNT - RowIndex::<S>::COUNT, 0.0);
 }
 
 /// Strain energy of a joint, J; nothing if the contact has none.
 pub(crate) fn energy<S: Space>(memory: &Memory, constants: &Constants) -> Option<f64> {
-    let stiffness = memory[Rows::<S>::BOND];
+    let stiffness = memory[RowIndex::<S>::BOND];
     if stiffness == 0.0 || memory.tail.is_empty() {
         return None;
     }
-    let first = Rows::<S>::COUNT;
-    let bonded = memory[Rows::<S>::TENSION] < f64::INFINITY;
+    let first = RowIndex::<S>::COUNT;
+    let bonded = memory[RowIndex::<S>::TENSION] < f64::INFINITY;
     let opening = memory.tail[Own::<S>::OPENING - first];
     let opening = if bonded { opening } else { opening.min(0.0) };
     let shear: f64 = memory.tail[Own::<S>::SHEAR - first..].iter().map(|x| x * x).sum();
@@ -89,7 +89,7 @@ impl<S: Space> Law<S> for SmoothJointLaw {
         _viscous: Option<Viscous<L>>,
         rows: &mut [Row],
         at: usize,
-        ledger: &mut Ledger<'_>,
+        account: &mut Account<'_>,
     ) -> (Load<S, L>, Option<Broken<L>>) {
         let (zero, infinite) = (L::splat(0.0), L::splat(f64::INFINITY));
         let floor = |x: L| x.max(L::splat(f64::MIN_POSITIVE));
@@ -97,9 +97,9 @@ impl<S: Space> Law<S> for SmoothJointLaw {
         let way = S::force(touch, &Load { normal: touch.opening, shear: touch.slide, twist: zero, bend: flat });
         let plane = load_vector::<S, L>(rows, Own::<S>::NORMAL, at);
         let parting = way.dot(plane);
-        let kn = L::load(&rows[Rows::<S>::BOND], at);
+        let kn = L::load(&rows[RowIndex::<S>::BOND], at);
         let ks = kn * L::splat(constants.bond_share);
-        let capacity = [Rows::<S>::TENSION, Rows::<S>::COHESION].map(|row| L::load(&rows[row], at));
+        let capacity = [RowIndex::<S>::TENSION, RowIndex::<S>::COHESION].map(|row| L::load(&rows[row], at));
         let held = infinite.above(capacity[0]);
         let opening = L::load(&rows[Own::<S>::OPENING], at) + parting;
         let elastic = kn * opening;
@@ -123,23 +123,23 @@ impl<S: Space> Law<S> for SmoothJointLaw {
         for k in 0..S::DIMENSION {
             shear.at(k).store(&mut rows[Own::<S>::SHEAR + k], at);
         }
-        if ledger.open() {
+        if account.open() {
             let half = L::splat(0.5);
             let lost = half * (trial.dot(trial) - shear.dot(shear)) / floor(ks);
             let pull = half * kn * (opening * opening - opening.min(zero) * opening.min(zero));
-            ledger.charge(BROKEN, at, L::select(broken, lost + pull, zero));
+            account.charge(BROKEN, at, L::select(broken, lost + pull, zero));
             // Friction pays for the pressure that the dilation adds.
             let friction = half * old.plus(shear).dot(trial.minus(shear)) / floor(ks);
             let lifted = half * kn * (left * left - opening * opening);
-            ledger.charge(SLIP, at, L::select(held, zero, friction - L::select(zero.above(opening), lifted, zero)));
+            account.charge(SLIP, at, L::select(held, zero, friction - L::select(zero.above(opening), lifted, zero)));
         }
         let force = plane.times(normal).plus(shear);
         let along = force.dot(touch.normal);
         let across = S::across(force.minus(touch.normal.times(along)), touch.normal);
-        along.store(&mut rows[Rows::<S>::BOND_NORMAL], at);
-        store_shear::<S, L>(rows, Rows::<S>::BOND_SHEAR, at, across);
+        along.store(&mut rows[RowIndex::<S>::BOND_NORMAL], at);
+        store_shear::<S, L>(rows, RowIndex::<S>::BOND_SHEAR, at, across);
         let breaks = (L::bits(broken) != 0).then(|| {
-            for (row, value) in [Rows::<S>::TENSION, Rows::<S>::COHESION].into_iter().zip(capacity) {
+            for (row, value) in [RowIndex::<S>::TENSION, RowIndex::<S>::COHESION].into_iter().zip(capacity) {
                 L::select(broken, infinite, value).store(&mut rows[row], at);
             }
             Broken { tension, shear: sheared }

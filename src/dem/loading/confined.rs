@@ -1,9 +1,9 @@
 //! Compression under a confining stress: biaxial in the plane, triaxial in the solid.
 //!
-//! Rigid, frictionless side walls stand around the piece: two to each axis across the load of a rectangle or box, 24
+//! Rigid, frictionless side walls surround the piece: two to each axis across the load of a rectangle or box, 24
 //! around a standing cylinder. First all walls, the platens among them, bring the piece to the isotropic stress σ₃ by servo, until each
 //! wall is within 1 % of it and the unbalanced ratio at most 10⁻³. From that state on strains count. Then the platens move at
-//! their speed while the side walls keep σ₃.
+//! their speed while the side walls hold σ₃.
 //!
 //! ```text
 //! stress       = deviator q = σ₁ − σ₃: mean platen force over the section, less the mean stress of the side walls
@@ -135,7 +135,7 @@ struct Vessel<S: Space> {
     stress: f64,
 }
 
-/// Where the walls stand.
+/// Positions of the walls.
 #[derive(Clone, Debug)]
 struct Stand {
     height: f64,
@@ -217,7 +217,7 @@ impl<S: Space> Vessel<S> {
         set_velocities(engine, |x| Vector::<S>::build(|k| if k == 1 { -speed * x.at(1) / half } else { 0.0 }))
     }
 
-    /// Where the walls stand now; the section shrinks with the distances of the side walls.
+    /// Positions of the walls now; the section shrinks with the distances of the side walls.
     fn state(&self, engine: &Engine<S>) -> Stand {
         let distances: Vec<f64> = (0..self.sides.len()).map(|k| distance(engine, k, &self.sides[k])).collect();
         let ratio = |k: usize| distances[k] / self.sides[k].distance;

@@ -2,8 +2,8 @@
 //!
 //! Samples are taken every `sample_strain` of axial strain. The run stops when the stress has fallen to `stop_fraction`
 //! of the largest one so far and stays below it for a while (`lasting`), armed only after the largest has passed the
-//! seating stress; when the test itself says that it is done; or at the strain limit or the bound on steps, which are
-//! failures, as is whatever the engine reports. Failures are data: the record up to that point is stored.
+//! seating stress; when the test itself ends it; or at the strain limit or the bound on steps, which are
+//! failures, as are faults of the engine. Failures are data: the record up to that point is stored.
 //!
 //! The watcher is asked after at most some hundredths of a second of work, however long a sample takes.
 
@@ -13,6 +13,7 @@ use super::pace::Governor;
 use super::settings::{Rule, Schedule};
 use super::snapshot::{Ladder, Snapshot, State};
 use crate::measure::{Energy, energy, links};
+use crate::words::{Number, Quantity};
 use crate::{Engine, Failure, Space, Watch};
 
 /// Why a test has no complete result.
@@ -20,7 +21,8 @@ use crate::{Engine, Failure, Space, Watch};
 pub enum TestFailure {
     /// Nothing broke it.
     #[error(
-        "no peak up to a strain of {strain_limit}: the largest stress is {stress:.4e} Pa; raise the strain limit or check the strengths"
+        "no peak up to a strain of {}: the largest stress is {}; raise strain_limit, or check the strengths of the bonds",
+        Number(*.strain_limit), Quantity(*.stress, "Pa")
     )]
     NoPeak {
         /// Strain limit.
@@ -30,7 +32,8 @@ pub enum TestFailure {
     },
     /// The bound on steps was reached.
     #[error(
-        "no end within max_steps = {steps}: the strain is {strain:.3e} and the largest stress {stress:.4e} Pa; load faster or raise max_steps"
+        "no end within max_steps = {steps}: the strain is {} and the largest stress {}; load faster or raise max_steps",
+        Number(*.strain), Quantity(*.stress, "Pa")
     )]
     OutOfSteps {
         /// Bound on steps.
@@ -42,7 +45,8 @@ pub enum TestFailure {
     },
     /// The side walls did not come to their stress.
     #[error(
-        "the confining stress of {wanted:.4e} Pa was not reached within {steps} steps: it is off by {off:.1e} of it, the unbalanced ratio {ratio:.1e}; check the packing or lower the stress"
+        "the confining stress of {} was not reached within {steps} steps: it is off by {} of it, the unbalanced ratio {}; check the packing or lower the stress",
+        Quantity(*.wanted, "Pa"), Number(*.off), Number(*.ratio)
     )]
     Confinement {
         /// Confining stress asked for (Pa).
@@ -163,7 +167,7 @@ pub fn drive<S: Space>(
     let (ladder, slice) = (Ladder::default(), slice(engine));
     let governor = Governor::new(engine, schedule);
     let mut drive = Drive { rule, schedule, run, governor, ladder, largest: 0.0, fell: None, slice, last_step };
-    engine.keep_books();
+    engine.track_energy();
     while drive.sample(engine, bench, watch) {}
     drive.finish(engine)
 }

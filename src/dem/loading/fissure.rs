@@ -110,10 +110,10 @@ mod tests {
     fn laid(dip: f64, length: Option<f64>) -> Vec<[f64; 2]> {
         let contact = Contact::bonded("rock", 20e9, 2.5, [10e6, 15e6], 0.5);
         let material = Material::of_one(contact);
-        let place = |k: usize| [(k % 20) as f64 - 9.5, (k / 20) as f64 - 9.5];
+        let at = |k: usize| [(k % 20) as f64 - 9.5, (k / 20) as f64 - 9.5];
         let piece = Piece {
             outline: Outline::Block { width: 20.0, height: 20.0, depth: 1.0 },
-            centres: (0..400).map(place).collect(),
+            centres: (0..400).map(at).collect(),
             radii: vec![0.5; 400],
             groups: vec![Group(0); 400],
             density: 2000.0,

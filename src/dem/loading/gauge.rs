@@ -117,8 +117,8 @@ mod tests {
     #[test]
     fn a_block_has_gauges_along_both_axes_across_the_load() {
         let at = |k: usize, n: usize| k as f64 - 0.5 * (n - 1) as f64;
-        let place = |k: usize| [at(k % 6, 6), at(k / 36, 12), at(k / 6 % 6, 6)];
-        let centres: Vec<[f64; 3]> = (0..6 * 6 * 12).map(place).collect();
+        let centre = |k: usize| [at(k % 6, 6), at(k / 36, 12), at(k / 6 % 6, 6)];
+        let centres: Vec<[f64; 3]> = (0..6 * 6 * 12).map(centre).collect();
         let gauges = Gauges::new::<D3>(12.0, &centres, &vec![0.5; centres.len()]);
         assert_eq!(gauges.count(), 6);
         let strain = gauges.strain::<D3>(|i| [1.002 * centres[i][0], centres[i][1], 1.004 * centres[i][2]]);

@@ -106,7 +106,7 @@ impl Judgement {
         rate_warnings(self.speed, self.strain_per_step, self.speed_ratio)
     }
 
-    /// What the numbers say on the run: cautions, which do not make it invalid.
+    /// Cautions on the run, which do not make it invalid.
     pub(super) fn checks(&self) -> Vec<Check> {
         vec![
             Check::at_most(Reason::StrainPerStep, self.strain_per_step, STRAIN_PER_STEP_LIMIT),

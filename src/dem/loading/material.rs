@@ -2,7 +2,7 @@
 //!
 //! A specimen has groups of particles. Contacts within a group and between two groups have values of their own: a linear
 //! spring, and a bond where the contact is bonded. Platens are never bonded; the spring of a platen is that of the first group
-//! with the friction of the platen, whatever it touches (a platen of the material's own modulus). Inside a clump there are
+//! with the friction of the platen (a platen of the material's own modulus). Inside a clump there are
 //! no contacts.
 //!
 //! Linear spring and cement act in parallel. Without stiffness of its own the cement has the modulus and ratio of the spring, so
@@ -103,7 +103,7 @@ pub enum MaterialFault {
         /// Its bond.
         bond: BondKind,
     },
-    /// Another microparameter stands for it.
+    /// Another microparameter replaces it.
     #[error("`{}` of contact `{contact}` has no effect beside `{}`", .parameter.key(), .other.key())]
     Beside {
         /// The contact's name.
@@ -222,7 +222,7 @@ impl Contact {
         self.values.contains_key(&parameter)
     }
 
-    /// Values given beside those that stand for them.
+    /// Values that others replace.
     fn beside(&self) -> Vec<(Parameter, Parameter)> {
         use Parameter::{BondKn, BondKs, BondModulus, BondRatio, Kn, Ks, Modulus, Ratio};
         // `kn_ks` beside `kn` and `ks` still is the ratio of a cement that is given by its modulus.

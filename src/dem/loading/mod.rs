@@ -19,7 +19,7 @@
 //!
 //! | open point | settled | evidence |
 //! |---|---|---|
-//! | N or mean radius | N of eq. (4) stands, radii × 0.97 | text; unscaled radii would give porosity 0.066 |
+//! | N or mean radius | N of eq. (4) is kept, radii × 0.97 | text; unscaled radii would give porosity 0.066 |
 //! | overlaps of the packing | reference gaps, nothing locked in | mortar alone, R = 1 mm: 42.6 MPa, coordination 4.61 |
 //! | bond gap | none: bonds where discs overlap | 5 % of R adds 1 to 10 % strength and 3 % to E (R = 1.6 mm) |
 //! | polygons | in the circle of their size, angles fully random (12.5 % of the area) | R = 0.5 mm: 34.6 GPa, 0.269; polygons of equal area (28.9 %): 42.0 GPa, 0.250 |

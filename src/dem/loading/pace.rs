@@ -46,7 +46,7 @@ pub enum Pace {
     Adaptive,
 }
 
-/// Damage rate above which the slow speed is kept.
+/// Damage rate above which the speed stays slow.
 const SLOW_DAMAGE: f64 = 0.12;
 /// Memory of the damage rate, over the strain so far.
 const MEMORY: f64 = 0.02;

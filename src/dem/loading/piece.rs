@@ -28,7 +28,7 @@ pub enum Outline {
         /// Extent along z; 1 in the plane.
         thickness: f64,
     },
-    /// A cylinder that stands along y; solid only.
+    /// A cylinder along y; solid only.
     Column {
         /// Diameter.
         diameter: f64,
@@ -73,7 +73,7 @@ impl Outline {
     }
 }
 
-/// A test piece, free of force as it stands.
+/// A test piece, free of force.
 #[derive(Clone, Debug)]
 pub struct Piece<S: Space> {
     /// Outline.

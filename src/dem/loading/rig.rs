@@ -42,7 +42,7 @@ pub struct Scales {
     pub density: f64,
 }
 
-/// Largest reference strain: beyond it the strengths mean "does not break" and say nothing on the strain to come.
+/// Largest reference strain: beyond it the strengths mean "does not break" and do not predict a strain.
 const LARGEST_STRAIN: f64 = 0.05;
 
 impl Scales {
@@ -196,7 +196,7 @@ pub fn set_velocities<S: Space>(engine: &mut Engine<S>, field: impl Fn(Vector<S>
 const SETTLE_EVERY: u64 = 100;
 
 /// Steps until the unbalanced ratio is at most `limit`, and how near it came; at most `most` steps are made. A piece that is
-/// free of force is in equilibrium as it stands.
+/// free of force is in equilibrium.
 ///
 /// # Errors
 /// Why the engine failed.

@@ -4,6 +4,7 @@ use super::kind::TestKind;
 use super::pace::Pace;
 use super::rig::{Machine, Platens, Scales};
 use super::speed::{Speed, Threshold};
+use crate::words::Number;
 use crate::{Fault, Faults};
 use serde::{Deserialize, Serialize};
 
@@ -162,7 +163,8 @@ pub enum TestError {
     },
     /// It would not end within the bound on steps.
     #[error(
-        "at {speed:.3e} m/s the strain at which the bonds can be expected to fail, {strain:.1e}, takes {steps:.1e} steps of {time_step:.1e} s, above max_steps = {bound:.1e}; load faster or raise max_steps"
+        "at {} m/s the strain at which the bonds can be expected to fail, {}, takes {steps:.1e} steps of {time_step:.1e} s, above max_steps = {bound:.1e}; load faster or raise max_steps",
+        Number(*.speed), Number(*.strain)
     )]
     TooLong {
         /// Speed of each platen (m/s).

@@ -1,6 +1,6 @@
-//! States kept at shares of a peak that is known only afterwards.
+//! Snapshots at shares of the peak, which is known only afterwards.
 //!
-//! While the stress climbs, a state is kept for every 4 % of rise (the ladder), and the state of the largest stress so
+//! While the stress climbs, a state is stored for every 4 % of rise (the ladder), and the state of the largest stress so
 //! far for every 0.2 %. At the end the rung next to each wanted share remains. Rungs below a third of the largest
 //! stress are dropped on the way, so memory stays at about thirty states.
 
@@ -8,7 +8,7 @@ use super::curve::Sample;
 use crate::measure::Link;
 use crate::{Space, Vector};
 
-/// What is kept of the balls at one moment.
+/// The state of the balls at one moment.
 #[derive(Clone, Debug, Default)]
 pub struct State<S: Space> {
     /// Centres (m).
@@ -49,7 +49,7 @@ const TOP: f64 = 1.002;
 const FORGET: f64 = 1.0 / 3.0;
 
 impl<S: Space> Ladder<S> {
-    /// Keeps the state of this sample if it is a rung or a new top.
+    /// Stores the state of this sample if it is a rung or a new top.
     pub fn offer(&mut self, sample: &Sample, state: impl Fn() -> State<S>) {
         if sample.stress > TOP * self.top.as_ref().map_or(0.0, |top| top.stress) {
             self.top = Some(Snapshot::new(sample, state()));

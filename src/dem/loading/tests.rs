@@ -149,6 +149,11 @@ fn a_test_without_a_peak_is_a_result_with_a_reason() {
     let record = run(&test, &small(), &material(20e9, 2.5, 20e6));
     assert!(matches!(record.run.failure, Some(TestFailure::NoPeak { strain_limit: 1e-4, .. })));
     assert!(record.run.samples.len() > 10);
+    assert_eq!(
+        TestFailure::NoPeak { strain_limit: 2e-9, stress: 34_512.0 }.to_string(),
+        "no peak up to a strain of 2e-9: the largest stress is 34.5 kPa; raise strain_limit, or check the strengths of \
+         the bonds"
+    );
 }
 
 #[test]

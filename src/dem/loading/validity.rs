@@ -1,6 +1,6 @@
 //! Whether a test measured what it is called after: checks, each with its number, its bound and what to do.
 //!
-//! A run whose checks are not all met is not valid. It keeps its numbers; who fits or averages them is told why they should
+//! A run whose checks are not all met is not valid. Its numbers remain; analyses report why they should
 //! not count.
 
 use serde::{Deserialize, Serialize};

@@ -21,7 +21,7 @@ pub struct Crack<S: Space> {
     pub time: f64,
     /// How.
     pub mode: Mode,
-    /// First end, by its place in the caller's list.
+    /// First end, by its index in the caller's list.
     pub particle: usize,
     /// Second end.
     pub other: Other,

@@ -1,4 +1,4 @@
-//! Energies. With open books ([`Engine::keep_books`]) they close:
+//! Energies. With open books ([`Engine::track_energy`]) they close:
 //! kinetic + spring + bond + potential + damping + slip + dashpot + broken = initial + boundary, within about 1 %
 //! (velocities live half a step from positions).
 
@@ -46,7 +46,7 @@ impl Energy {
     }
 }
 
-/// Energies now; what was spent and given since [`Engine::keep_books`], 0 without.
+/// Energies now; what was spent and given since [`Engine::track_energy`], 0 without.
 pub fn energy<S: Space>(engine: &Engine<S>) -> Energy {
     engine.account()
 }

@@ -84,7 +84,7 @@ impl<S: Space> Dyads<S> {
 /// The force between two particles that touch or are bonded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    /// The two particles, by their places in the caller's list, the smaller first.
+    /// The two particles, by their indices in the caller's list, the smaller first.
     pub ends: [usize; 2],
     /// Normal force, compression positive, N.
     pub normal: f64,

@@ -27,7 +27,7 @@ pub fn displacement_gradient<S: Space>(
     gradient::<S>(start.iter().enumerate().take(engine.particle_count()).map(motion).filter(|(x, _)| region.holds(*x)))
 }
 
-/// G of places and motions.
+/// G of positions and displacements.
 fn gradient<S: Space>(points: impl Iterator<Item = (Vector<S>, Vector<S>)>) -> Option<[[f64; 3]; 3]> {
     let points: Vec<(Vector<S>, Vector<S>)> = points.collect();
     let n = points.len() as f64;

@@ -2,7 +2,7 @@
 //!
 //! Two buffers. Between two meetings every thread reads the front buffer and writes its own range of the back one; at a
 //! meeting the buffers change roles. A meeting waits for all, spinning briefly and then yielding, because a pure spin
-//! collapses when the machine has other work. A thread alone works in place.
+//! collapses when the machine has other work. A single thread works in place.
 
 use super::{Quad, Table};
 use std::marker::PhantomData;

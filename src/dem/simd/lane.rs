@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Contacts in a block, whatever the lane type.
+/// Contacts in a block, for every lane type.
 pub const WIDEST: usize = 8;
 
 /// One row of a particle's record: four numbers that are loaded and stored together.

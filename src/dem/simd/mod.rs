@@ -4,7 +4,7 @@
 //! subtraction, multiplication, division, square root, comparison and selection are used, each correctly rounded, and
 //! never a fused multiply-add, so one contact gives the same bits in every lane type and on every machine.
 //!
-//! This is the only place with `unsafe`. Its invariants:
+//! This is the only module with `unsafe`. Its invariants:
 //! * `Four` and `Eight` are reachable only through [`dispatch`], which asks the processor first; so no instruction is run
 //!   that the machine lacks.
 //! * Lane memory access goes through references to whole rows ([`Quad`], [`Row`]): in bounds and aligned by their types.

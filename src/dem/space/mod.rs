@@ -6,6 +6,8 @@
 //! Signs at a contact of i and j: n points from i to j; opening is positive; a shear displacement is that of j's
 //! surface relative to i's; loads act on i (and with the opposite sign on j).
 
+use super::engine::Engine;
+use super::error::Failure;
 use super::simd::{Lane, Quad};
 use std::fmt::Debug;
 
@@ -176,6 +178,13 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     type Turn: Copy + Debug + PartialEq + Send + Sync;
     /// A vector in the contact plane.
     type Shear<L: Lane>: Tuple<L> + Debug + Send + Sync;
+
+    /// Makes `steps` steps of an engine. Each space names its own loop: so the loop is compiled here, in large units, and not
+    /// in small ones in every crate that runs an engine of either space.
+    ///
+    /// # Errors
+    /// Why the run failed.
+    fn advance(engine: &mut Engine<Self>, steps: u64) -> Result<(), Failure>;
 
     /// Area (plane) or volume (solid) of a ball, m² or m³.
     fn volume(radius: f64) -> f64;

@@ -1,6 +1,8 @@
 //! The plane: discs of unit thickness.
 
 use super::{End, Load, Space, Touch, Tuple};
+use crate::engine::Engine;
+use crate::error::Failure;
 use crate::simd::{Lane, Quad};
 
 /// Discs of unit thickness.
@@ -20,6 +22,10 @@ impl Space for D2 {
     type Spin<L: Lane> = [L; 1];
     type Turn = [f64; 2];
     type Shear<L: Lane> = [L; 1];
+
+    fn advance(engine: &mut Engine<Self>, steps: u64) -> Result<(), Failure> {
+        engine.march_on(steps)
+    }
 
     fn volume(radius: f64) -> f64 {
         std::f64::consts::PI * radius * radius

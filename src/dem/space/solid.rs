@@ -6,6 +6,8 @@
 //! order: (1 − φ²/2) v' + φ n' × v'. So a rigid rotation keeps lengths to fourth order in a step.
 
 use super::{End, Load, Space, Touch, Tuple};
+use crate::engine::Engine;
+use crate::error::Failure;
 use crate::simd::{Lane, Quad};
 use std::f64::consts::PI;
 
@@ -37,6 +39,10 @@ impl Space for D3 {
     type Spin<L: Lane> = [L; 3];
     type Turn = [[f64; 3]; 3];
     type Shear<L: Lane> = [L; 3];
+
+    fn advance(engine: &mut Engine<Self>, steps: u64) -> Result<(), Failure> {
+        engine.march_on(steps)
+    }
 
     fn volume(radius: f64) -> f64 {
         4.0 / 3.0 * PI * radius * radius * radius

@@ -3,7 +3,7 @@
 use crate::coding::Factor;
 use crate::error::Fault;
 
-/// Letters of the factors by position; I stands for the identity and is left out.
+/// Letters of the factors by position; I is the identity and is left out.
 pub(super) const LETTERS: &str = "ABCDEFGHJKLMNOPQRSTUVWXYZ";
 
 /// One generator: `target` is `sign` times the product of `factors`.

@@ -21,7 +21,7 @@ impl Array {
     }
 
     /// Replaces column `at`, of s levels, by the columns of an array of s runs (expansive replacement, Hedayat, Sloane
-    /// & Stufken 1999): level i becomes row i. Strength two is kept.
+    /// & Stufken 1999): level i becomes row i. Strength two is preserved.
     pub(super) fn replace(&mut self, at: usize, rows: &Self) {
         let old = self.columns.remove(at);
         let expand = |new: &Column| Column {

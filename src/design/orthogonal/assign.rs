@@ -10,7 +10,7 @@ pub(super) fn holds(columns: &Counts, factors: &[Factor]) -> bool {
     classes(columns, factors).is_some()
 }
 
-/// The number of levels of each factor's column: its own if there is one left, else the next larger.
+/// The number of levels of each factor's column: its own number if such a column is left, else the next larger.
 fn classes(columns: &Counts, factors: &[Factor]) -> Option<Vec<usize>> {
     let mut left = columns.clone();
     let mut class = vec![0; factors.len()];
@@ -37,7 +37,7 @@ fn classes(columns: &Counts, factors: &[Factor]) -> Option<Vec<usize>> {
     class.iter().all(|&c| c > 0).then_some(class)
 }
 
-/// Index of the column of each factor: those said (from 1), or those that entangle least.
+/// Index of the column of each factor: the stated ones (from 1), or those with the least aliasing.
 pub(super) fn columns(array: &Array, factors: &[Factor], said: Option<&[usize]>) -> Result<Vec<usize>, Vec<Fault>> {
     if let Some(said) = said {
         let faults = faults(array, factors, said);

@@ -79,7 +79,7 @@ impl Recipe {
         }
     }
 
-    /// Strength: any so many columns are a full factorial, equally often.
+    /// Strength: any choice of this many columns is a full factorial, equally often.
     pub(super) fn strength(self) -> usize {
         match self {
             Self::Bush { t, .. } => t as usize,

@@ -21,7 +21,7 @@ pub(super) fn name(runs: usize, counts: &Counts) -> String {
     format!("L{runs}({})", parts.join(" "))
 }
 
-/// Runs, and the columns if they are said, of a name; `None` if it cannot be read.
+/// Runs, and the columns if it states them, of a name; `None` if it cannot be read.
 pub(super) fn parse(name: &str) -> Option<(usize, Option<Counts>)> {
     let rest = name.trim().strip_prefix(['L', 'l'])?;
     let (runs, columns) = match rest.split_once('(') {

@@ -1,8 +1,8 @@
-//! How often levels stand, alone and together.
+//! How often levels occur, alone and together.
 
 use crate::table::{DesignTable, PointType};
 
-/// How often each value of a factor stands.
+/// How often each value of a factor occurs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorBalance {
     /// The factor.
@@ -56,8 +56,8 @@ fn without_centre(table: &DesignTable, factor: usize) -> Levels {
 
 fn classes(cells: Vec<f64>) -> Levels {
     let values = ascending(cells.clone());
-    let place = |x: f64| values.partition_point(|v| v.total_cmp(&x).is_lt());
-    (cells.into_iter().map(place).collect(), values)
+    let position = |x: f64| values.partition_point(|v| v.total_cmp(&x).is_lt());
+    (cells.into_iter().map(position).collect(), values)
 }
 
 fn ascending(mut values: Vec<f64>) -> Vec<f64> {

@@ -1,7 +1,7 @@
 //! Models and whether a table can estimate them.
 //!
 //! The columns of the model matrix X (coded units) are made orthogonal one after the other, X = QR, by Gram–Schmidt
-//! done twice (Giraud, Langou & Rozložník 2005, doi:10.1016/j.camwa.2005.08.009). A column of which nothing is left
+//! done twice (Giraud, Langou & Rozložník 2005, doi:10.1016/j.camwa.2005.08.009). A column of which nothing remains
 //! beside the earlier ones is a term that the runs cannot tell from them; the number of the others is the rank.
 //!
 //! * variance of a coefficient: σ² c_jj, C = (XᵀX)⁻¹ = R⁻¹R⁻ᵀ
@@ -68,7 +68,7 @@ pub struct Model {
     pub terms: Vec<String>,
     /// The factor of each term of [`Kind::Levels`]; none for the constant and other kinds.
     pub factor: Vec<Option<usize>>,
-    /// Indices of the terms that can be told apart, in order.
+    /// Indices of the terms that can be separated, in order.
     pub independent: Vec<usize>,
     runs: usize,
     judged: bool,
@@ -89,15 +89,15 @@ pub struct ModelReport {
     pub kind: Kind,
     /// Number of terms, the constant included.
     pub terms: usize,
-    /// How many of them can be told apart; none if the model was too large to judge.
+    /// How many of them can be separated; none if the model was too large to judge.
     pub rank: Option<usize>,
     /// Runs less rank.
     pub residual_df: usize,
     /// Terms that are combinations of earlier ones.
     pub missing: Vec<String>,
-    /// Largest variance inflation among the terms that can be told apart, and the term.
+    /// Largest variance inflation among the terms that can be separated, and the term.
     pub largest_inflation: Option<(String, f64)>,
-    /// Condition number of the terms that can be told apart.
+    /// Condition number of the terms that can be separated.
     pub condition: f64,
 }
 
@@ -240,7 +240,7 @@ impl Model {
 }
 
 impl ModelReport {
-    /// Whether all its terms can be told apart.
+    /// Whether all its terms can be separated.
     pub fn estimable(&self) -> bool {
         self.rank == Some(self.terms)
     }
@@ -303,7 +303,7 @@ fn condition(columns: &[Vec<f64>]) -> f64 {
     if p == 0 { f64::NAN } else { most / least }
 }
 
-/// Turns two columns until they are orthogonal; whether that was needed.
+/// Turns two columns until they are orthogonal; returns whether they were not.
 fn rotate(a: &mut [f64], b: &mut [f64]) -> bool {
     let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
     if ab.abs() <= 1e-13 * (aa * bb).sqrt() {

@@ -16,7 +16,7 @@ use math::distribution::f_upper;
 use math::elementary::{exp, ln};
 use serde::{Deserialize, Serialize};
 
-/// Which effect, noise and level the power is asked for.
+/// Effect, noise and level of the power.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Question {

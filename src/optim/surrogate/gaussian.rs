@@ -48,8 +48,8 @@ const CORRECTION: f64 = 0.3;
 const LEVEL: f64 = 3.0;
 
 impl Sizes {
-    fn from_prior(place: &[f64], smooth: bool, effects: f64) -> Self {
-        let of = |i: usize| PRIORS[i].0 * exp(PRIORS[i].1 * place[i]) * if i < 3 { effects } else { 1.0 };
+    fn from_prior(coordinates: &[f64], smooth: bool, effects: f64) -> Self {
+        let of = |i: usize| PRIORS[i].0 * exp(PRIORS[i].1 * coordinates[i]) * if i < 3 { effects } else { 1.0 };
         Self {
             constant: LEVEL,
             linear: of(0),
@@ -105,23 +105,23 @@ impl Gaussian {
         let effects = if corrects { CORRECTION } else { 1.0 };
         let table = Table::new(points, values);
         let range = |i: usize| Factor::linear(&i.to_string(), -RANGE, RANGE);
-        let place = Domain::new((0..PRIORS.len()).map(range).collect(), &[]).ok()?;
+        let prior_box = Domain::new((0..PRIORS.len()).map(range).collect(), &[]).ok()?;
         let loss = |unit: &[f64]| {
-            let place = place.natural(unit);
-            let prior: f64 = place.iter().map(|p| 0.5 * p * p).sum();
-            prior - table.likelihood(Sizes::from_prior(&place, smooth, effects)).unwrap_or(f64::NEG_INFINITY)
+            let coordinates = prior_box.natural(unit);
+            let prior: f64 = coordinates.iter().map(|p| 0.5 * p * p).sum();
+            prior - table.likelihood(Sizes::from_prior(&coordinates, smooth, effects)).unwrap_or(f64::NEG_INFINITY)
         };
         let start = vec![0.5; PRIORS.len()];
-        let mut descent = Local::new(&place, &start, loss(&start));
+        let mut descent = Local::new(&prior_box, &start, loss(&start));
         for _ in 0..80 {
-            let told = |point: Vec<f64>| Trial { misfit: loss(&point), point, responses: Vec::new() };
-            let trials: Vec<Trial> = descent.ask().into_iter().map(told).collect();
+            let trial = |point: Vec<f64>| Trial { misfit: loss(&point), point, responses: Vec::new() };
+            let trials: Vec<Trial> = descent.ask().into_iter().map(trial).collect();
             descent.tell(&trials);
             if descent.stop().is_some() {
                 break;
             }
         }
-        Self::with(points, values, Sizes::from_prior(&place.natural(descent.best().0), smooth, effects))
+        Self::with(points, values, Sizes::from_prior(&prior_box.natural(descent.best().0), smooth, effects))
     }
 
     /// Mean and variance of the expected response (without the noise of a run).

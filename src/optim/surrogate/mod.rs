@@ -1,6 +1,6 @@
 //! Calibration with one model per response, for simulations that are dear and scatter.
 //!
-//! Every response gets its own model ([`gaussian`]) over *all* runs, its own and those it was told to learn from, so
+//! Every response gets its own model ([`gaussian`]) over *all* runs, its own and earlier ones that it learns from, so
 //! that no single lucky run can win. A first design of two levels around the first guess, or the centre, finds the directions; then every
 //! batch takes the point the models recommend and points around it, each off by a little in a direction of its own,
 //! which measures the neighbourhood from all sides.
@@ -12,7 +12,7 @@
 //! micromechanical laws are products of powers, so that ratios are closer to linear than differences. That is
 //! a choice of coordinates, not a claim about which factor drives which response.
 //!
-//! A failed run tells where not to go: the chance of failure is estimated from the failed and successful neighbours
+//! A failed run shows where not to search: the chance of failure is estimated from the failed and successful neighbours
 //! of a point, and multiplies its merit.
 //!
 //! Sources: Rasmussen & Williams 2006 (the models); Box & Wilson 1951, doi:10.1111/j.2517-6161.1951.tb00067.x
@@ -28,7 +28,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What is believed beforehand: responses at a point in natural units, from fitted surfaces for example. The models
+/// Prior belief: responses at a point in natural units, from fitted surfaces for example. The models
 /// then describe the ratio (or difference) between runs and belief.
 pub type Trend = Arc<dyn Fn(&[f64]) -> Option<Vec<f64>> + Send + Sync>;
 
@@ -49,7 +49,7 @@ pub enum Model {
 pub struct Settings {
     /// What follows the responses.
     pub model: Model,
-    /// Runs asked for at once after the first design.
+    /// Runs per batch after the first design.
     pub batch: usize,
     /// Runs of the first design; the least power of two above the number of factors when left out.
     pub first: Option<usize>,
@@ -78,7 +78,7 @@ impl Default for Settings {
     }
 }
 
-/// Standard deviation of a batch where nothing is known of the scatter, in ranges.
+/// Standard deviation of a batch where the scatter is unknown, in ranges.
 const LARGEST_JITTER: f64 = 0.1;
 
 /// The algorithm's state: all it knows are the runs.
@@ -119,7 +119,7 @@ impl Surrogate {
         self.settings.first.unwrap_or((self.problem.domain.len() + 1).next_power_of_two())
     }
 
-    /// Whether there is enough to go by without a design: a trend, or as many runs as the design has.
+    /// Whether the models can start without a design: a trend, or as many runs as the design has.
     fn designed(&self) -> bool {
         self.trend.is_some() || self.runs.iter().filter(|run| run.succeeded()).count() >= self.first()
     }

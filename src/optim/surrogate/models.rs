@@ -13,7 +13,7 @@ use math::scale::Scale as FactorScale;
 const WARNING: f64 = 0.35;
 /// How much a sure failure multiplies the misfit.
 const PENALTY: f64 = 10.0;
-/// Random places from which the recommended point is sought, and how many of the best are refined.
+/// Random points from which the recommended point is sought, and how many of the best are refined.
 const STARTS: usize = 300;
 const REFINED: usize = 3;
 /// Normal quantile of a 95 % interval.
@@ -190,7 +190,7 @@ impl Models {
         bad / (bad + good + 1.0)
     }
 
-    /// The misfit with what is not known counted as deviation, and with the chance of failure.
+    /// The misfit, with uncertainty counted as deviation, and with the chance of failure.
     fn risk(&self, unit: &[f64]) -> f64 {
         let misfit = &self.problem.misfit;
         let (mut expected, mut beyond) = (Vec::new(), Vec::new());
@@ -204,22 +204,22 @@ impl Models {
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// The point of least risk, the best of many places refined by descent, and what is expected there.
+    /// The point of least risk, the best of many points refined by descent, and what is expected there.
     pub fn recommend(&self, runs: &[Trial], random: &mut Stream) -> Recommendation {
         let domain = &self.problem.domain;
-        let mut places: Vec<Vec<f64>> = (0..STARTS).map(|_| domain.sample(random)).collect();
-        places.extend(runs.iter().map(|run| domain.repair(&run.point)));
-        places.push(domain.centre().to_vec());
-        let mut ranked: Vec<(f64, Vec<f64>)> = places.into_iter().map(|u| (self.risk(&u), u)).collect();
+        let mut starts: Vec<Vec<f64>> = (0..STARTS).map(|_| domain.sample(random)).collect();
+        starts.extend(runs.iter().map(|run| domain.repair(&run.point)));
+        starts.push(domain.centre().to_vec());
+        let mut ranked: Vec<(f64, Vec<f64>)> = starts.into_iter().map(|u| (self.risk(&u), u)).collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         ranked.truncate(REFINED);
         let refined = ranked.into_iter().map(|(risk, from)| descend(domain, &from, risk, &|u| self.risk(u)));
         let best = refined.reduce(|best, this| if this.1 < best.1 { this } else { best });
-        let (point, _) = best.unwrap_or_else(|| panic!("BUG: the centre is always a place"));
+        let (point, _) = best.unwrap_or_else(|| panic!("BUG: there is always the centre"));
         self.at(point)
     }
 
-    /// What is expected at a point of the unit box.
+    /// The prediction at a point of the unit box.
     pub fn at(&self, point: Vec<f64>) -> Recommendation {
         let interval = |(response, (mean, variance)): (&Response, (f64, f64))| {
             let half = WIDE * variance.sqrt();

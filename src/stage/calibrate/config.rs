@@ -26,12 +26,12 @@ pub struct Calibrate {
     pub surfaces: Option<String>,
     /// The stage whose simulation is run: its specimen, material and test.
     pub simulator: Option<String>,
-    /// Several such stages, all run at every point: a compression and a splitting test, say.
+    /// Several such stages, all run at every point, such as a compression and a splitting test.
     pub simulators: Vec<String>,
     /// The simulator that a response is taken from, when several give it; the first that does when not given.
     pub from: BTreeMap<String, String>,
     /// Cheaper twins of the simulators, one or in their order: they are searched, and the simulators themselves run only
-    /// to correct what was found.
+    /// to correct the solution.
     pub coarse: Names,
     /// Most runs of the simulators themselves where there are coarse ones; 12 when not given.
     pub full_runs: Option<usize>,
@@ -47,7 +47,7 @@ pub struct Calibrate {
     pub scales: BTreeMap<String, Scale>,
     /// Linear constraints on the factors.
     pub constraints: Vec<Constraint>,
-    /// Target sets: what is wanted of each response, such as `{ UCS = "30 MPa", sigma_t = { at_least = "3 MPa" } }`.
+    /// Target sets: the target of each response, such as `{ UCS = "30 MPa", sigma_t = { at_least = "3 MPa" } }`.
     pub targets: Vec<BTreeMap<String, Goal>>,
     /// Factors that are not calibrated and their values, in their units: one table for all target sets, or one for each;
     /// several with one target set make as many sets.
@@ -99,21 +99,21 @@ pub struct Calibrate {
     pub specimens: Option<u64>,
 }
 
-/// Sample of the solution set when nothing is said.
+/// Default size of the sample of the solution set.
 const SOLUTIONS: usize = 50;
-/// Relative deviation of a target that counts as met when nothing is said.
+/// Default relative deviation up to which a target counts as met.
 const TOLERANCE: f64 = 0.02;
-/// Runs of the simulators themselves when nothing is said.
+/// Default number of runs of the full simulators.
 const FULL_RUNS: usize = 12;
 
 /// What becomes of a calibration whose targets are not met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Unmet {
-    /// It is said.
+    /// It is reported.
     #[default]
     Say,
-    /// It is said, and `flow run` exits with 1.
+    /// It is reported, and `flow run` exits with 1.
     Fail,
 }
 
@@ -234,7 +234,7 @@ impl Calibrate {
         self.ranges.get(name).copied().or(factor.range).or(ends)
     }
 
-    /// Whether a factor is searched by logarithms: as the stage says, else as the factor does.
+    /// Whether a factor is searched by logarithms: by the setting of the stage, else of the factor.
     fn is_log(&self, context: &Context, name: &str) -> bool {
         let own = context.factors.get(name).is_some_and(|factor| factor.scale == Scale::Log);
         self.scales.get(name).map_or(own, |scale| *scale == Scale::Log)

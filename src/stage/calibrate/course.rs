@@ -1,7 +1,7 @@
 //! The evaluations of a calibration by simulations, one step after the other.
 //!
-//! What is asked next is a pure function of the outcomes so far: a fresh course walks the whole history, and asks on. A
-//! course that the stage remembered ([`crate::stage::Memory`]) stands where it was and takes in what is new alone, so
+//! The next points are a pure function of the outcomes so far: a fresh course replays the whole history and continues. A
+//! course that the stage remembered ([`crate::stage::Memory`]) continues from its state with the new outcomes alone, so
 //! that an evaluation costs the same however many came before. It holds points and responses, no artifacts.
 //!
 //! With coarse simulators a set is searched twice: first on these, by the calibration's method; then on the simulators
@@ -79,7 +79,7 @@ impl Course {
         Ok(wanted)
     }
 
-    /// What every set was told.
+    /// The outcomes that every set has received.
     pub(super) fn into_histories(self) -> Vec<History> {
         self.sets.into_iter().map(|trail| trail.history).collect()
     }
@@ -143,7 +143,7 @@ impl Trail {
         }
     }
 
-    /// Goes from the coarse simulators to those themselves; whether there was anything left to go to.
+    /// Switches from the coarse simulators to the full ones; returns whether it could.
     fn refine(&mut self, known: &Known, params: &Params, set: usize) -> Result<bool, StageError> {
         let (Level::Coarse, Some(runs)) = (self.level, params.full) else { return Ok(false) };
         let seed = params.seed(set, known.context.seed);
@@ -180,7 +180,7 @@ impl Trail {
         Ok(())
     }
 
-    /// Tells the search what became of its points.
+    /// Gives the search the outcomes of its points.
     fn take(&mut self, stage: &Calibrate, known: &Known, params: &Params, set: usize) -> Result<(), StageError> {
         let names: Vec<String> = simulators(known, self.level).map(|input| input.stage.to_owned()).collect();
         let from = stage.givers(&names);

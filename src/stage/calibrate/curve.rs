@@ -48,7 +48,7 @@ pub enum Weights {
     Stress,
 }
 
-/// Points on the rising branch when nothing is said.
+/// Default number of points on the rising branch.
 const POINTS: usize = 20;
 /// The unit of stresses in the history.
 const STRESS: &str = "MPa";
@@ -60,7 +60,7 @@ struct Measured {
 }
 
 impl Curve {
-    /// What is wrong with the settings themselves.
+    /// Faults of the settings by themselves.
     pub(super) fn faults(&self) -> Vec<String> {
         let mut found = Vec::new();
         let (strains, stresses) = (self.strain.len(), self.stress.len());

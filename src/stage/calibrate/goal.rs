@@ -1,4 +1,4 @@
-//! What a workflow wants of a response: a value, or a band, with what else is said of it.
+//! The target of a response: a value or a band, with weight and tolerance.
 
 use crate::unit::{Unit, split_any};
 use schemars::JsonSchema;
@@ -37,7 +37,7 @@ impl Wanted {
     }
 }
 
-/// What is wanted of a response: `"30 MPa"`, or a table with a band, a weight or a tolerance.
+/// The target of a response: `"30 MPa"`, or a table with a band, a weight or a tolerance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Goal {

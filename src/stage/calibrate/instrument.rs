@@ -87,7 +87,7 @@ pub struct Surface {
     pub coefficients: Vec<f64>,
     /// Rows that span the covariance of the coefficients in units of `s²`, row by row.
     pub root: Vec<f64>,
-    /// Residual standard deviation; none when there is no residual to tell from.
+    /// Residual standard deviation; `None` without residual degrees of freedom.
     pub s: Option<f64>,
     /// Student's quantile of the 95 % intervals.
     pub quantile: f64,

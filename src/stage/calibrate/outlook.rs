@@ -9,7 +9,7 @@ use crate::stage::notes::{Notes, short};
 use optim::Interval;
 use optim::constraint::Factor;
 
-/// Whether a target is met, by what is expected.
+/// Whether a target is met, by the prediction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Met {
     Yes,
@@ -145,7 +145,7 @@ pub(super) fn prediction(params: &Params, solved: &[Solved]) -> Table {
 pub(super) const DETERMINED: f64 = 0.25;
 pub(super) const FREE: f64 = 0.9;
 
-/// What the targets say of one parameter.
+/// What the targets determine of one parameter.
 struct Determined<'a> {
     set: usize,
     factor: &'a FactorParam,

@@ -73,7 +73,7 @@ pub(super) struct SetParam {
     pub seed: Option<u64>,
 }
 
-/// What was told of one evaluation: where, and what came of it.
+/// One evaluation of the history: point and outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Told {
     pub point: Vec<f64>,
@@ -83,7 +83,7 @@ pub(super) struct Told {
     /// Why it failed; a run that is not valid and left out has failed.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub failure: String,
-    /// Why a run that was kept is not valid.
+    /// Why a run that is used is not valid.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub validity: String,
 }
@@ -153,7 +153,7 @@ impl Params {
         Misfit::new(targets, self.form, self.denominator)
     }
 
-    /// The preferred point in natural units, the middle of the range where nothing is said; none without a preference.
+    /// The preferred point in natural units, the middle of the range by default; `None` without a preference.
     pub(super) fn preferred(&self) -> Option<Vec<f64>> {
         self.filled(&self.preference)
     }

@@ -55,7 +55,7 @@ pub(super) fn surfaces(
 type Held = BTreeMap<String, f64>;
 
 /// What the surfaces expect at a point, each with the 95 % interval of its mean response; NaN for the ends where the
-/// fit has no residual to tell from.
+/// fit has no residual degrees of freedom.
 pub(super) fn outlook(
     artifact: &Artifact,
     factors: &[FactorParam],
@@ -144,7 +144,7 @@ pub(super) struct Part<'a> {
     pub run: &'a Artifact,
 }
 
-/// What is said of the runs of one evaluation.
+/// Validity and failures of the runs of one evaluation.
 #[derive(Default)]
 pub(in crate::stage) struct Judgement {
     /// Why one of them gave no result; empty when all did.

@@ -101,7 +101,7 @@ fn seeded(table: Table, params: &Params, sets: Vec<usize>) -> Table {
     }
 }
 
-/// What `flow run` says of targets that are not met; none when all are.
+/// The message of `flow run` on targets that are not met; `None` when all are.
 pub(super) fn unmet(solution: &Artifact) -> Option<String> {
     let table = solution.table("prediction")?;
     let texts = |name: &str| table.texts(name).ok();

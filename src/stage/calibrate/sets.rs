@@ -1,4 +1,4 @@
-//! The target sets of a calibration: what is wanted of which response, with which factors held at which values.
+//! The target sets of a calibration: the targets of each, and the factors that are held at a value.
 
 use super::config::Calibrate;
 use super::goal::Goal;
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl Calibrate {
-    /// Number of target sets, before each is repeated for every seed: as many as the longest of the lists that tell
+    /// Number of target sets, before each is repeated for every seed: the length of the longest list that gives
     /// them apart.
     pub(super) fn count(&self) -> usize {
         let curves = self.curve.as_ref().map_or(0, |curve| curve.of.list().len());

@@ -41,7 +41,7 @@ impl Slope {
         proportional::Settings { runs: self.runs.unwrap_or(usual.runs) }
     }
 
-    /// What is wrong with the settings themselves.
+    /// Faults of the settings by themselves.
     pub(super) fn faults(&self) -> Vec<String> {
         let mut found = Vec::new();
         found.extend(self.regressor.as_ref().and_then(|text| Expression::parse(text).err()));
@@ -164,7 +164,7 @@ fn on_grid(axes: &[(Vec<f64>, f64)], values: &[f64]) -> Option<f64> {
     Some(sum)
 }
 
-/// The neighbouring coordinates of a place, and how far it stands from the first to the second.
+/// The neighbouring grid coordinates of a value, and its fraction between them.
 fn cell(rows: &[f64], at: f64) -> Option<(f64, f64, f64)> {
     let below = rows.iter().copied().filter(|row| *row <= at).reduce(f64::max);
     let above = rows.iter().copied().filter(|row| *row >= at).reduce(f64::min);

@@ -27,7 +27,7 @@ pub(super) struct Line {
     /// Misfit of the recommended point once the batch of this evaluation was known; NaN before there is one.
     pub recommended: f64,
     pub failure: String,
-    /// Why a run that was kept is not valid.
+    /// Why a run that is used is not valid.
     pub validity: String,
 }
 
@@ -48,7 +48,7 @@ pub(super) struct Solved {
     pub scatter: Vec<f64>,
     pub misfit: f64,
     pub set: Option<SolutionSet>,
-    /// What each factor takes over all equally good solutions, natural units; none where no model tells.
+    /// Range of each factor over equally good solutions, natural units; `None` without a model.
     pub extents: Option<Vec<[f64; 2]>>,
     /// Why intervals are unknown, where they are.
     pub unknown: String,
@@ -97,7 +97,7 @@ fn on_surfaces(
     seed: u64,
 ) -> Result<Solved, Failure> {
     let surfaces = knowledge.trend.clone().ok_or_else(|| StageError::new("there are no surfaces"))?;
-    // The optimiser must find what the surfaces hold, not be told it.
+    // The optimiser must find the optimum of the surfaces by itself.
     let mut search = Search::new(&problem, &params.method, &params.limits, seed, &Knowledge::default());
     let (mut history, mut best, mut count) = (Vec::new(), f64::INFINITY, 0);
     let stop = loop {
@@ -278,10 +278,10 @@ fn simulated(
     Ok(solved)
 }
 
-/// Runs beyond one for each factor that a model takes before it says anything of intervals.
+/// Runs beyond one for each factor that a model takes before it gives intervals.
 const SPARE: usize = 3;
 
-/// Models over all runs of a search, which tell what to expect and how sure that is: the surrogate's own, or such models
+/// Models over all runs of a search, which predict responses and their intervals: the surrogate's own, or such models
 /// over the runs of another method; none where there are too few.
 fn models(method: &Method, problem: &Problem, knowledge: &Knowledge, runs: &[Told]) -> Option<Models> {
     let Method::Surrogate(settings) = method else {

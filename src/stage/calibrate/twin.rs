@@ -1,4 +1,4 @@
-//! What coarse runs say of the full-size ones: a belief that these correct.
+//! Predictions of full-size runs from coarse ones, corrected by full-size runs.
 
 use super::params::Told;
 use crate::stage::StageError;

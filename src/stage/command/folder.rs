@@ -14,15 +14,22 @@ use tempfile::TempDir;
 /// Largest text file that is read back.
 const LARGEST: u64 = 64 << 20;
 
-/// Whether a name stays inside the folder it is put in.
+/// Most bytes that a program may print; one that prints without end would fill the disk.
+const MOST_PRINTED: u64 = 1 << 30;
+
+/// Most bytes between the slashes of a name.
+const LONGEST_NAME: usize = 255;
+
+/// Whether a name stays inside the folder it is put in, and can be the name of a file.
 pub(super) fn is_plain(name: &str) -> bool {
-    !name.is_empty() && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
+    let part = |part: Component| matches!(part, Component::Normal(name) if name.len() <= LONGEST_NAME);
+    !name.is_empty() && !name.contains('\0') && Path::new(name).components().all(part)
 }
 
 /// A run's own temporary folder; `stdout` and `stderr` lie beside what the program writes.
 pub(super) struct Folder {
     root: TempDir,
-    /// Says that the folder is in use, and by whom; it is dropped after the folder.
+    /// Marks the folder as in use, with its process; it is dropped after the folder.
     _record: Record,
 }
 
@@ -86,6 +93,17 @@ impl Folder {
                 leftover::end_strays(self.root.path());
                 return Ok(status);
             }
+            if let Some(name) = ["stdout", "stderr"].into_iter().find(|name| self.printed(name) > MOST_PRINTED) {
+                let _ = kill_process_group(group, Signal::KILL);
+                let _ = child.wait();
+                leftover::end_strays(self.root.path());
+                let gigabytes = MOST_PRINTED >> 30;
+                return Err(StageError::new(format!(
+                    "the program wrote more than {gigabytes} GiB to {name} and was ended"
+                ))
+                .hint("let it print less, or to a file of its own")
+                .into());
+            }
             let late = job.time_limit.is_some_and(|limit| started.elapsed().as_secs_f64() > limit);
             if late || job.stopped() {
                 let _ = kill_process_group(group, Signal::KILL);
@@ -105,6 +123,11 @@ impl Folder {
         }
     }
 
+    /// Bytes that the program has printed so far.
+    fn printed(&self, name: &str) -> u64 {
+        std::fs::symlink_metadata(self.path(name)).map_or(0, |meta| meta.len())
+    }
+
     /// A text file that the program left. Programs write logs in any encoding: bytes that are no UTF-8 are shown as `\xE9`,
     /// and the numbers between them are read.
     pub(super) fn text(&self, name: &str) -> Result<String, String> {
@@ -120,7 +143,7 @@ impl Folder {
         Ok(readable(&bytes))
     }
 
-    /// The end of what the program said, for the message of a failure.
+    /// The end of the program's log, for the message of a failure.
     pub(super) fn last_words(&self) -> String {
         let said =
             ["stderr", "stdout"].iter().filter_map(|name| self.text(name).ok()).find(|text| !text.trim().is_empty());
@@ -163,7 +186,7 @@ fn readable(bytes: &[u8]) -> String {
 }
 
 /// A line of a message: no control characters, which would steer the terminal, and no more than fits a message.
-fn shown(line: &str) -> String {
+pub(super) fn shown(line: &str) -> String {
     const LONGEST: usize = 400;
     let line = line.rsplit('\r').find(|part| !part.trim().is_empty()).unwrap_or("");
     let plain: String = line.chars().filter(|c| !c.is_control() || *c == '\t').collect();

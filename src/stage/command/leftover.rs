@@ -2,7 +2,7 @@
 //!
 //! A program may start others that leave its process group (`setsid`), and a campaign that is killed (`kill -9`, no memory)
 //! ends nothing itself. So every run is written down before its program starts, in a folder that only this user can enter
-//! and that is the same whatever `TMPDIR` says; and its processes are known by a variable of their environment,
+//! and that is the same for every `TMPDIR`; and its processes are known by a variable of their environment,
 //! [`VARIABLE`], or by the folder they work in. The next campaign on this machine, and `flow store gc`, find the runs whose
 //! campaign is gone, end their processes and remove their folders. A process that clears its environment and leaves the
 //! folder, or that belongs to another user, is not found.
@@ -30,7 +30,7 @@ const LARGEST: u64 = 1 << 14;
 pub(super) struct Record(Option<PathBuf>);
 
 impl Record {
-    /// Writes a run down. Without a place for it the run goes on: only a killed one could not be found.
+    /// Registers a run. A run that cannot be registered continues, but could not be found after a kill.
     pub(super) fn of(folder: &Path) -> Self {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         let write = || {
@@ -152,7 +152,7 @@ fn owner(pid: u32) -> Option<String> {
     Some(format!("{pid} {started}"))
 }
 
-/// Ends every process of a run that is left, and says how many there were.
+/// Ends every process that a run left, and returns their number.
 pub(super) fn end_strays(folder: &Path) -> usize {
     const ROUNDS: usize = 20;
     let mut ended = 0;

@@ -12,10 +12,11 @@
 //! shall compare rows on the same one.
 //!
 //! Numbers are read as C and Fortran write them. A value that the program itself calls `NaN` (or `null` in JSON) is a
-//! missing response, said with the run; a run that leaves no value at all has failed.
+//! missing response, which a warning of the run names; a run that leaves no value at all has failed.
 //!
 //! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
 //! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
+//! `validity` and `cautions` say where the program tells that a run is not valid, or to be read with caution.
 //! Programs speak in any encoding: a text file with the mark of UTF-16 is read as that, and bytes of others that are not
 //! UTF-8 as `\\xE9`.
 //! Running out of time or being stopped is never recorded, because it says nothing about the model.
@@ -25,8 +26,10 @@ pub mod leftover;
 mod number;
 mod read;
 mod template;
+mod verdict;
 
 use super::beside::Beside;
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
     AtOnce, Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Progress, Sketch, Stage, StageError,
@@ -42,6 +45,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use verdict::ReadText;
 
 /// Settings of a `command` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -75,6 +79,13 @@ pub struct Command {
     pub on_failure: OnFailure,
     /// How each response is read, by its name.
     pub read: BTreeMap<String, Read>,
+    /// Where the program says why a run is not valid: it is then treated as a test of `simulate` that does not meet its
+    /// checks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub validity: Option<ReadText>,
+    /// Where the program says why a run is to be read with caution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cautions: Option<ReadText>,
 }
 
 /// What becomes of a run that failed.
@@ -97,6 +108,10 @@ struct Params {
     #[serde(default, skip_serializing_if = "stops")]
     on_failure: OnFailure,
     read: BTreeMap<String, Read>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    validity: Option<ReadText>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cautions: Option<ReadText>,
     /// Parameters and factors by the name that templates use.
     values: BTreeMap<String, f64>,
     replicate: u64,
@@ -147,6 +162,10 @@ impl Stage for Command {
         for name in self.environment.keys().filter(|name| name.is_empty() || name.contains(['=', '\0'])) {
             found.push(Complaint::new("environment", format!("`{name}` cannot be the name of a variable")));
         }
+        if self.environment.contains_key(leftover::VARIABLE) {
+            let message = format!("`{}` is set by flow: it names the folder of the run", leftover::VARIABLE);
+            found.push(Complaint::new("environment", message).hint("leave it out"));
+        }
         let values = self.values(context);
         if let Some(name) = self.run.iter().find_map(|argument| placeholder(argument, &values)) {
             let message = format!("`{{{{{name}}}}}` is filled in templates, not in `run`");
@@ -154,21 +173,13 @@ impl Stage for Command {
             found.push(Complaint::new("run", message).hint(hint));
         }
         found.extend(rows::check_material(self.material.as_ref(), context));
-        for name in self.files.keys().filter(|name| self.templates.contains_key(*name)) {
-            found.push(Complaint::new("templates", format!("`{name}` stands in `files` and in `templates`")));
-        }
-        for name in self.files.keys().chain(self.templates.keys()).filter(|name| OUTPUT.contains(&name.as_str())) {
-            let message = format!("`{name}` is where the run's own output goes");
-            found.push(Complaint::new("", message).hint("give the file another name"));
-        }
-        for name in self.files.keys().chain(self.templates.keys()).filter(|name| !folder::is_plain(name)) {
-            let message = format!("`{name}` must be a plain name inside the run's folder");
-            found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`"));
-        }
+        found.extend(self.check_names());
         if self.read.is_empty() {
             found.push(Complaint::new("read", "no response is read").hint("add [stage.NAME.read.RESPONSE]"));
         }
         found.extend(self.read.iter().flat_map(|(name, read)| read.check(name, context)));
+        let verdicts = [("validity", &self.validity), ("cautions", &self.cautions)];
+        found.extend(verdicts.into_iter().flat_map(|(key, read)| read.iter().flat_map(move |read| read.check(key))));
         found
     }
 
@@ -176,7 +187,7 @@ impl Stage for Command {
         for (key, files) in [("files", &self.files), ("templates", &self.templates)] {
             for (name, path) in files {
                 let Some(full) = found.file(&format!("{key}.{name}"), path) else { continue };
-                // A template that is no text is told when it is filled.
+                // A template that is no text is reported when it is filled.
                 let text = (key == "templates").then(|| std::fs::read_to_string(full).ok()).flatten();
                 if let Some(fault) = text.and_then(|text| template::fault(&text, || self.values(context))) {
                     let complaint = Complaint::new(key, format!("{path}, {}", fault.message));
@@ -190,6 +201,10 @@ impl Stage for Command {
     fn sketch(&self) -> Sketch {
         let responses = Some(self.read.keys().cloned().collect());
         Sketch { material: self.material.clone(), responses, varies: true, ..Sketch::default() }
+    }
+
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        Forecast::of_design(ahead, |_, _| TaskForecast::Exactly(0))
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -207,6 +222,8 @@ impl Stage for Command {
             environment: self.environment.clone(),
             on_failure: self.on_failure,
             read: self.read.clone(),
+            validity: self.validity.clone(),
+            cautions: self.cautions.clone(),
             values,
             replicate: number,
         };
@@ -233,6 +250,30 @@ impl Kind for Command {
 }
 
 impl Command {
+    /// Faults of the names of files in the folder of a run.
+    fn check_names(&self) -> Vec<Complaint> {
+        let mut found = Vec::new();
+        let names = || self.files.keys().chain(self.templates.keys());
+        for name in self.files.keys().filter(|name| self.templates.contains_key(*name)) {
+            found.push(Complaint::new("templates", format!("`{name}` stands in `files` and in `templates`")));
+        }
+        for name in names().filter(|name| OUTPUT.contains(&name.split('/').next().unwrap_or(name))) {
+            let message = format!("`{name}` is where the run's own output goes");
+            found.push(Complaint::new("", message).hint("give the file another name"));
+        }
+        for name in names().filter(|name| !folder::is_plain(name)) {
+            let message = format!("`{}` must be a plain name inside the run's folder", name.escape_debug());
+            found.push(Complaint::new("", message).hint("leave out `..` and a leading `/`, and take a short name"));
+        }
+        for name in names() {
+            if let Some(below) = names().find(|other| Path::new(other).parent().is_some_and(|p| p.starts_with(name))) {
+                let message = format!("`{name}` is a file, and the folder in which `{below}` lies");
+                found.push(Complaint::new("", message).hint("give one of them another name"));
+            }
+        }
+        found
+    }
+
     /// Every name that a template may use.
     fn values(&self, context: &Context) -> Vec<String> {
         let material = self.material.iter().filter_map(|name| context.materials.get(name));
@@ -298,17 +339,27 @@ fn execute(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let folder = folder::Folder::fill(job, &params)?;
     let outcome = match folder.run(job, &params)? {
-        Ok(()) => responses(&params.read, &folder),
+        Ok(()) => given(&params, &folder),
         Err(reason) => Err(reason),
     };
-    let (responses, missing) = match (outcome, params.on_failure) {
-        (Ok(found), _) => found,
-        (Err(reason), OnFailure::Record) => return Ok(Run::plain(&reason, Responses::default()).to_artifact()),
+    let run = match (outcome, params.on_failure) {
+        (Ok(run), _) => run,
+        (Err(reason), OnFailure::Record) => Run::plain(&reason, Responses::default()),
         (Err(reason), OnFailure::Stop) => return Err(StageError::new(reason).hint(folder.last_words()).into()),
     };
-    missing.iter().for_each(|words| (job.say)(Progress::warning(words)));
+    run.warnings.iter().flatten().for_each(|words| (job.say)(Progress::warning(words)));
+    Ok(run.to_artifact())
+}
+
+/// What the program gave and what it says of it.
+fn given(params: &Params, folder: &folder::Folder) -> Result<Run, String> {
+    let (responses, missing) = responses(&params.read, folder)?;
+    let said = |read: &Option<ReadText>| read.as_ref().map(|read| read.reason(folder)).transpose();
+    let (validity, cautions) = (said(&params.validity)?, said(&params.cautions)?);
+    // A program that says anything of its runs says of all whether they are valid.
+    let validity = validity.or_else(|| cautions.is_some().then(String::new));
     let warnings = (!missing.is_empty()).then_some(missing);
-    Ok(Run { warnings, ..Run::plain("", responses) }.to_artifact())
+    Ok(Run { validity, cautions, warnings, ..Run::plain("", responses) })
 }
 
 /// What a program left: the responses, and words on those that have no value.

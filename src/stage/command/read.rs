@@ -137,7 +137,7 @@ impl Read {
 }
 
 /// The cells of a column; there is at least one.
-fn from_csv(text: &str, column: &str) -> Result<Vec<String>, String> {
+pub(super) fn from_csv(text: &str, column: &str) -> Result<Vec<String>, String> {
     let sheet = Sheet::read(text.as_bytes()).map_err(|e| e.to_string())?;
     let place =
         sheet.place(column).ok_or_else(|| format!("no column `{column}`; it has {}", sheet.heads.join(", ")))?;

@@ -83,7 +83,7 @@ impl Cells<'_> {
         is_number(&text).then(|| text.parse().ok()).flatten()
     }
 
-    /// Cells that keep a column of numbers from being one: thousands separators, and words in a column with a unit.
+    /// Cells that are no numbers in a column of numbers: thousands separators, and words in a column with a unit.
     fn check_words(&self, name: &str, unit: &str, cells: &[String]) -> Result<(), StageError> {
         let wrong = cells.iter().enumerate().find(|(_, cell)| self.number(cell).is_none());
         let Some((row, cell)) = wrong else { return Ok(()) };

@@ -178,7 +178,7 @@ pub(super) fn is_number(text: &str) -> bool {
     sane && text.parse::<f64>().is_ok_and(f64::is_finite)
 }
 
-/// What a reader of a table is told of the way it was read; nothing where that is the usual way.
+/// The note on how a table was read; `None` for the usual way.
 pub(super) fn said(encoding: Option<String>, delimiter: Option<Delimiter>, decimal: Option<Decimal>) -> Option<String> {
     let cells = delimiter.filter(|d| *d != Delimiter::Comma).map(|d| {
         format!(

@@ -2,8 +2,9 @@
 
 use super::super::StageError;
 use super::super::sheet::Sheet;
-use calamine::{Data, Reader, open_workbook_auto_from_rs};
+use calamine::{Data, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
 /// Whether these are the first bytes of a workbook: a zip archive, or the container of old Office files.
@@ -43,17 +44,86 @@ fn lines(bytes: &[u8], sheet: Option<&str>) -> Result<Vec<Vec<String>>, StageErr
             return Err(StageError::new(message).hint(format!("`sheet` is one of: {}", names.join(", "))));
         }
     };
-    let range = book.worksheet_range(&name).map_err(fault)?;
-    let first = range.start().map_or(0, |(row, _)| row as usize);
-    let mut lines = Vec::new();
-    for (row, cells) in range.rows().enumerate() {
-        let read = cells.iter().map(|cell| text(cell).map_err(|e| at(&name, first + row + 1, &e)));
-        let line = read.collect::<Result<Vec<String>, StageError>>()?;
-        if line.iter().any(|cell| !cell.is_empty()) {
-            lines.push(line);
+    let mut cells = Cells::default();
+    let mut take = |row: u32, column: u32, cell: &Data| -> Result<(), StageError> {
+        let read = text(cell).map_err(|e| at(&name, row as usize + 1, &e))?;
+        cells.add(row, column, read)
+    };
+    // Cell by cell where the format allows it: a sheet is as large as the place of its last cell says, and one cell far out
+    // would ask for more memory than there is.
+    match &mut book {
+        Sheets::Xlsx(book) => {
+            let mut reader = book.worksheet_cells_reader(&name).map_err(|e| fault(e.into()))?;
+            while let Some(cell) = reader.next_cell().map_err(|e| fault(e.into()))? {
+                let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
+                take(row, column, &value)?;
+            }
+        }
+        Sheets::Xlsb(book) => {
+            let mut reader = book.worksheet_cells_reader(&name).map_err(|e| fault(e.into()))?;
+            while let Some(cell) = reader.next_cell().map_err(|e| fault(e.into()))? {
+                let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
+                take(row, column, &value)?;
+            }
+        }
+        Sheets::Xls(_) | Sheets::Ods(_) => {
+            let range = book.worksheet_range(&name).map_err(fault)?;
+            let (row, column) = range.start().unwrap_or_default();
+            for (i, j, cell) in range.used_cells() {
+                take(row + i as u32, column + j as u32, cell)?;
+            }
         }
     }
-    Ok(lines)
+    Ok(cells.lines())
+}
+
+/// Most columns of a sheet.
+const MOST_COLUMNS: u32 = 1 << 14;
+
+/// Most cells of the lines of a sheet, the empty ones between others included.
+const MOST_CELLS: usize = 1 << 26;
+
+/// The cells of a sheet that hold something, by row and column.
+#[derive(Default)]
+struct Cells {
+    rows: BTreeMap<u32, Vec<(u32, String)>>,
+    /// The first column that is used, and the last.
+    columns: Option<[u32; 2]>,
+}
+
+impl Cells {
+    fn add(&mut self, row: u32, column: u32, text: String) -> Result<(), StageError> {
+        if text.is_empty() {
+            return Ok(());
+        }
+        if column >= MOST_COLUMNS {
+            let message = format!("the sheet has a cell in column {}", u64::from(column) + 1);
+            return Err(StageError::new(message).hint(format!("at most {MOST_COLUMNS} columns are read")));
+        }
+        self.rows.entry(row).or_default().push((column, text));
+        let [first, last] = self.columns.unwrap_or([column; 2]);
+        let (first, last) = (first.min(column), last.max(column));
+        self.columns = Some([first, last]);
+        let cells = self.rows.len().saturating_mul((last - first) as usize + 1);
+        // The line of names is one more.
+        if self.rows.len() > MOST_RUNS + 1 || cells > MOST_CELLS {
+            let message = format!("the sheet has more than {MOST_RUNS} rows, or {MOST_CELLS} cells");
+            return Err(StageError::new(message).hint("name a part of it, or delete what lies far from the table"));
+        }
+        Ok(())
+    }
+
+    /// The lines, all of one length, from the first column that is used to the last.
+    fn lines(self) -> Vec<Vec<String>> {
+        let Some([first, last]) = self.columns else { return Vec::new() };
+        let width = (last - first) as usize + 1;
+        let line = |cells: Vec<(u32, String)>| {
+            let mut line = vec![String::new(); width];
+            cells.into_iter().for_each(|(column, text)| line[(column - first) as usize] = text);
+            line
+        };
+        self.rows.into_values().map(line).collect()
+    }
 }
 
 fn at(sheet: &str, row: usize, error: &str) -> StageError {

@@ -66,7 +66,7 @@ pub struct Figure {
     /// Number of bins of a `histogram`; chosen from the scatter when not given.
     pub bins: Option<usize>,
     /// What becomes of runs that are not valid: left out of what draws the runs of a table, drawn where the picture is of
-    /// one run, when nothing is said.
+    /// one run, by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub invalid: Option<Invalid>,
     /// `single` (90 mm), `double` (190 mm) or a length.

@@ -1,6 +1,6 @@
 //! The runs whose curves are drawn together: of single runs, or of every row of a simulator's results.
 
-use super::super::rows::Rows;
+use super::super::rows::DesignRows;
 use super::super::{Input, Known, Source, StageError};
 use super::{Figure, Params};
 use crate::artifact::results::Results;
@@ -15,7 +15,7 @@ pub(super) struct Runs {
     pub inputs: Vec<(Cow<'static, str>, Source)>,
     /// Number and name of the group, input by input; empty without groups.
     pub groups: Vec<(usize, String)>,
-    /// What is said of runs that gave no result or are not valid.
+    /// Statements on runs that gave no result or are not valid.
     pub notes: Vec<String>,
 }
 
@@ -72,7 +72,7 @@ fn add_rows(
     (stage, several): (&str, bool),
     (found, keys): (&mut Runs, &mut Vec<String>),
 ) -> Result<(), StageError> {
-    let rows = Rows::of(artifact, known.context)?;
+    let rows = DesignRows::of(artifact, known.context)?;
     let table = Results::table(artifact)?;
     let judged = figure.choice().judge(table)?;
     let whose = if several { format!("{stage}: ") } else { String::new() };

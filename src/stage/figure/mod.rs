@@ -29,6 +29,7 @@ mod config;
 mod curves;
 mod design;
 mod flow;
+mod lost;
 mod model;
 mod own;
 mod plot;
@@ -41,7 +42,9 @@ mod validity;
 use super::beside::Beside;
 use super::given::check_given;
 use super::invalid::Invalid;
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Stage, StageError, Step, Task, Work};
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Progress, Stage, StageError, Step, Task, Work,
+};
 use crate::artifact::presentation::Picture as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
 use figure::palette::Map;
@@ -113,7 +116,7 @@ struct Params {
     /// What becomes of runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     invalid: Invalid,
-    /// What is said of the runs that curves are drawn of.
+    /// Statements on the runs whose curves are drawn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
 }
@@ -324,8 +327,13 @@ impl Kind for Figure {
     /// chains say when. 8: one arithmetic of conversion: last digits of stresses, lengths and forces; values in other
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
+<<<<<<< HEAD
     /// one another. 11: runs that are not valid are left out or marked, and it is said below the picture. 12: names in
     /// what is said there keep their letters.
+=======
+    /// one another. 11: runs that are not valid are left out or marked, which is stated below the picture. 12: titles of
+    /// axes stay on the page; lines of a contour are labelled in the words of its bar.
+>>>>>>> main
     const WORKS: &'static [Work] = &[Work { name: "figure", version: 12, run: draw }];
 }
 
@@ -362,16 +370,29 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Dag => Box::new(flow::dag(&params.outline)),
     };
     let style = Style { points: params.points, map: params.colors, ..Style::wide(params.width) };
-    picture_artifact(&*picture, &style, &validity::sentences(&params, &sources)?)
+    picture_artifact(&*picture, &style, &validity::sentences(&params, &sources)?, job.say)
 }
 
 /// Resolution of the PNG in dots per inch.
 const DPI: f64 = 300.0;
 
 /// A picture as it is stored: the three files, the words for those who cannot see it, and its numbers.
-fn picture_artifact(picture: &dyn Picture, style: &Style, below: &[String]) -> Result<Artifact, Failure> {
+fn picture_artifact(
+    picture: &dyn Picture,
+    style: &Style,
+    below: &[String],
+    say: &dyn Fn(Progress),
+) -> Result<Artifact, Failure> {
     let mut scene = picture.scene(style);
     scene.footnotes(below, style);
+    let faults = scene.faults();
+    if let Some(first) = faults.first() {
+        let more =
+            if faults.len() > 1 { format!(", and {} more such labels", faults.len() - 1) } else { String::new() };
+        let first = first.split(": [").next().unwrap_or(first);
+        let words = format!("{first}{more}; make the figure wider, or give shorter `names` or symbols");
+        say(Progress::warning(&words));
+    }
     let png = figure::png::png(&scene, DPI).map_err(|e| StageError::new(e.to_string()))?;
     let stored = Stored {
         svg: figure::svg::svg(&scene),

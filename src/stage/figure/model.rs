@@ -152,7 +152,7 @@ impl Domain {
     }
 }
 
-/// Places of the runs on which a surface rests, in its two factors.
+/// Points of the runs on which a surface rests, in its two factors.
 fn marks(sources: &Sources, x: &Label, y: &Label) -> Result<Vec<[f64; 2]>, StageError> {
     let mut marks: Vec<[f64; 2]> = Vec::new();
     for source in &sources.compare {
@@ -166,7 +166,7 @@ fn marks(sources: &Sources, x: &Label, y: &Label) -> Result<Vec<[f64; 2]>, Stage
     Ok(marks)
 }
 
-/// As few decimals as tell the number.
+/// The fewest decimals that show the number.
 fn short(v: f64) -> String {
     let exact = |d: &usize| (format!("{v:.d$}").parse::<f64>().unwrap_or(f64::NAN) - v).abs() <= 1e-9 * v.abs();
     (0..6).find(exact).map_or_else(|| significant(v, 4), |d| fixed(v, d))
@@ -230,7 +230,7 @@ pub(super) fn observed(params: &Params, sources: &Sources) -> Result<Agreement, 
     Ok(Agreement { x_word: "Observed".into(), y_word: "Predicted".into(), pairs, band: params.band })
 }
 
-/// Effects on one response, their places in the plots, and what marks the active ones.
+/// Effects on one response, their positions in the plots, and the limits of the active ones.
 struct Effects {
     names: Vec<String>,
     values: Vec<f64>,

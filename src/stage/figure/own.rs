@@ -24,9 +24,9 @@ use stats::summary::{self, Summary};
 use stats::terms::Term;
 
 /// A column that is drawn: what it is, its numbers, and names where its cells are words.
-struct Shown {
-    quantity: Quantity,
-    values: Vec<f64>,
+pub(super) struct Shown {
+    pub quantity: Quantity,
+    pub values: Vec<f64>,
     names: Vec<String>,
 }
 
@@ -45,18 +45,23 @@ impl Shown {
             own => own.to_owned(),
         };
         let to = Conversion::between(&column.unit, &unit);
-        let to = to.map_err(|e| StageError::new(format!("column `{}`: {e}", column.name)))?;
+        let words = |unit: &str| if unit.is_empty() { "no unit".to_owned() } else { format!("`{unit}`") };
+        let to = to.map_err(|e| {
+            let (name, own, wanted) = (&column.name, words(&column.unit), words(&unit));
+            StageError::new(format!("column `{name}` is in {own} and is drawn in {wanted}: {e}"))
+                .hint("give the column's unit in its head, as in `Ec [GPa]`")
+        })?;
         let values = to.of_all(values);
         Ok(Self { quantity: Quantity { unit, ..label.quantity() }, values, names })
     }
 
     /// A value of the column as it is written in a legend or below a box.
-    fn text(&self, value: f64) -> String {
+    pub(super) fn text(&self, value: f64) -> String {
         self.names.get(value as usize).cloned().unwrap_or_else(|| short(value))
     }
 
     /// The values that make groups, in their order: as numbers ascend, or as names do.
-    fn distinct(&self) -> Vec<f64> {
+    pub(super) fn distinct(&self) -> Vec<f64> {
         groups(&[&self.values]).into_iter().map(|group| group.key[0]).collect()
     }
 }
@@ -68,7 +73,7 @@ fn short(value: f64) -> String {
     if plain { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// The numbers of a column; of words the places of their names in the alphabet.
+/// The numbers of a column; of words their alphabetical indices.
 fn numbers(column: &Column) -> (Vec<f64>, Vec<String>) {
     match &column.values {
         Values::Reals(values) => (values.clone(), Vec::new()),
@@ -109,15 +114,15 @@ fn chosen_rows(table: &Table, plot: &Plot, invalid: Invalid) -> Result<Vec<usize
 }
 
 /// The plot, its labels, and the table that it draws.
-struct Drawn<'a> {
-    plot: &'a Plot,
+pub(super) struct Drawn<'a> {
+    pub plot: &'a Plot,
     labels: &'a Labels,
-    table: &'a Table,
-    rows: Vec<usize>,
+    pub table: &'a Table,
+    pub rows: Vec<usize>,
 }
 
 impl<'a> Drawn<'a> {
-    fn of(params: &'a Params, sources: &Sources<'a>) -> Result<Self, StageError> {
+    pub(super) fn of(params: &'a Params, sources: &Sources<'a>) -> Result<Self, StageError> {
         let plot = params.plot.as_ref().ok_or_else(|| StageError::new("the figure names no column"))?;
         let Source(artifact) = sources.first()?;
         let main = || super::super::artifact_kind(artifact).and_then(|kind| kind.main_table());
@@ -134,11 +139,11 @@ impl<'a> Drawn<'a> {
         self.labels.get(key).ok_or_else(|| StageError::new(format!("the figure names no column `{key}`")))
     }
 
-    fn column(&self, key: &str) -> Result<Shown, StageError> {
+    pub(super) fn column(&self, key: &str) -> Result<Shown, StageError> {
         Shown::of(self.table, self.label(key)?, &self.rows)
     }
 
-    fn by(&self) -> Result<Option<Shown>, StageError> {
+    pub(super) fn by(&self) -> Result<Option<Shown>, StageError> {
         self.labels.get("by").map(|label| Shown::of(self.table, label, &self.rows)).transpose()
     }
 }
@@ -213,7 +218,7 @@ fn cloud(plot: &Plot, name: String, x: Vec<f64>, y: Vec<f64>) -> Cloud {
 }
 
 /// Least squares of one column on the other; `None` where the points do not support it.
-fn fitted(fit: Fit, x: &[f64], y: &[f64]) -> Option<(Fit, Regression)> {
+pub(super) fn fitted(fit: Fit, x: &[f64], y: &[f64]) -> Option<(Fit, Regression)> {
     let sample = Sample {
         factors: vec![Factor::new("x", x.to_vec())],
         responses: vec![Response::new("y", y.to_vec())],
@@ -281,7 +286,7 @@ fn overlay(job: &Job, x: &Quantity, y: &Quantity) -> Result<Option<bundle::Line>
     Ok(Some(bundle::Line { name: stem, x: read(first, x)?, y: read(second, y)? }))
 }
 
-/// Places at which a mean curve is computed.
+/// Number of abscissae at which a mean curve is computed.
 const MEAN_PLACES: usize = 201;
 
 pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bundle, Failure> {

@@ -1,4 +1,4 @@
-//! Reading the inputs of a figure, with errors that say which table or column is missing and which there are.
+//! Reading the inputs of a figure, with errors that name the missing table or column and the existing ones.
 
 use super::super::{Job, StageError, artifact_kind};
 use crate::artifact::{Artifact, ArtifactKind, Table, Values};

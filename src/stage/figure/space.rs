@@ -11,7 +11,7 @@ use figure::solid::{Cut, Penny, Solid};
 use figure::stones::{Stone, Stones};
 use figure::zingg::Zingg;
 
-/// A place or direction of the specimen as the page shows it, in mm.
+/// A position or direction of the specimen on the page, in mm.
 fn upright([x, y, z]: [f64; 3]) -> [f64; 3] {
     [x * MM, -z * MM, y * MM]
 }

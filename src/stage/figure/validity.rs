@@ -1,9 +1,9 @@
-//! What a figure does with runs that are not valid, and what it says of them below the picture.
+//! What a figure does with runs that are not valid, and its statement below the picture.
 
 use super::super::StageError;
 use super::super::invalid::{Invalid, sentence};
 use super::source::Sources;
-use super::{Figure, Params, Show};
+use super::{Figure, Params, Show, lost};
 use crate::artifact::results::Results;
 use crate::artifact::validity::{Verdict, faults, of_runs};
 use crate::artifact::{Artifact, ArtifactKind};
@@ -35,6 +35,7 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
         let said = of_source(params, source.0)?;
         found.extend(said.into_iter().map(|said| format!("{whose}{said}")));
     }
+    found.extend(lost::sentences(params, sources)?);
     let mut sentences: Vec<String> = Vec::new();
     for said in found.into_iter().map(|said| sentence(&said)) {
         if !sentences.contains(&said) {

@@ -33,7 +33,7 @@ pub(super) fn stored(model: &Model) -> FittedModel {
     }
 }
 
-/// How a model takes the values of its factors; nothing when it takes all as they are.
+/// Scales of the factors of a model; `None` when all are linear.
 pub(super) fn scales(axes: &[&Axis]) -> Option<Vec<TakenAs>> {
     let taken = |axis: &&Axis| match axis.scale {
         Scale::Linear => TakenAs::Linear,

@@ -1,4 +1,4 @@
-//! What fitted models say of chosen points, and the way up and down from the centre of each surface.
+//! Predictions of fitted models at chosen points, and the way up and down from the centre of each surface.
 
 use super::super::columns::Rows;
 use super::super::notes::Notes;

@@ -10,7 +10,7 @@ use dem::parameter::{Parameter, Quantity};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What a stage says on all bonds.
+/// Settings of a stage for all bonds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Bonding {
     /// Bond of the entries that name none.
@@ -32,7 +32,7 @@ pub struct Need<'a> {
     pub name: Option<&'a str>,
     /// Names of the specimen's groups by their number.
     pub groups: &'a [String],
-    /// What the stage says on all bonds.
+    /// Settings of the stage for all bonds.
     pub bonding: &'a Bonding,
 }
 
@@ -221,7 +221,7 @@ fn microparameter(
     let mean =
         if parameter == Parameter::TensileDeviation { Parameter::TensileStrength } else { Parameter::ShearStrength };
     let mean = all.iter().find(|(key, _)| *key == mean.key()).map(|(_, mean)| mean.value);
-    // Without a mean the contact lacks its strength, which is told there.
+    // Without a mean the contact lacks its strength, which is reported there.
     Ok((parameter, mean.map_or(0.0, |mean| found.value / mean)))
 }
 
@@ -283,7 +283,7 @@ fn combined(made: &Made, between: &[String; 2], rule: PairRule) -> Result<Contac
     Ok(contact)
 }
 
-/// What the stage says on bonds that no contact has.
+/// Bond settings of the stage that no contact uses.
 fn unused(made: &Made, bonding: &Bonding) -> Vec<Complaint> {
     let acts = |parameter: &Parameter| {
         let laws = parameter.declaration().laws;

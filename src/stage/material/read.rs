@@ -1,4 +1,4 @@
-//! Reads `[material.NAME]` and tells editors what it may hold.
+//! Reads `[material.NAME]`, and its schema for editors.
 
 use super::{Entry, Material, PairRule, Value};
 use crate::expression::Expression;
@@ -36,7 +36,7 @@ impl<'de> Deserialize<'de> for MaterialTable {
                 }
                 Ok(MaterialTable(material))
             }
-            /// The place of a value whose fault is reported already.
+            /// A value whose fault is reported already.
             fn visit_unit<E: de::Error>(self) -> Result<MaterialTable, E> {
                 Ok(MaterialTable(Material::default()))
             }
@@ -101,7 +101,7 @@ impl<'de> Deserialize<'de> for ValueText {
             fn visit_i64<E: de::Error>(self, value: i64) -> Result<Value, E> {
                 self.visit_f64(value as f64)
             }
-            /// The place of a value whose fault is reported already.
+            /// A value whose fault is reported already.
             fn visit_unit<E: de::Error>(self) -> Result<Value, E> {
                 self.visit_f64(1.0)
             }

@@ -2,7 +2,7 @@
 //!
 //! The result is an artifact `groups`: table `groups`, one row per response, group and term, with the quality of the fit
 //! beside it and, for fits through the origin, the same terms with a constant; `residuals`; `notes`. A group that does not
-//! support its model has a row that says why. Later stages read `groups` as a table of runs.
+//! support its model has a row with the reason. Later stages read `groups` as a table of runs.
 
 use super::super::columns::{Rows, refused, runs};
 use super::super::fitted::Fitting;

@@ -7,14 +7,14 @@ use math::occurrence::occurrences;
 
 /// The rows of a design. Equal rows are replicates, numbered from 1 by occurrence.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rows {
+pub struct DesignRows {
     /// Names of the factors, ascending.
     factors: Vec<String>,
     /// Of each row: the bits of its values, factor by factor, and its replicate.
     words: Vec<u64>,
 }
 
-impl Rows {
+impl DesignRows {
     /// The rows of a design.
     ///
     /// # Errors
@@ -48,7 +48,7 @@ impl Rows {
         Ok(Self { factors: columns.iter().map(|column| column.name.clone()).collect(), words })
     }
 
-    /// The rows that [`Rows::factors`] and [`Rows::words`] gave.
+    /// The rows that [`DesignRows::factors`] and [`DesignRows::words`] gave.
     pub fn from_parts(factors: Vec<String>, words: Vec<u64>) -> Option<Self> {
         words.len().is_multiple_of(factors.len() + 1).then_some(Self { factors, words })
     }
@@ -68,12 +68,12 @@ impl Rows {
         &self.factors
     }
 
-    /// All rows as numbers, [`Rows::name`] after name.
+    /// All rows as numbers, [`DesignRows::name`] after name.
     pub fn words(&self) -> &[u64] {
         &self.words
     }
 
-    /// What tells a row from every other one over the same factors.
+    /// The name of a row, different from that of every other row over the same factors.
     pub fn name(&self, index: usize) -> &[u64] {
         let width = self.factors.len() + 1;
         &self.words[index * width..(index + 1) * width]

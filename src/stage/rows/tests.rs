@@ -22,22 +22,22 @@ fn design(moduli: &[f64]) -> Artifact {
 #[test]
 fn equal_rows_are_replicates_by_occurrence() {
     let design = design(&[10.0, 20.0, 10.0]);
-    let found = Rows::of(&design, &context()).unwrap();
+    let found = DesignRows::of(&design, &context()).unwrap();
     assert_eq!([0, 1, 2].map(|row| found.replicate(row)), [1, 1, 2]);
     assert_eq!(found.point(2), Point::from([("Ec".to_owned(), 10.0)]));
 }
 
 #[test]
 fn rows_are_told_apart_by_point_and_replicate() {
-    let rows = |moduli: &[f64]| Rows::of(&design(moduli), &context()).unwrap();
+    let rows = |moduli: &[f64]| DesignRows::of(&design(moduli), &context()).unwrap();
     let found = rows(&[10.0, 20.0, 10.0, -0.0]);
     for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3)] {
         assert_ne!(found.name(a), found.name(b));
     }
     assert_eq!(found.name(3), rows(&[0.0]).name(0));
-    let back = Rows::from_parts(found.factors().to_vec(), found.words().to_vec());
+    let back = DesignRows::from_parts(found.factors().to_vec(), found.words().to_vec());
     assert_eq!(back.as_ref(), Some(&found));
-    assert_eq!(Rows::from_parts(found.factors().to_vec(), found.words()[1..].to_vec()), None);
+    assert_eq!(DesignRows::from_parts(found.factors().to_vec(), found.words()[1..].to_vec()), None);
 }
 
 #[test]

@@ -165,6 +165,13 @@ impl Shapes {
             "`unit` has no effect on sections",
             "units stand in the heads of their columns",
         );
+        odd(
+            // From a nanometre to a kilometre.
+            files && self.unit.is_some_and(|unit| !(1e-9..=1e3).contains(&unit.get())),
+            "unit",
+            "`unit` is no length that a stone could be measured in; a negative one would turn it inside out",
+            "unit = \"1 mm\" where the file counts in millimetres",
+        );
         odd(files && self.around.is_some(), "around", "`around` has no effect on STL files", "leave it out");
         let around = self.around.unwrap_or(32);
         let good = (8..=512).contains(&around) && around.is_multiple_of(4);

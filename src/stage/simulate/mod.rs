@@ -26,6 +26,7 @@ pub use config::{BondConfig, PackingChoice, Simulate};
 pub use fissures::{FissureConfig, JointConfig, NetworkConfig};
 pub use speed::PlatenSpeed;
 
+use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::specimen::Loaded;
 use super::{
@@ -76,6 +77,16 @@ impl Stage for Simulate {
         Sketch { material, responses: Some(responses), varies: true, ..Sketch::default() }
     }
 
+    fn forecast(&self, ahead: &Ahead) -> Forecast {
+        // The specimen of the stage itself serves as the first of its replicates.
+        let specimens = |design: &Forecast, rows: usize| match self.packing {
+            PackingChoice::Own => TaskForecast::Exactly(rows),
+            PackingChoice::Shared if self.varies_specimen(ahead.context) => TaskForecast::AtMost(rows),
+            PackingChoice::Shared => TaskForecast::Exactly(design.replicates - 1),
+        };
+        Forecast { per_run: 2, ..Forecast::of_design(ahead, specimens) }
+    }
+
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         rows::fan_out(self, known)
     }
@@ -108,6 +119,16 @@ impl Stage for Simulate {
 }
 
 impl Simulate {
+    /// Whether a factor of its design sets numbers of its specimen, or of a stage that the specimen is made from.
+    fn varies_specimen(&self, context: &Context) -> bool {
+        let design = self.design.as_ref().and_then(|design| context.sketches.get(design));
+        let factors = design.and_then(|sketch| sketch.factors.as_ref());
+        let sets = factors.into_iter().flatten().filter_map(|name| context.factors.get(name)).flat_map(|own| &own.sets);
+        let own = sets.filter_map(|path| path.split_once('.').map(|(stage, _)| stage));
+        let makes = |stage: &str| context.sketches.get(stage).is_some_and(|own| own.varies && own.responses.is_none());
+        own.into_iter().any(makes)
+    }
+
     /// Refuses a row that varies what is neither of this stage, nor of its specimen, nor of its material.
     fn concerned(&self, known: &Known, point: &Point) -> Result<(), StageError> {
         for name in point.keys() {

@@ -24,6 +24,7 @@ pub(super) fn artifact<S: Space>(record: &TestRecord<S>, test: &Loading, materia
     let run = Run {
         failure: record.run.failure.map_or_else(String::new, |failure| failure.to_string()),
         validity: Some(record.validity()),
+        cautions: None,
         warnings: Some(warnings(record)),
         responses: Responses::of(&responses(record, test.kind)),
         judgement: Some(judgement(record)),

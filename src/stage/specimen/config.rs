@@ -51,7 +51,7 @@ pub struct Specimen {
     pub gives_way: GivesWay,
     /// Density of the balls.
     pub density: Density,
-    /// Group of the balls, as the material names it; a material of one group fits whatever its name.
+    /// Group of the balls, as the material names it; a material of one group fits under any name.
     #[serde(default = "balls")]
     pub group: String,
     /// Several groups and their shares of the volume, instead of `group`: `{ quartz = 0.3, feldspar = 0.7 }`.

@@ -12,7 +12,7 @@
 //! packing and another aggregate of the same recipe; its seed comes from the workflow's seed and k. What is computed and
 //! why: [`dem::genesis`].
 //!
-//! A packing that comes to nothing (overlaps beyond half a radius, no rest) is a result with its reason, as a test without
+//! A packing that fails (overlaps beyond half a radius, no rest) is a result with its reason, as a test without
 //! a peak is: of a design, the rows on that packing have no result, and the others go on.
 
 mod aggregate;
@@ -98,7 +98,7 @@ fn make(job: &Job) -> Result<Artifact, Failure> {
     made.or_else(|faults| unmade(&recipe, &faults, job))
 }
 
-/// What is stored where packing came to nothing, so that the rows that rest on this specimen alone are without a result.
+/// What is stored where packing failed, so that the rows that rest on this specimen alone are without a result.
 fn unmade(recipe: &Recipe, faults: &[SpecimenError], job: &Job) -> Result<Artifact, Failure> {
     let words = faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
     match faults {

@@ -109,7 +109,7 @@ fn monstrous_and_impossible_packings_are_refused_before_they_run() {
     let plane = "width = '0.1 m'\nheight = '0.2 m'\ndensity = '2650 kg/m^3'\nradius_ratio = 2.5\n";
     let of = |keys: &str| messages(&format!("{plane}{keys}"));
     let tiny = of("mean_radius = '1 nm'\nporosity = 0.12");
-    assert!(tiny.len() == 1 && tiny[0].starts_with("mean_radius:") && tiny[0].contains("5.602e15"), "{tiny:?}");
+    assert!(tiny.len() == 1 && tiny[0].starts_with("mean_radius:") && tiny[0].contains("5.60e15"), "{tiny:?}");
     let loose = of("mean_radius = '1 mm'\nporosity = 0.9");
     assert!(loose.len() == 1 && loose[0].starts_with("porosity:"), "{loose:?}");
     let one = of("mean_radius = '50 mm'\nporosity = 0.12");

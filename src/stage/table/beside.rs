@@ -52,7 +52,7 @@ pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String
     Ok(out)
 }
 
-/// Whether two cells tell the same row; numbers within a thousandth, because printed ones are rounded.
+/// Whether two cells name the same row; numbers within a thousandth, because printed ones are rounded.
 fn equal(ours: &Values, i: usize, theirs: &artifact::Values, j: usize) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-3 * a.abs().max(b.abs()).max(1e-12);
     let number = match theirs {

@@ -1,4 +1,4 @@
-//! Quantities told row by row (`value,unit`, in SI units) in the units that people read them in.
+//! Quantities listed row by row (`value,unit`, in SI units) in the units that people read them in.
 //!
 //! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`, another quantity that of the
 //! field ([`super::super::units`]).
@@ -8,7 +8,7 @@ use crate::unit::Conversion;
 use figure::column::{Column, Digits, Values};
 use std::collections::BTreeMap;
 
-/// The columns of a table that tells quantities row by row.
+/// The columns of a table that lists quantities row by row.
 pub(super) const ROWWISE: [&str; 2] = ["value", "unit"];
 
 /// Scales every number of the columns named after `value` to the wanted unit of its row, and names that unit.

@@ -1,4 +1,4 @@
-//! Runs that are not valid in printed tables: kept and marked, left out, or refused, and said below the table.
+//! Runs that are not valid in printed tables: shown and marked, left out, or refused, with a statement below the table.
 
 use super::{Params, chosen, chosen_rows, find, named};
 use crate::artifact::results::Results;
@@ -11,7 +11,7 @@ use figure::column::Column;
 /// The column that marks runs that are not valid, where the table would not show it.
 const MARK: &str = "validity";
 
-/// The columns of one input, and what must be said of the runs behind them; no column where its only run is left out.
+/// The columns of one input, and the statements on the runs behind them; no column where its only run is left out.
 ///
 /// # Errors
 /// There is no such table or column, or a run is not valid and refused.

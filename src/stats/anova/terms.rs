@@ -73,8 +73,8 @@ impl Layout {
 
     /// The same model without the named terms.
     pub(super) fn without(&self, labels: &[String]) -> Self {
-        let kept = (0..self.terms.len()).filter(|&term| !labels.contains(&self.label(term)));
-        Self::new(&self.names, kept.map(|term| self.terms[term].clone()).collect(), self.levels.clone())
+        let remaining = (0..self.terms.len()).filter(|&term| !labels.contains(&self.label(term)));
+        Self::new(&self.names, remaining.map(|term| self.terms[term].clone()).collect(), self.levels.clone())
     }
 }
 
@@ -87,8 +87,8 @@ pub(super) fn chosen_terms(sample: &Sample, usable: &Usable, settings: &Settings
     match &settings.interactions {
         Interactions::None => {}
         Interactions::Named(pairs) => {
-            let place = |name: &String| names.iter().position(|n| n == name);
-            terms.extend(pairs.iter().filter_map(|(a, b)| Some(vec![place(a)?, place(b)?])));
+            let index = |name: &String| names.iter().position(|n| n == name);
+            terms.extend(pairs.iter().filter_map(|(a, b)| Some(vec![index(a)?, index(b)?])));
         }
         Interactions::Estimable => return estimable(sample, usable, &names, terms, levels),
     }

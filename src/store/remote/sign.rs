@@ -35,7 +35,7 @@ impl Signing {
         let Self::Key(key) = self else { return Ok(None) };
         let mut command = Command::new("ssh-keygen");
         command.args(["-Y", "sign", "-n", NAMESPACE, "-f"]).arg(key);
-        run(command, bytes).map(Some)
+        run(command, bytes).map(Some).map_err(|(Trouble::NotRun(why) | Trouble::Said(why))| why)
     }
 }
 
@@ -51,28 +51,45 @@ impl Trust {
         kept.write_all(signature).map_err(|error| error.to_string())?;
         let mut find = Command::new("ssh-keygen");
         find.args(["-Y", "find-principals", "-f"]).arg(file).arg("-s").arg(kept.path());
-        let unknown = |_| format!("its signer is not in {}", file.display());
+        let unknown = |why| match why {
+            Trouble::NotRun(why) => why,
+            Trouble::Said(_) => format!("its signer is not in {}", file.display()),
+        };
         let found = run(find, bytes).map_err(unknown)?;
         let found = String::from_utf8_lossy(&found).into_owned();
         let principal = found.lines().next().unwrap_or_default().split(',').next().unwrap_or_default().trim();
         let mut verify = Command::new("ssh-keygen");
         verify.args(["-Y", "verify", "-n", NAMESPACE, "-I", principal, "-f"]).arg(file).arg("-s").arg(kept.path());
-        run(verify, bytes).map_err(|why| format!("the signature of {principal} does not fit it ({why})"))?;
+        let unfit = |why| match why {
+            Trouble::NotRun(why) => why,
+            Trouble::Said(why) => format!("the signature of {principal} does not fit it ({why})"),
+        };
+        run(verify, bytes).map_err(unfit)?;
         Ok(principal.to_owned())
     }
 }
 
-/// Runs a program on these bytes; its output, or the last line of what it complains of.
-fn run(mut command: Command, bytes: &[u8]) -> Result<Vec<u8>, String> {
+/// Why a program gave nothing: a signature is judged by what it says, and by nothing when it could not be run.
+enum Trouble {
+    /// It could not be run.
+    NotRun(String),
+    /// The last line of what it complains of.
+    Said(String),
+}
+
+/// Runs a program on these bytes; its output.
+fn run(mut command: Command, bytes: &[u8]) -> Result<Vec<u8>, Trouble> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().map_err(|error| format!("`ssh-keygen` of OpenSSH cannot be run: {error}"))?;
+    let unrun = |error: std::io::Error| Trouble::NotRun(format!("`ssh-keygen` of OpenSSH cannot be run: {error}"));
+    let mut child = command.spawn().map_err(unrun)?;
     let written = child.stdin.take().map(|mut input| input.write_all(bytes));
-    let output = child.wait_with_output().map_err(|error| error.to_string())?;
+    let output = child.wait_with_output().map_err(unrun)?;
     if output.status.success() {
         // It may have known enough before it had read all.
         let _ = written;
         return Ok(output.stdout);
     }
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    Err(said.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("it says nothing").trim().to_owned())
+    let last = said.lines().rev().find(|line| !line.trim().is_empty());
+    Err(Trouble::Said(last.unwrap_or("it says nothing").trim().to_owned()))
 }

@@ -211,7 +211,7 @@ fn after_shear_break<S: Space>(
     };
     let (still, slide) = (Spin::<S>::zero(), along::<S>(1, drag / KS / STEPS));
     let mut pulled = engine.clone();
-    engine.keep_books();
+    engine.track_energy();
     engine.set_motion(1, along::<S>(0, -0.2 * drag / KN / 100.0), still).unwrap();
     engine.advance(100).unwrap();
     let broke = until_broken(&mut engine, slide, still);

@@ -1,4 +1,4 @@
-//! The books of energy close: stored + spent = initial + given.
+//! The energy balance close: stored + spent = initial + given.
 
 use crate::block::*;
 use crate::case::{Case, Family, Near};
@@ -48,7 +48,7 @@ fn crushed<S: Space>(mut model: Model<S>, bond: Bond, steps: u64) -> f64 {
     let mut engine = Engine::new(&model).unwrap();
     engine.install_bonds(1e-5, 7).unwrap();
     engine.absorb_overlaps();
-    engine.keep_books();
+    engine.track_energy();
     engine.advance(steps).unwrap();
     assert!(engine.cracks().len() > 30, "{} cracks", engine.cracks().len());
     let energy = measure::energy(&engine);
@@ -65,7 +65,7 @@ fn bouncing() -> f64 {
     let ball = Particle::ball([0.0, 0.6], 0.5, 2000.0, GRAIN);
     let mut engine = Engine::<D2>::new(&model(vec![ball], vec![floor()], law, settings)).unwrap();
     engine.set_motion(0, [0.1, 0.0], [0.0]).unwrap();
-    engine.keep_books();
+    engine.track_energy();
     let mut worst: f64 = 0.0;
     for _ in 0..40 {
         engine.advance(1000).unwrap();
@@ -81,7 +81,7 @@ fn the_books_do_not_depend_on_threads() {
     let run = |threads| {
         let mut engine = Engine::new(&model).unwrap();
         engine.install_bonds(1e-5, 7).unwrap();
-        engine.keep_books();
+        engine.track_energy();
         engine.set_threads(threads);
         engine.advance(1000).unwrap();
         measure::energy(&engine)
@@ -96,7 +96,7 @@ fn the_books_do_not_depend_on_when_the_threads_change() {
     let run = |threads: [usize; 4]| {
         let mut engine = Engine::new(&model).unwrap();
         engine.install_bonds(1e-5, 7).unwrap();
-        engine.keep_books();
+        engine.track_energy();
         for threads in threads {
             engine.set_threads(threads);
             engine.advance(331).unwrap();

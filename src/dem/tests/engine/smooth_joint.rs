@@ -187,7 +187,7 @@ fn joints_have_the_same_bits_everywhere() {
         assert!(engine.lay_joints(&[fracture], &[joint], 1e-5).unwrap() > 10);
         engine.install_bonds(1e-5, 7).unwrap();
         engine.absorb_overlaps();
-        engine.keep_books();
+        engine.track_energy();
         engine.set_threads(threads);
         engine.set_width(width);
         engine.advance(2200).unwrap();

@@ -3,6 +3,7 @@
 #![allow(clippy::approx_constant, clippy::disallowed_methods)] // sample data, not mathematics
 #![allow(clippy::unwrap_used)]
 
+mod hostile;
 mod samples;
 
 use figure::column::{Column, Values};

@@ -47,7 +47,7 @@ fn every_fault_of_a_table_at_once() {
             "two columns are named `a`; give each factor and response its own name",
             "column `a` has 5 rows where the table has 6",
             "row 3: `a` is NaN; mark the row as missing or give a finite number",
-            "row 4: `b` is 2.5, which is none of its levels [1.0, 2.0]; correct the row or add the level",
+            "row 4: `b` is 2.5, which is none of its levels 1, 2; correct the row or add the level",
             "row 6: `y` is inf; mark the row as missing or give a finite number",
             "row 3: weight 0 is not a positive number",
         ]

@@ -61,13 +61,13 @@ pub(super) fn columns(file: &str, names: &[&str]) -> Vec<Vec<f64>> {
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
     let heads = reader.headers().unwrap().clone();
-    let place = |name: &str| heads.iter().position(|h| h.split(' ').next() == Some(name)).unwrap();
-    let places: Vec<usize> = names.iter().map(|n| place(n)).collect();
+    let column = |name: &str| heads.iter().position(|h| h.split(' ').next() == Some(name)).unwrap();
+    let columns: Vec<usize> = names.iter().map(|n| column(n)).collect();
     let mut found = vec![Vec::new(); names.len()];
     for row in reader.records() {
         let row = row.unwrap();
-        for (values, &place) in found.iter_mut().zip(&places) {
-            values.push(row[place].parse().unwrap());
+        for (values, &column) in found.iter_mut().zip(&columns) {
+            values.push(row[column].parse().unwrap());
         }
     }
     found
@@ -135,29 +135,30 @@ fn rows_agree(found: &Regression, set: &Table) {
 }
 
 fn point_agrees(found: &Regression, set: &Table) {
-    let said = found.model.predict(&numbers(&set["point"]), 0.95);
-    let (confidence, prediction) = (said.confidence.unwrap(), said.prediction.unwrap());
-    let numbers_said = [said.value, said.std_error.unwrap(), confidence.0, confidence.1, prediction.0, prediction.1];
-    all_close(numbers_said, &numbers(&set["prediction"]), 1e-10, "prediction");
-    assert!(said.outside.is_empty() && !said.far);
+    let predicted = found.model.predict(&numbers(&set["point"]), 0.95);
+    let (confidence, prediction) = (predicted.confidence.unwrap(), predicted.prediction.unwrap());
+    let predicted_numbers =
+        [predicted.value, predicted.std_error.unwrap(), confidence.0, confidence.1, prediction.0, prediction.1];
+    all_close(predicted_numbers, &numbers(&set["prediction"]), 1e-10, "prediction");
+    assert!(predicted.outside.is_empty() && !predicted.far);
     let beyond: Vec<f64> = found.model.axes.iter().map(|a| a.high + 0.1 * a.half).collect();
-    let said = found.model.predict(&beyond, 0.95);
-    assert!(said.far && said.outside.len() == found.model.axes.len());
+    let predicted = found.model.predict(&beyond, 0.95);
+    assert!(predicted.far && predicted.outside.len() == found.model.axes.len());
 }
 
 fn canonical_agrees(found: &Regression, set: &Table) {
-    let place = canonical(&found.model).unwrap();
-    all_close(place.axes.iter().map(|a| a.eigenvalue), &numbers(&set["eigenvalues"]), 1e-9, "eigenvalues");
-    all_close(place.coded.iter().copied(), &numbers(&set["stationary"]), 1e-9, "stationary point");
-    close(place.value, number(&set["stationary_value"]), 1e-10, "stationary value");
-    let up = place.axes.iter().filter(|a| a.eigenvalue > 0.0).count();
+    let point = canonical(&found.model).unwrap();
+    all_close(point.axes.iter().map(|a| a.eigenvalue), &numbers(&set["eigenvalues"]), 1e-9, "eigenvalues");
+    all_close(point.coded.iter().copied(), &numbers(&set["stationary"]), 1e-9, "stationary point");
+    close(point.value, number(&set["stationary_value"]), 1e-10, "stationary value");
+    let up = point.axes.iter().filter(|a| a.eigenvalue > 0.0).count();
     let nature =
-        [Nature::Maximum, Nature::Saddle, Nature::Minimum][usize::from(up > 0) + usize::from(up == place.axes.len())];
-    assert_eq!(place.nature, nature);
+        [Nature::Maximum, Nature::Saddle, Nature::Minimum][usize::from(up > 0) + usize::from(up == point.axes.len())];
+    assert_eq!(point.nature, nature);
     for (upward, key) in [(true, "highest_on_unit_sphere"), (false, "lowest_on_unit_sphere")] {
         let path = steepest_path(&found.model, upward, &[0.0, 0.5, 1.0]).unwrap();
         close(path[2].value, number(&set[key]), 1e-9, key);
-        assert_eq!(path[0].value, found.model.value_coded(&vec![0.0; place.coded.len()]));
+        assert_eq!(path[0].value, found.model.value_coded(&vec![0.0; point.coded.len()]));
         let length = path[2].coded.iter().map(|u| u * u).sum::<f64>().sqrt();
         assert!((length - 1.0).abs() < 1e-9);
     }
@@ -181,8 +182,8 @@ fn backward_selection_takes_the_same_steps() {
     let gone: Vec<&str> = found.steps.iter().map(|s| s.term.as_str()).collect();
     assert_eq!(gone, texts(&wanted["gone"]));
     all_close(found.steps.iter().map(|s| s.p), &numbers(&wanted["p"]), 1e-8, "p of the steps");
-    let kept: Vec<&str> = found.natural.iter().map(|c| c.term.as_str()).collect();
-    assert_eq!(kept, texts(&wanted["kept"]));
+    let terms: Vec<&str> = found.natural.iter().map(|c| c.term.as_str()).collect();
+    assert_eq!(terms, texts(&wanted["kept"]));
     close(found.fit.r2, number(&wanted["r2"]), 1e-11, "R²");
     let forward = regress(&table, "nu", &Term::second_order(&names), &settings(Direction::Forward)).unwrap();
     assert!(forward.steps.iter().all(|s| s.added && s.p <= 0.05));

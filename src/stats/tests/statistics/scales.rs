@@ -62,9 +62,9 @@ fn a_truth_linear_in_the_logarithm_is_met_exactly() {
 #[test]
 fn the_stationary_point_is_told_in_natural_units() {
     let found = fitted(Scale::Log, |a, b| ln(a / 10.0).powi(2) + (b - 1.0).powi(2));
-    let place = canonical(&found.model).unwrap();
-    assert!((place.natural[0] - 10.0).abs() < 1e-9 && (place.natural[1] - 1.0).abs() < 1e-9, "{place:?}");
-    assert!((place.coded[0] - 0.5).abs() < 1e-11 && place.inside);
+    let point = canonical(&found.model).unwrap();
+    assert!((point.natural[0] - 10.0).abs() < 1e-9 && (point.natural[1] - 1.0).abs() < 1e-9, "{point:?}");
+    assert!((point.coded[0] - 0.5).abs() < 1e-11 && point.inside);
 }
 
 /// A scale is the same as a column of logarithms: every number of the fit, to the last bit.

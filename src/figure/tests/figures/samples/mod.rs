@@ -1,6 +1,6 @@
 //! Sample data of every figure, made by formulas that look like the real thing.
 
-mod columns;
+pub(crate) mod columns;
 mod fits;
 mod spatial;
 
@@ -127,7 +127,7 @@ fn stress_strain(n: usize) -> StressStrain {
     StressStrain { curves: (0..n).map(curve).collect() }
 }
 
-fn main_effects(published: bool) -> MainEffects {
+pub(crate) fn main_effects(published: bool) -> MainEffects {
     let slopes = [0.3, -0.8, 9.3, 7.8, 2.0, 0.4, -0.5, 0.6, 0.9, -0.7, 1.4, 2.1, 0.5];
     let grand = 38.6;
     let mut random = Stream::new(3, "means", 0);
@@ -150,7 +150,7 @@ fn main_effects(published: bool) -> MainEffects {
     }
 }
 
-fn range() -> RankedBars {
+pub(crate) fn range() -> RankedBars {
     let values = [0.9, 1.6, 18.64, 15.59, 4.1, 1.2, 1.4, 1.1, 2.0, 1.5, 3.1, 4.4, 1.3];
     let mut random = Stream::new(3, "range", 0);
     let bars = factors().into_iter().zip(values).map(|((factor, group, _), value)| Bar {
@@ -167,7 +167,7 @@ fn range() -> RankedBars {
     }
 }
 
-fn pareto() -> RankedBars {
+pub(crate) fn pareto() -> RankedBars {
     let values = [("A", 11.4), ("B", 9.1), ("AB", 5.2), ("C", 3.3), ("AC", 1.6), ("BC", 1.2), ("ABC", 0.4)];
     let bars = values.map(|(name, value)| Bar {
         factor: Quantity::new(name, "", ""),
@@ -184,7 +184,7 @@ fn pareto() -> RankedBars {
 }
 
 /// The published surface of strength (Table 12 of Su et al. 2021).
-fn contour() -> Contour {
+pub(crate) fn contour() -> Contour {
     let n = 61;
     let axis: Vec<f64> = (0..n).map(|i| 5.858 + 28.284 * i as f64 / (n - 1) as f64).collect();
     let f = |s: f64, t: f64| -0.48 + 1.083 * s + 0.919 * t - 0.03138 * s * s - 0.0259 * t * t + 0.0656 * s * t;

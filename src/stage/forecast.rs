@@ -1,0 +1,61 @@
+//! What a stage is expected to ask for, as far as the workflow and its files tell before anything runs: for `flow plan`.
+
+use super::Context;
+
+/// Tasks and rows of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Forecast {
+    /// Rows of its result, for stages that go through them; none where only the run tells.
+    pub rows: Option<usize>,
+    /// How many of these rows are equal, at most.
+    pub replicates: usize,
+    /// Tasks that one more run of it asks for when it stands on a specimen of its own: the specimen and the run.
+    pub per_run: usize,
+    /// Tasks that it asks for; none where only the run tells.
+    pub tasks: Option<TaskForecast>,
+}
+
+/// How many tasks a stage asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TaskForecast {
+    /// So many; fewer where stages ask for the same ones.
+    Exactly(usize),
+    /// So many, or fewer: it may end early.
+    AtMost(usize),
+}
+
+/// What can be seen ahead of a run.
+pub struct Ahead<'a> {
+    /// Of the whole workflow.
+    pub context: &'a Context,
+    /// The forecasts of the stages behind a port.
+    pub behind: &'a dyn Fn(&str) -> Vec<Forecast>,
+    /// The bytes of a file beside the workflow; none when it cannot be read.
+    pub file: &'a dyn Fn(&str) -> Option<Vec<u8>>,
+}
+
+impl TaskForecast {
+    /// These and `more`.
+    pub fn and(self, more: usize) -> Self {
+        match self {
+            Self::Exactly(tasks) => Self::Exactly(tasks.saturating_add(more)),
+            Self::AtMost(tasks) => Self::AtMost(tasks.saturating_add(more)),
+        }
+    }
+}
+
+impl Forecast {
+    /// One task.
+    pub const ONE: Self = Self { rows: None, replicates: 1, per_run: 1, tasks: Some(TaskForecast::Exactly(1)) };
+
+    /// Nothing is known.
+    pub const UNKNOWN: Self = Self { tasks: None, ..Self::ONE };
+
+    /// A run for each row of the design behind the port `design`, on specimens that `specimens` counts from the design's
+    /// forecast, and the task that gathers them; one run without a design.
+    pub fn of_design(ahead: &Ahead, specimens: impl Fn(&Self, usize) -> TaskForecast) -> Self {
+        let Some(design) = (ahead.behind)("design").into_iter().next() else { return Self::ONE };
+        let tasks = |rows: usize| specimens(&design, rows).and(rows.saturating_add(1));
+        Self { rows: design.rows, tasks: design.rows.map(tasks), ..Self::ONE }
+    }
+}

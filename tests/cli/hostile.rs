@@ -1,0 +1,209 @@
+//! Hostile situations that were thought up afresh, by kind: what each showed stays mended.
+
+use crate::space::{Space, told};
+use std::os::unix::process::ExitStatusExt;
+use std::process::{Command, Stdio};
+
+/// A table of two columns read by one stage of statistics.
+fn data(csv: &str, stage: &str) -> Space {
+    let space = Space::new();
+    space.write("d.csv", csv);
+    space.write(
+        "w.toml",
+        &format!(
+            "[workflow]\nseed = 1\n[factor]\na = {{ levels = [1, 2] }}\n[response]\ny = {{}}\n\
+             [stage.d]\nkind = \"data\"\nfile = \"d.csv\"\n[stage.s]\n{stage}\n"
+        ),
+    );
+    space
+}
+
+const ANOVA: &str = "kind = \"anova\"\ntable = \"d\"\nfactors = [\"a\"]";
+
+/// Squares that overflow or vanish gave sums of squares of zero without a word.
+#[test]
+fn responses_whose_squares_no_number_holds_are_refused() {
+    for (scale, words) in [("e300", "values of the size 3e300"), ("e-300", "values of the size 2e-300")] {
+        let space = data(&format!("a,y\n1,1{scale}\n2,2{scale}\n1,3{scale}\n2,1{scale}\n"), ANOVA);
+        let output = space.flow(&["run", "w.toml"]);
+        assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+        assert!(told(&output).contains(words) && told(&output).contains("another unit"), "{}", told(&output));
+    }
+    // Far from zero is no fault.
+    let space = data("a,y\n1,1e12\n2,1.000001e12\n1,1.000002e12\n2,1.000004e12\n", ANOVA);
+    assert!(space.flow(&["run", "w.toml"]).status.success());
+}
+
+#[test]
+fn numbers_of_any_size_are_short_in_messages_and_come_back_from_tables() {
+    let space = data("a,y\n1e-300,1\n3e300,2\n", ANOVA);
+    let said = told(&space.flow(&["run", "w.toml"]));
+    assert!(said.contains("`a` is 1e-300, which is none of its levels 1, 2;"), "{said}");
+    assert_eq!(space.stdout(&["show", "w.toml", "d", "--csv", "--quiet"]), "a,y\n1e-300,1\n3e300,2\n");
+}
+
+#[test]
+fn what_a_plot_cannot_draw_stands_below_it() {
+    let xy = "kind = \"figure\"\nshow = \"xy\"\nof = \"d\"\nx = \"a\"\ny = \"y\"\nfit = \"line\"";
+    let space = data("a,y\n1,1\n1,2\n1,\n", xy);
+    space.run(&[]);
+    let json = space.stdout(&["show", "w.toml", "s", "--json"]);
+    for words in ["1 of 3 rows has no number in `a` or `y`.", "The 2 points support no line"] {
+        assert!(json.contains(words), "{words}: {json}");
+    }
+    let log = xy.replace("fit = \"line\"", "log = [\"x\"]");
+    let space = data("a,y\n-1,1\n1,2\n10,4\n0,5\n", &log);
+    space.run(&[]);
+    let json = space.stdout(&["show", "w.toml", "s", "--json"]);
+    assert!(json.contains("2 of 4 values of `a` are not above zero and not on the logarithmic axis."), "{json}");
+}
+
+#[test]
+fn a_comparison_says_what_it_is_not_of() {
+    let space = data("a,y\n1,3\n2,4\n3,5\n", "kind = \"agreement\"\nof = \"d\"\ncompare = \"e\"");
+    let text = std::fs::read_to_string(space.path("w.toml")).expect("the workflow");
+    space.write(
+        "w.toml",
+        &text
+            .replace("levels = [1, 2]", "range = [1, 3]")
+            .replace("[stage.s]", "[stage.e]\nkind = \"data\"\nfile = \"e.csv\"\n[stage.s]"),
+    );
+    space.write("e.csv", "a,y\n1,3\n2,0\n");
+    space.run(&[]);
+    let notes = space.stdout(&["show", "w.toml", "s", "--table", "notes", "--csv"]);
+    assert!(notes.contains("1 of 3 rows of `d` has no partner in the other table"), "{notes}");
+    assert!(notes.contains("1 of 2 pairs of `d` has a reference of 0, and so no ratio"), "{notes}");
+}
+
+#[test]
+fn faults_of_a_table_are_found_by_check() {
+    for (csv, words) in [
+        ("a,y\n1,2\n2\n", "line 3 has 1 cell where the first line has 2"),
+        ("a,a\n1,2\n", "every column needs a name of its own"),
+        ("a,y [kg]\n1,2\n", "column `y` is in `kg` and `y` of the workflow in no unit"),
+        ("a,y\n1,\0\n", "line 2 holds the character NUL, which no text has"),
+        ("a\0,\0y\0\n", "is it UTF-16 without a mark at its start?"),
+    ] {
+        let space = data(csv, ANOVA);
+        let output = space.flow(&["check", "w.toml"]);
+        assert_eq!(output.status.code(), Some(2), "{csv:?}: {}", told(&output));
+        assert!(told(&output).contains(words), "{csv:?}: {}", told(&output));
+    }
+}
+
+#[test]
+fn names_that_would_be_two_things_are_refused() {
+    for (factor, words) in [
+        ("residual = { levels = [1, 2] }", "factor `residual` has the name of a line that analyses write"),
+        ("const = { levels = [1, 2] }", "factor `const` has the name of a line"),
+        ("a = { levels = [\"x\", \"x \"] }", "level `x ` is empty, or begins or ends with a blank"),
+        ("a = { levels = [\"\", \"x\"] }", "level `` is empty"),
+    ] {
+        let space = Space::new();
+        space.write(
+            "w.toml",
+            &format!("[workflow]\nseed = 1\n[factor]\n{factor}\n[stage.t]\nkind = \"table\"\nlist = \"factors\"\n"),
+        );
+        let output = space.flow(&["check", "w.toml"]);
+        assert_eq!(output.status.code(), Some(2), "{factor}: {}", told(&output));
+        assert!(told(&output).contains(words), "{factor}: {}", told(&output));
+    }
+}
+
+/// A program in a run of its own.
+fn program(more: &str) -> Space {
+    let space = Space::new();
+    space.write("f.txt", "x");
+    space.write(
+        "w.toml",
+        &format!("[workflow]\nseed = 1\n[response]\ny = {{}}\n[stage.c]\nkind = \"command\"\n{more}\n"),
+    );
+    space
+}
+
+#[test]
+fn what_a_program_cannot_be_given_is_refused_before_it_runs() {
+    let read = "run = [\"true\"]\nread.y = { file = \"stdout\", pattern = '(.*)' }\n";
+    let long = format!("files = {{ \"{}\" = \"f.txt\" }}", "x".repeat(300));
+    for (more, words) in [
+        ("files = { \"d\" = \"f.txt\", \"d/x\" = \"f.txt\" }", "`d` is a file, and the folder in which `d/x` lies"),
+        ("files = { \"a\\u0000b\" = \"f.txt\" }", "must be a plain name inside the run's folder"),
+        (long.as_str(), "must be a plain name inside the run's folder"),
+        ("files = { \"stdout/x\" = \"f.txt\" }", "is where the run's own output goes"),
+        ("environment = { FLOW_RUN_FOLDER = \"/tmp\" }", "`FLOW_RUN_FOLDER` is set by flow"),
+    ] {
+        let output = program(&format!("{read}{more}")).flow(&["check", "w.toml"]);
+        assert_eq!(output.status.code(), Some(2), "{more}: {}", told(&output));
+        assert!(told(&output).contains(words), "{more}: {}", told(&output));
+    }
+}
+
+#[test]
+fn numbers_of_fortran_are_read() {
+    let space = program("run = [\"echo\", \"y= 1.5D+03\"]\nread.y = { file = \"stdout\", pattern = 'y= (\\S+)' }");
+    space.run(&[]);
+    assert_eq!(
+        space.stdout(&["show", "w.toml", "c", "--table", "responses", "--csv", "--quiet"]),
+        "response,value,unit\ny,1500,\n"
+    );
+}
+
+/// `yes` would fill the disk.
+#[test]
+fn a_program_that_prints_without_end_is_ended_with_a_reason() {
+    let space = program("run = [\"yes\"]\nread.y = { file = \"stdout\", pattern = '(.*)' }");
+    let output = space.flow(&["run", "w.toml"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    assert!(told(&output).contains("wrote more than 1 GiB to stdout and was ended"), "{}", told(&output));
+}
+
+/// A limit on the size of files ends a program by a signal unless it minds.
+#[test]
+fn a_limit_on_the_size_of_files_is_an_error_that_is_told() {
+    let space = data(&format!("a,y\n{}", "1,2\n2,3\n1,3\n2,5\n".repeat(2000)), ANOVA);
+    let script = "ulimit -f 8; exec \"$0\" run w.toml";
+    let mut run = Command::new("sh");
+    run.args(["-c", script, env!("CARGO_BIN_EXE_flow")]).current_dir(space.path(""));
+    let output = run.stdout(Stdio::piped()).stderr(Stdio::piped()).output().expect("flow");
+    assert_eq!(output.status.signal(), None, "{}", told(&output));
+    assert!(
+        !output.status.success() && told(&output).contains("larger than the limit on the size of files"),
+        "{}",
+        told(&output)
+    );
+    space.run(&[]);
+}
+
+#[test]
+fn a_store_that_is_not_there_is_not_sound() {
+    let space = Space::new();
+    for command in ["verify", "ls", "du"] {
+        let output = space.flow(&["store", command, "--store", "nowhere"]);
+        assert_eq!(output.status.code(), Some(3), "{}", told(&output));
+        assert!(told(&output).contains("there is no store at nowhere"), "{}", told(&output));
+    }
+    assert!(!space.path("nowhere").exists());
+}
+
+/// Characters that turn the direction of a text around hide what it says.
+#[test]
+fn cells_do_not_steer_the_terminal() {
+    let space = data("a,y,name\n1,2,\u{202e}abc\n2,3,\u{1b}[31mred\n", "kind = \"table\"\nof = \"d\"");
+    space.run(&[]);
+    let shown = space.stdout(&["show", "w.toml", "d"]);
+    assert!(!shown.contains(['\u{202e}', '\u{1b}']) && shown.contains("abc"), "{shown:?}");
+}
+
+#[test]
+fn a_stone_is_not_turned_inside_out_by_its_unit() {
+    let space = Space::new();
+    space.write("s.stl", "solid s\nendsolid s\n");
+    for unit in ["-1 mm", "0 mm", "1e300 mm"] {
+        let stage =
+            format!("[workflow]\nseed = 1\n[stage.s]\nkind = \"shapes\"\nstl = [\"s.stl\"]\nunit = \"{unit}\"\n");
+        space.write("w.toml", &stage);
+        let output = space.flow(&["check", "w.toml"]);
+        assert_eq!(output.status.code(), Some(2), "{unit}: {}", told(&output));
+        assert!(told(&output).contains("no length that a stone could be measured in"), "{unit}: {}", told(&output));
+    }
+}
