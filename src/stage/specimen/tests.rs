@@ -188,7 +188,7 @@ fn a_packing_that_comes_to_nothing_is_a_result_with_its_reason() {
     let artifact = make(&job).unwrap();
     let failure = Stored::from_artifact(&artifact).unwrap().failure.unwrap();
     assert!(failure.starts_with("packing: overlaps reach"), "{failure}");
-    assert_eq!(*said.lock().unwrap(), [failure.clone()]);
+    assert_eq!(*said.lock().unwrap(), std::slice::from_ref(&failure));
     assert_eq!(config.unmet(&artifact), Some(failure.clone()));
     // Nobody takes it for a specimen without balls.
     assert_eq!(load(&artifact).unwrap_err().message, failure);
