@@ -324,7 +324,7 @@ impl<'de, K: Kind> Deserialize<'de> for Quantity<K> {
             fn visit_str<E: de::Error>(self, text: &str) -> Result<Self::Value, E> {
                 Quantity::parse(text).map_err(E::custom)
             }
-            /// A hole: the value was faulty and that is told already.
+            /// A hole: the value was faulty, which is reported already.
             fn visit_unit<E: de::Error>(self) -> Result<Self::Value, E> {
                 Ok(Quantity::si(1.0))
             }
@@ -384,6 +384,8 @@ kinds! {
     Time, TimeKind = (0, 0, 1), "time", "30 s";
     /// Newtons.
     Force, ForceKind = (1, 1, -2), "force", "10 kN";
+    /// Kilograms.
+    Mass, MassKind = (0, 1, 0), "mass", "2.5 kg";
     /// Radians.
     Angle, AngleKind = (0, 0, 0), "angle", "30 deg";
 }

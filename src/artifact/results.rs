@@ -20,7 +20,7 @@ pub(super) const FAILURE: &str = "failure";
 pub(super) const VALIDITY: &str = "validity";
 pub(super) const CAUTIONS: &str = "cautions";
 
-/// What is said of each run of a simulator; an empty text where there is nothing to say.
+/// Failure, validity and cautions of each run of a simulator; empty texts where all is well.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdicts {
     /// Why it gave no result.

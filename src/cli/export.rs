@@ -24,10 +24,10 @@ use std::sync::Arc;
 pub(super) struct Export {
     #[command(flatten)]
     campaign: Campaign,
-    /// The stages, or single runs of them such as `orthogonal[12]`; all that have a result when not given.
+    /// The stages, or single runs of them such as `orthogonal[12]`; by default all that have a result.
     #[arg(value_name = "STAGE[ROW]")]
     stages: Vec<String>,
-    /// In which form.
+    /// Form of the files.
     #[arg(long, value_enum, value_name = "FORM", default_value_t = Form::Files)]
     to: Form,
     /// The folder that the files are written to.
@@ -105,7 +105,7 @@ impl Export {
         Ok(Exit::Done)
     }
 
-    /// The files of one result; a result that the form is not for is a fault only where it was asked for by name.
+    /// The files of one result. A result that has no such form is a fault only when it was named.
     fn files(&self, store: &Store, chosen: &Chosen, artifact: &Artifact) -> Result<Vec<File>, String> {
         let name = &chosen.name;
         match self.to {
@@ -161,7 +161,7 @@ impl Export {
     }
 }
 
-/// The results that were asked for, or all, and the names of those that are not there yet.
+/// The named results, or all, and the names of those that are missing.
 fn choose(workflow: &Workflow, report: &Report, asked: &[(String, Option<usize>)]) -> (Vec<Chosen>, Vec<String>) {
     let all: Vec<(String, Option<usize>)> = match asked {
         [] => report.stages.iter().map(|stage| (stage.name.clone(), None)).collect(),
@@ -185,7 +185,7 @@ fn load(artifact: &Artifact) -> Result<Loaded, String> {
     specimen::load(artifact).map_err(|e| e.to_string())
 }
 
-/// What a run was made of, from its task text.
+/// The parameters of a run, from its task text.
 struct Made {
     specimen: Loaded,
     parameters: particles::Parameters,

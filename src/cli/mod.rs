@@ -75,7 +75,7 @@ enum Command {
     /// Describe a cluster for `flow run --executor slurm`.
     #[command(after_help = examples::SITE)]
     Site(site::SiteCommand),
-    /// Take tasks from a queue of a cluster; started by the jobs of `flow run --executor slurm`.
+    /// Take tasks from a queue of a cluster (the jobs of `flow run --executor slurm` do this).
     #[command(hide = true)]
     Work(work::Work),
     /// Write a commented workflow to start from.
@@ -106,7 +106,7 @@ pub enum Exit {
 
 /// Reads the command line and executes it.
 pub fn main() -> ExitCode {
-    // A file beyond the limit of the user (`ulimit -f`) is an error of the write, which is told, and not the end of the
+    // A file beyond the limit of the user (`ulimit -f`) is an error of the write, which is reported, and not the end of the
     // process. Where the signal cannot be taken it ends it, as it would have.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
     ExitCode::from(execute(std::env::args_os()) as u8)

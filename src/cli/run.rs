@@ -202,7 +202,7 @@ pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
 /// sound whenever a campaign is killed.
 const PATIENCE: Duration = Duration::from_millis(850);
 
-/// The same, when a scheduler must be told to cancel jobs meanwhile.
+/// The same, when the scheduler must cancel jobs meanwhile.
 const PATIENCE_FAR: Duration = Duration::from_secs(20);
 
 /// Ends this process and the programs that it runs.

@@ -18,11 +18,11 @@ use serde_json::{Value, json};
 pub(super) struct Show {
     #[command(flatten)]
     campaign: Campaign,
-    /// The stage, or one run of it: `orthogonal` or `orthogonal[12]` (rows are counted from 1); all stages and the names
-    /// of their tables when not given.
+    /// The stage, or one run of it: `orthogonal` or `orthogonal[12]` (rows are counted from 1); by default all stages
+    /// and the names of their tables.
     #[arg(value_name = "STAGE[ROW]")]
     what: Option<String>,
-    /// One table of it; all when not given.
+    /// One table of it; by default all.
     #[arg(long, value_name = "NAME", requires = "what")]
     table: Option<String>,
     /// As CSV, with units in the first line.
@@ -97,7 +97,7 @@ impl Show {
         self.values(what, &store, &object, &workflow)
     }
 
-    /// Why there is nothing to show.
+    /// Why the result cannot be shown.
     fn missing(&self, what: &str, workflow: &Workflow, report: &Report, (stage, row): (&str, Option<usize>)) -> String {
         let index = workflow.position(stage);
         let rows: Vec<Option<usize>> =
@@ -188,7 +188,7 @@ pub(super) fn object(workflow: &Workflow, report: &Report, stage: &str, row: Opt
     report.objects().rev().find(|object| object.content == *content)
 }
 
-/// What is no table: single values, and the shapes of arrays.
+/// Single values, texts, and the shapes of arrays.
 fn print_others(artifact: &Artifact, only_table: bool) {
     if only_table {
         return;
@@ -230,13 +230,13 @@ fn short(values: &Values) -> Vec<String> {
     }
 }
 
-/// So many rows of a table are shown to a reader; programs take `--csv` or `--json`.
+/// Most rows of a table that are shown; `--csv` and `--json` give all.
 const MOST_ROWS: usize = 100;
 
 /// Most columns shown at once.
 const MOST_COLUMNS: usize = 200;
 
-/// A cell for a terminal: characters that steer it, which a log or a file may hold, are shown as signs.
+/// A cell for a terminal: control characters, which a log or a file may hold, are shown as signs.
 fn on_screen(cell: &str) -> String {
     cell.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
 }

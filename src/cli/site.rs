@@ -1,4 +1,4 @@
-//! `flow site`: the clusters that are described, and what would be submitted to one.
+//! `flow site`: descriptions of clusters, and the script that would be submitted to one.
 
 use super::Exit;
 use crate::cluster::Site;
@@ -127,10 +127,12 @@ pub(super) fn show_submission(workflow: &Workflow, store: &Store, site: &Site, s
         out!("{}", text(site, needs, store.root(), workers).trim_end());
     }
     if counts.is_empty() {
-        err!("no task for the cluster is ready: what is needed first runs here. Workers would be asked for like this:");
+        err!(
+            "no task for the cluster is ready yet: its inputs are computed here first. A submission would look like this:"
+        );
         out!("{}", text(site, &site.needs(""), store.root(), site.workers).trim_end());
     } else {
-        err!("tasks that need their results follow when those are there");
+        err!("tasks that need these results follow later");
     }
     Exit::Done
 }

@@ -1,4 +1,4 @@
-//! `flow store`: what the store holds, whether it is sound, what it takes, and what may go.
+//! `flow store`: list, verify, sizes, removal and sharing of results.
 
 mod share;
 
@@ -12,7 +12,7 @@ use clap::{Args, Subcommand};
 use std::collections::HashSet;
 use std::path::PathBuf;
 
-/// Look after the store.
+/// Manage the store.
 #[derive(Args)]
 pub(super) struct StoreCommand {
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub(super) struct StoreCommand {
 enum What {
     /// List the results: task, size, duration.
     Ls,
-    /// Make the folder of an earlier flow, which has no file `flow.store`, a store.
+    /// Turn the folder of an earlier flow, which has no file `flow.store`, into a store.
     Adopt,
     /// Read every result and compare it with its record; set aside what is damaged.
     Verify,
@@ -35,9 +35,9 @@ enum What {
     Gc(Gc),
     /// Copy all results to a remote, a folder that others can read, and sign the list of them.
     Push(share::Push),
-    /// Take the results of a remote from those whom you trust; what is taken is proven first.
+    /// Take results of people whom you trust from a remote; each result is proven first.
     Pull(share::Pull),
-    /// Copy a remote to another one, signatures with it.
+    /// Copy a remote to another one, with its signatures.
     Mirror(share::Mirror),
     /// Compute some results of a workflow again and compare: equal bits prove them.
     Audit(share::Audit),
@@ -69,7 +69,7 @@ impl StoreCommand {
         done.unwrap_or_else(|exit| exit)
     }
 
-    /// The store, which must be there: a slip in its name would find an empty one sound.
+    /// The store, which must exist: a mistyped name would otherwise give an empty store without faults.
     fn open(&self) -> Result<Store, Exit> {
         let folder = &self.common.store;
         if !folder.exists() {
@@ -137,7 +137,7 @@ impl StoreCommand {
             );
         }
         for path in &verdict.strangers {
-            out!("not by flow, and not touched: {}", path.display());
+            out!("not written by flow, not touched: {}", path.display());
         }
         Ok(if verdict.is_sound() { Exit::Done } else { Exit::System })
     }
@@ -174,7 +174,7 @@ impl StoreCommand {
         out!("{verb} {} damaged or left-over files ({})", rubbish.files, bytes(rubbish.bytes));
         out!("{} results remain ({})", swept.kept.files, bytes(swept.kept.bytes));
         if !gc.yes {
-            out!("nothing was removed; say --yes to do it");
+            out!("nothing was removed; --yes removes them");
         }
         Ok(Exit::Done)
     }

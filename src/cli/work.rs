@@ -1,4 +1,4 @@
-//! `flow work`: one worker of a cluster. Its jobs start it; a person seldom does.
+//! `flow work`: one worker of a cluster, started by a job.
 
 use super::Exit;
 use super::common::{Common, system, workers};
@@ -27,10 +27,10 @@ pub(super) struct Work {
     /// Cores that it may use.
     #[arg(long, value_name = "N", default_value = "1", value_parser = workers)]
     cpus: usize,
-    /// How long it may live, seconds.
+    /// Longest life of the worker, seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// How long it waits for more when it has nothing to do, seconds.
+    /// How long an idle worker waits for new tasks, seconds.
     #[arg(long, value_name = "S", default_value = "0")]
     linger: f64,
     /// Take one task only.

@@ -86,7 +86,7 @@ pub enum Cause {
     Time,
     /// The worker's time was over, and the task had nearly all of it: another worker would not finish it either.
     WholeTime,
-    /// The scheduler told the worker to end.
+    /// The scheduler has ended the worker.
     Signal,
     /// The store could not be written.
     Store,

@@ -402,7 +402,7 @@ impl Post {
         worker.ended = true;
         let begun = std::mem::take(&mut worker.begun);
         let (round, index, machine) = (worker.round, worker.index, worker.machine.clone());
-        let said = self.last_words(round, &index.to_string());
+        let words_of_it = self.last_words(round, &index.to_string());
         let tasks = match begun.len() {
             0 => "it had begun nothing".to_owned(),
             1 => "its task is tried again, alone".to_owned(),
@@ -410,19 +410,20 @@ impl Post {
         };
         words.push(format!("the worker on {machine} is gone; {tasks}"));
         self.gone(round, index);
-        self.fault = Some(format!("the worker on {machine} is gone ({said})"));
+        self.fault = Some(format!("the worker on {machine} is gone ({words_of_it})"));
         news.extend(
             begun
                 .into_iter()
                 .filter(|task| self.entries.get(*task).is_some_and(|entry| entry.open))
-                .map(|task| (task, News::Gone { machine: machine.clone(), words: said.clone() })),
+                .map(|task| (task, News::Gone { machine: machine.clone(), words: words_of_it.clone() })),
         );
     }
 
     fn last_words(&self, round: usize, index: &str) -> String {
         let log = script::log_name(round, index);
-        let said = self.queue.last_words(&log).map_or_else(|| "no output".to_owned(), |line| format!("`{line}`"));
-        format!("{said} in {}", self.queue.path().join(log).display())
+        let words_of_it =
+            self.queue.last_words(&log).map_or_else(|| "no output".to_owned(), |line| format!("`{line}`"));
+        format!("{words_of_it} in {}", self.queue.path().join(log).display())
     }
 
     /// Compares with the jobs that the scheduler lists: news of the tasks of lost workers, and messages.
@@ -443,9 +444,13 @@ impl Post {
                 (0..round.workers).filter(|index| !round.gone.contains(index) && !is_there(index)).collect();
             let never: Vec<usize> = missing.iter().copied().filter(|index| !round.started.contains(index)).collect();
             if let Some(first) = never.first() {
-                let said = self.last_words(number + 1, &first.to_string());
-                words.push(format!("{} of {} workers ended before they began: {said}", never.len(), round.workers));
-                self.fault = Some(said);
+                let words_of_it = self.last_words(number + 1, &first.to_string());
+                words.push(format!(
+                    "{} of {} workers ended before they began: {words_of_it}",
+                    never.len(),
+                    round.workers
+                ));
+                self.fault = Some(words_of_it);
             }
             never.iter().for_each(|index| self.gone(number + 1, *index));
             // A worker whose lock is held is alive whatever the scheduler lists, and so is one that has just written a message.

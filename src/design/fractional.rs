@@ -76,13 +76,13 @@ const MOST_BASIC: usize = 20;
 impl FractionalFactorial {
     /// The generators, parsed or from the catalogue, and all faults of the options.
     fn words(&self, factors: &[Factor]) -> Result<Vec<Word>, Vec<Fault>> {
-        let said = usize::from(!self.generators.is_empty())
+        let stated = usize::from(!self.generators.is_empty())
             + usize::from(self.resolution.is_some())
             + usize::from(self.runs.is_some());
-        if said != 1 {
+        if stated != 1 {
             return Err(vec![Fault::BadOption {
                 option: "generators, resolution, runs".into(),
-                found: format!("said {said} times in all"),
+                found: format!("said {stated} times in all"),
                 wanted: "a fractional factorial needs exactly one of the three".into(),
             }]);
         }

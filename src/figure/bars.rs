@@ -123,7 +123,7 @@ impl RankedBars {
             // A factor without a key goes by its symbol, which a description tells in plain letters.
             let name =
                 if bar.factor.key.is_empty() { &Line::new(&bar.factor.name, 1.0).plain } else { &bar.factor.key };
-            format!("{name} {}", self.quantity.told(bar.value))
+            format!("{name} {}", self.quantity.in_words(bar.value))
         });
         format!("Bars in descending order: {}.", top.collect::<Vec<_>>().join(", "))
     }

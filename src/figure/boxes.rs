@@ -96,7 +96,7 @@ impl BoxPlot {
     fn describe(&self) -> String {
         let tell = |g: &Group| {
             let name = if g.name.is_empty() { String::new() } else { format!("{}: ", g.name) };
-            format!("{name}median {} of {}", self.y.told(g.five[2]), g.values.len())
+            format!("{name}median {} of {}", self.y.in_words(g.five[2]), g.values.len())
         };
         let all = self.groups.iter().map(tell).collect::<Vec<_>>().join("; ");
         Line::new(&format!("{all}."), 1.0).plain

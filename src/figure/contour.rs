@@ -41,7 +41,7 @@ impl Figure for Contour {
         let mut scene = Scene::new(style.width, 0.78 * style.width);
         scene.title = format!("The response {} over {} and {}", self.z.words(), self.x.words(), self.y.words());
         let (low, high) = extent(self.values.iter().copied());
-        scene.description = format!("Contours from {} to {}.", significant(low, 3), self.z.told(high));
+        scene.description = format!("Contours from {} to {}.", significant(low, 3), self.z.in_words(high));
         let bands = Bands::of(low, high, &self.z);
         let note = if self.note.is_empty() { 0.0 } else { 1.5 * size };
         let page = scene.page().inset(0.8, 0.8 + note, 0.8, 0.8);

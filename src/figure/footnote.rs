@@ -58,13 +58,14 @@ mod tests {
     fn sentences_stand_below_the_picture_within_its_width() {
         let style = Style::wide(60.0);
         let mut scene = Scene::new(60.0, 40.0);
-        let said = "3 of 24 runs are not valid and were left out: rotation (2); cracks near the loaded diameter (1).";
-        scene.footnotes(&[said.to_owned(), "One more costs $5.".to_owned()], &style);
+        let sentence =
+            "3 of 24 runs are not valid and were left out: rotation (2); cracks near the loaded diameter (1).";
+        scene.footnotes(&[sentence.to_owned(), "One more costs $5.".to_owned()], &style);
         let texts = scene.texts();
         assert!(texts.len() >= 3, "{texts:?}");
         assert_eq!(
             texts.iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>().join(" "),
-            format!("{said} One more costs $5.")
+            format!("{sentence} One more costs $5.")
         );
         for (text, corners) in &texts {
             let inside = |[x, y]: &[f64; 2]| (0.0..=60.0).contains(x) && (40.0..=scene.height).contains(y);

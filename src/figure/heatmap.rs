@@ -183,7 +183,8 @@ impl HeatMap {
             n => format!("; {n} cells have no value"),
         };
         let (rows, columns) = (self.rows.len(), self.columns.len());
-        let text = format!("{rows} × {columns} cells from {} to {}{gaps}.", significant(low, 3), self.value.told(high));
+        let text =
+            format!("{rows} × {columns} cells from {} to {}{gaps}.", significant(low, 3), self.value.in_words(high));
         Line::new(&text, 1.0).plain
     }
 }

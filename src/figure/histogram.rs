@@ -109,13 +109,13 @@ impl Histogram {
     fn entries(&self) -> Vec<Entry> {
         let n = self.total();
         let unit = super::text::unit_markup(&self.quantity.unit);
-        let told = |v: f64| format!("{} {unit}", significant(v, 3)).trim_end().to_owned();
+        let value_text = |v: f64| format!("{} {unit}", significant(v, 3)).trim_end().to_owned();
         let mut entries = vec![Entry::new(format!("{n} {}", if n == 1 { "run" } else { "runs" }), Swatch::Box(SKY))];
         if self.mean.is_finite() {
-            entries.push(Entry::new(format!("mean {}", told(self.mean)), Swatch::Line(mean_stroke(), None)));
+            entries.push(Entry::new(format!("mean {}", value_text(self.mean)), Swatch::Line(mean_stroke(), None)));
         }
         if self.deviation > 0.0 {
-            let name = format!("normal, deviation {}", told(self.deviation));
+            let name = format!("normal, deviation {}", value_text(self.deviation));
             entries.push(Entry::new(name, Swatch::Line(normal_stroke(), None)));
         }
         entries
@@ -140,8 +140,8 @@ impl Histogram {
             capital(&q.words()),
             self.total(),
             self.counts.len(),
-            q.told(self.mean),
-            if self.deviation.is_finite() { q.told(self.deviation) } else { "unknown".into() }
+            q.in_words(self.mean),
+            if self.deviation.is_finite() { q.in_words(self.deviation) } else { "unknown".into() }
         ))
     }
 }

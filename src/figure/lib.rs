@@ -124,7 +124,7 @@ impl Quantity {
     }
 
     /// A value of it in words: "12.3 MPa", or "0.203".
-    pub fn told(&self, value: f64) -> String {
+    pub fn in_words(&self, value: f64) -> String {
         format!("{} {}", axis::significant(value, 3), self.unit).trim_end().to_owned()
     }
 

@@ -200,7 +200,7 @@ fn thin_out(panel: &mut Panel, size: f64) {
         dropped.for_each(|(_, tick)| tick.label.clear());
     }
     while panel.y.ticks.len() > 2 && !stacked_apart(panel, size) {
-        let kept = panel.y.ticks.iter().step_by(2).cloned().collect();
-        panel.y.ticks = kept;
+        let shown = panel.y.ticks.iter().step_by(2).cloned().collect();
+        panel.y.ticks = shown;
     }
 }

@@ -76,8 +76,8 @@ impl Residuals {
     fn describe(&self) -> String {
         let out: Vec<&str> =
             (0..self.runs.len()).filter(|&i| self.suspicious(i)).map(|i| self.runs[i].as_str()).collect();
-        let told = if out.is_empty() { "none".to_string() } else { out.join(", ") };
-        format!("{} runs; beyond ±{}: {told}.", self.runs.len(), self.limit)
+        let names = if out.is_empty() { "none".to_string() } else { out.join(", ") };
+        format!("{} runs; beyond ±{}: {names}.", self.runs.len(), self.limit)
     }
 
     fn suspicious(&self, i: usize) -> bool {

@@ -68,7 +68,7 @@ impl Figure for Surface {
         let mut scene = Scene::new(style.width, 0.74 * style.width);
         scene.title = format!("The response {} over {} and {}", f.z.words(), f.x.words(), f.y.words());
         let (low, high) = extent(f.values.iter().copied());
-        scene.description = format!("A surface from {} to {}.", significant(low, 3), f.z.told(high));
+        scene.description = format!("A surface from {} to {}.", significant(low, 3), f.z.in_words(high));
         let bands = Bands::of(low, high, &f.z);
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
         let note = if f.note.is_empty() { 0.3 * size } else { 1.8 * size };

@@ -181,7 +181,7 @@ impl Xy {
             0 | 1 => String::new(),
             n => format!(" in {n} groups of {}", self.by.words()),
         };
-        let span = |q: &Quantity, s: Span| format!("{} {} to {}", q.words(), significant(s.low, 3), q.told(s.high));
+        let span = |q: &Quantity, s: Span| format!("{} {} to {}", q.words(), significant(s.low, 3), q.in_words(s.high));
         let reach = format!("{}, {}", span(&self.x, self.span_x()), span(&self.y, self.span_y()));
         let measured: usize = self.measured.iter().map(|c| c.x.len()).sum();
         let over = if measured > 0 { format!("; {measured} measured points over them") } else { String::new() };

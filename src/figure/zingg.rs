@@ -31,9 +31,9 @@ impl Figure for Zingg {
         let size = style.size();
         let mut scene = Scene::new(style.width, style.width);
         scene.title = "Zingg's diagram".into();
-        let told = self.names.iter().zip(self.flatness.iter().zip(&self.elongation));
-        let told: Vec<String> = told.map(|(name, (s, l))| format!("{name} {s:.2}, {l:.2}")).collect();
-        scene.description = format!("Stones by S/I and I/L: {}.", told.join("; "));
+        let labels = self.names.iter().zip(self.flatness.iter().zip(&self.elongation));
+        let labels: Vec<String> = labels.map(|(name, (s, l))| format!("{name} {s:.2}, {l:.2}")).collect();
+        scene.description = format!("Stones by S/I and I/L: {}.", labels.join("; "));
         let axis = |label: &str| Axis::between(label, Scale::Linear, 0.0, 1.05, 5);
         let (x, y) = (axis("Flatness S/I"), axis("Elongation I/L"));
         let panel = Panel::fit(scene.page().inset(0.8, 0.8, 1.6, 0.8), x, y, style).boxed();

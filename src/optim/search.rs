@@ -107,25 +107,25 @@ pub fn next(
 /// # Errors
 /// As [`next`].
 pub fn replay(search: &mut Search, history: &[Run], mut seen: impl FnMut(&Search)) -> Result<Next, Error> {
-    let mut told = history;
+    let mut received = history;
     loop {
         if let Some(stop) = search.stop() {
             return Ok(Next::Stop(stop, search.state()));
         }
         let asked = search.ask();
-        for (i, (asked, run)) in asked.iter().zip(told).enumerate() {
+        for (i, (asked, run)) in asked.iter().zip(received).enumerate() {
             if *asked != run.point {
-                let index = history.len() - told.len() + i;
+                let index = history.len() - received.len() + i;
                 return Err(Error::ForeignHistory { index, asked: asked.clone(), found: run.point.clone() });
             }
         }
-        if told.len() < asked.len() {
-            return Ok(Next::Ask(asked[told.len()..].to_vec()));
+        if received.len() < asked.len() {
+            return Ok(Next::Ask(asked[received.len()..].to_vec()));
         }
-        let (batch, rest) = told.split_at(asked.len());
+        let (batch, rest) = received.split_at(asked.len());
         search.tell(&batch.iter().map(|run| run.responses.clone()).collect::<Vec<_>>());
         seen(search);
-        told = rest;
+        received = rest;
     }
 }
 

@@ -137,8 +137,8 @@ fn lowest(domain: &Domain, starts: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64) -
 pub(super) fn descend(domain: &Domain, from: &[f64], start: f64, value: &dyn Fn(&[f64]) -> f64) -> (Vec<f64>, f64) {
     let mut descent = Local::new(domain, from, start);
     while descent.stop().is_none() {
-        let told = |point: Vec<f64>| Trial { misfit: value(&point), point, responses: Vec::new() };
-        let trials: Vec<Trial> = descent.ask().into_iter().map(told).collect();
+        let trial = |point: Vec<f64>| Trial { misfit: value(&point), point, responses: Vec::new() };
+        let trials: Vec<Trial> = descent.ask().into_iter().map(trial).collect();
         descent.tell(&trials);
     }
     let (point, misfit) = descent.best();

@@ -36,9 +36,9 @@ pub(super) fn read<T>(
             Ok(value) => break value,
             Err(error) => error,
         };
-        let told = tell(node, &error, sources, &read);
-        let stop = told.is_none() || faults.len() - before >= MOST_FAULTS;
-        faults.extend(told);
+        let reported = tell(node, &error, sources, &read);
+        let stop = reported.is_none() || faults.len() - before >= MOST_FAULTS;
+        faults.extend(reported);
         if stop {
             // The fault of a hole was reported when the hole was made.
             assert!(!faults.is_empty(), "BUG: a table cannot be read, and no fault says why");

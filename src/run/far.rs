@@ -184,12 +184,12 @@ impl<'a> Far<'a> {
             }
             post.list(lines).map_err(words)?;
         }
-        let mut said = Vec::new();
+        let mut messages = Vec::new();
         let store = std::path::absolute(self.store.root()).unwrap_or_else(|_| self.store.root().to_owned());
         for post in &mut self.posts {
-            said.extend(post.staff(self.site, &store, &self.program, &*self.scheduler)?);
+            messages.extend(post.staff(self.site, &store, &self.program, &*self.scheduler)?);
         }
-        Ok(said)
+        Ok(messages)
     }
 
     /// How long to wait before the next look.

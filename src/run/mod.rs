@@ -179,8 +179,8 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &d
 
 /// A broken invariant of this program, as the failure of the task that met it.
 fn panicked(panic: &(dyn Any + Send)) -> Failure {
-    let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-    let text = format!("internal error: {}", said.unwrap_or("a panic without words"));
+    let message = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+    let text = format!("internal error: {}", message.unwrap_or("a panic without words"));
     StageError::new(text).hint("please report it with the workflow and what was printed above").into()
 }
 
@@ -225,7 +225,7 @@ struct Loop<'pool, 'env> {
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
     far_nodes: HashMap<Key, NodeId>,
-    /// Earlier runs, where tasks go to workers: a worker is told how long a task may take.
+    /// Earlier runs, where tasks go to workers: a worker learns how long a task may take.
     past: Option<Past<'env>>,
     /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.
     most_seconds: HashMap<String, Option<f64>>,

@@ -71,8 +71,8 @@ impl Worker {
         let plain: String = machine.chars().filter(char::is_ascii_alphanumeric).take(24).collect();
         let name = format!("{:04}-{:04}-{plain}-{}", self.round, self.index, std::process::id());
         let report = Mutex::new(queue.report(&name).map_err(|error| error.to_string())?);
-        let told = |message: &Message| tell(&report, message).map_err(|error| error.to_string());
-        told(&Message::Started { round: self.round, index: self.index, machine, program: program() })?;
+        let send = |message: &Message| tell(&report, message).map_err(|error| error.to_string());
+        send(&Message::Started { round: self.round, index: self.index, machine, program: program() })?;
         let ending = AtomicBool::new(false);
         let (answers, inbox) = channel();
         let worked = with_threads(self.cpus, |pool| {
@@ -99,7 +99,7 @@ impl Worker {
         let worked =
             worked.unwrap_or_else(|error| Err(format!("the system grants no {} threads ({error})", self.cpus)));
         // Without room for this line the lock of the report says that the worker is gone.
-        let _ = told(&Message::Ended { fault: worked.as_ref().err().cloned() });
+        let _ = send(&Message::Ended { fault: worked.as_ref().err().cloned() });
         worked
     }
 }
@@ -265,10 +265,10 @@ impl Loop<'_, '_> {
             }
             _ => {}
         }
-        let told = tell(self.report, &message).map_err(|error| error.to_string());
+        let send = tell(self.report, &message).map_err(|error| error.to_string());
         match fault {
             Some(fault) => Err(fault),
-            None => told,
+            None => send,
         }
     }
 }

@@ -165,17 +165,17 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
         not_valid.append(pair.theirs.not_valid(theirs)?);
         let (ours, theirs) = (pair.ours.sample(ours)?, pair.theirs.sample(theirs)?);
         let rows = pair_rows(&levels(&ours), &levels_like(&theirs, &ours), params.tolerance);
-        for said in alone(&pair.name, [ours.rows(), theirs.rows()], rows.len()) {
+        for sentence in alone(&pair.name, [ours.rows(), theirs.rows()], rows.len()) {
             notes.response.push(String::new());
-            notes.note.push(said);
+            notes.note.push(sentence);
         }
         for response in &ours.responses {
             let Some(other) = theirs.responses.iter().find(|r| r.name == response.name) else { continue };
             let value = |(i, j): &(usize, usize)| Some((*i, *j, response.values[*i]?, other.values[*j]?));
             let paired: Vec<(usize, usize, f64, f64)> = rows.iter().filter_map(value).collect();
-            if let Some(said) = without_ratio(&pair.name, &paired) {
+            if let Some(sentence) = without_ratio(&pair.name, &paired) {
                 notes.response.push(response.name.clone());
-                notes.note.push(said);
+                notes.note.push(sentence);
             }
             trends.extend(trend(&ours, &response.name, &pair.name, &paired));
             points.extend(paired.into_iter().map(|(_, j, computed, reference)| Point {
@@ -203,13 +203,13 @@ fn compare(job: &Job) -> Result<Artifact, Failure> {
 
 /// Rows of a table and of its reference that have no partner in the other.
 fn alone(table: &str, rows: [usize; 2], paired: usize) -> Vec<String> {
-    let said = |(rows, whose): (usize, String)| {
+    let sentence = |(rows, whose): (usize, String)| {
         let alone = rows - paired;
         let have = if alone == 1 { "has" } else { "have" };
         (alone > 0).then(|| format!("{alone} of {rows} rows of {whose} {have} no partner in the other table"))
     };
     let both = rows.into_iter().zip([format!("`{table}`"), format!("the reference of `{table}`")]);
-    both.filter_map(said).collect()
+    both.filter_map(sentence).collect()
 }
 
 /// Pairs whose reference is zero.

@@ -97,7 +97,7 @@ impl Stage for Data {
 
     fn beside(&self, context: &super::Context, found: &mut Beside) {
         let Some(path) = found.file("file", &self.file) else { return };
-        // What cannot be read now is told when the stage runs.
+        // A file that cannot be read now is reported when the stage runs.
         let small = super::beside::plain(&path).is_ok_and(|meta| meta.len() <= READ_BEFORE);
         let Some(bytes) = small.then(|| std::fs::read(path).ok()).flatten() else { return };
         match parse_as(&bytes, &self.dialect()) {

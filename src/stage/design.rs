@@ -233,7 +233,7 @@ impl Design {
         if !found.is_empty() || self.valid.is_empty() {
             return found;
         }
-        // What cannot be built is told when it runs.
+        // A design that cannot be built is reported when it runs.
         let Ok(table) = build(method, &self.factors(context), self.layout(), context.seed) else { return found };
         match valid::broken(&self.valid, &table) {
             Err(why) => found.push(Complaint::new("valid", why)),

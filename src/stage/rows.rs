@@ -92,7 +92,7 @@ pub fn check_response(path: &str, name: &str, unit: &str, context: &Context) -> 
         Ok(given) => given,
         Err(e) => return Some(Complaint::new(path, e.to_string())),
     };
-    // What is wrong with the declared unit itself is told where it stands.
+    // A fault of the declared unit is reported at its declaration.
     let declared = &context.responses.get(name)?.unit;
     Unit::parse(declared).ok().filter(|wanted| wanted.dimension != given.dimension)?;
     let words = |text: &str| if text.is_empty() { "as a pure number".to_owned() } else { format!("in `{text}`") };

@@ -138,7 +138,7 @@ pub enum Fault {
         /// The response.
         response: String,
     },
-    /// A term cannot be told from others.
+    /// A term is aliased with others.
     #[error(
         "`{term}` is aliased with {} in the usable rows of `{response}`; drop one of them or use a larger design",
         names(others)

@@ -59,10 +59,10 @@ impl<T: Real> Solution<T> {
 
     /// The same response on fewer columns.
     pub(crate) fn with_terms(&self, columns: &[usize]) -> Self {
-        let mut kept = columns.to_vec();
-        kept.push(self.terms());
+        let mut independent = columns.to_vec();
+        independent.push(self.terms());
         let constant = self.constant && columns.first() == Some(&0);
-        Self::solved(self.triangle.with_columns(&kept), constant, self.rows)
+        Self::solved(self.triangle.with_columns(&independent), constant, self.rows)
     }
 
     /// Number of coefficients.

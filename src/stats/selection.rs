@@ -63,44 +63,45 @@ pub(crate) fn select<T: Real>(
 }
 
 fn backward<T: Real>(full: &Solution<T>, terms: &[Term], alpha: f64) -> (Vec<usize>, Vec<Step>) {
-    let mut kept: Vec<usize> = (0..terms.len()).collect();
+    let mut selected: Vec<usize> = (0..terms.len()).collect();
     let mut steps = Vec::new();
     loop {
-        let now = full.with_terms(&kept);
-        let needed = |i: usize| kept.iter().any(|&k| k != i && terms[k].contains(&terms[i]));
-        let removable = kept.iter().enumerate().filter(|&(_, &i)| terms[i].degree() > 0 && !needed(i));
+        let now = full.with_terms(&selected);
+        let needed = |i: usize| selected.iter().any(|&k| k != i && terms[k].contains(&terms[i]));
+        let removable = selected.iter().enumerate().filter(|&(_, &i)| terms[i].degree() > 0 && !needed(i));
         let weak = removable.filter_map(|(at, _)| Some((at, now.p_for_choice(at)?))).filter(|&(_, p)| p > alpha);
-        let Some((at, p)) = weak.reduce(|a, b| if b.1 > a.1 { b } else { a }) else { return (kept, steps) };
-        if kept.len() == 1 {
-            return (kept, steps);
+        let Some((at, p)) = weak.reduce(|a, b| if b.1 > a.1 { b } else { a }) else { return (selected, steps) };
+        if selected.len() == 1 {
+            return (selected, steps);
         }
-        steps.push(Step { term: terms[kept.remove(at)].to_string(), added: false, p });
+        steps.push(Step { term: terms[selected.remove(at)].to_string(), added: false, p });
     }
 }
 
 fn forward<T: Real>(full: &Solution<T>, terms: &[Term], alpha: f64) -> (Vec<usize>, Vec<Step>) {
-    let mut kept: Vec<usize> = (0..terms.len()).filter(|&i| terms[i].degree() == 0).collect();
+    let mut selected: Vec<usize> = (0..terms.len()).filter(|&i| terms[i].degree() == 0).collect();
     let mut steps = Vec::new();
     loop {
         let supported = |i: usize| {
             let parents = terms[i].parents();
-            let known = |parent: &Term| terms.iter().position(|t| t.same(parent)).is_none_or(|at| kept.contains(&at));
+            let known =
+                |parent: &Term| terms.iter().position(|t| t.same(parent)).is_none_or(|at| selected.contains(&at));
             parents.iter().all(known)
         };
-        let candidates = (0..terms.len()).filter(|i| !kept.contains(i) && supported(*i));
+        let candidates = (0..terms.len()).filter(|i| !selected.contains(i) && supported(*i));
         let strong = candidates.filter_map(|i| {
-            let mut trial = kept.clone();
+            let mut trial = selected.clone();
             trial.push(i);
-            Some((i, full.with_terms(&trial).p_for_choice(kept.len())?))
+            Some((i, full.with_terms(&trial).p_for_choice(selected.len())?))
         });
         let best = strong.filter(|&(_, p)| p <= alpha).reduce(|a, b| if b.1 < a.1 { b } else { a });
         let Some((i, p)) = best else { break };
         steps.push(Step { term: terms[i].to_string(), added: true, p });
-        kept.push(i);
+        selected.push(i);
     }
-    kept.sort_unstable();
-    if kept.is_empty() {
-        kept.push(0);
+    selected.sort_unstable();
+    if selected.is_empty() {
+        selected.push(0);
     }
-    (kept, steps)
+    (selected, steps)
 }

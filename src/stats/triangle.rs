@@ -178,20 +178,21 @@ impl<T: Real> Triangle<T> {
         if self.is_independent(terms) {
             return Vec::new();
         }
-        let mut kept: Vec<usize> = Vec::new();
+        let mut independent: Vec<usize> = Vec::new();
         let mut found = Vec::new();
         for j in 0..terms {
-            let mut columns = kept.clone();
+            let mut columns = independent.clone();
             columns.push(j);
             let trial = self.with_columns(&columns);
-            if trial.stands_alone(kept.len()) {
-                kept.push(j);
+            if trial.stands_alone(independent.len()) {
+                independent.push(j);
                 continue;
             }
-            let weights = trial.solve(kept.len(), kept.len());
+            let weights = trial.solve(independent.len(), independent.len());
             let norm = self.column_norm(j, 0).value().max(f64::MIN_POSITIVE);
-            let counts = |i: &usize| weights[*i].value().abs() * self.column_norm(kept[*i], 0).value() > 1e-8 * norm;
-            found.push((j, (0..kept.len()).filter(counts).map(|i| kept[i]).collect()));
+            let counts =
+                |i: &usize| weights[*i].value().abs() * self.column_norm(independent[*i], 0).value() > 1e-8 * norm;
+            found.push((j, (0..independent.len()).filter(counts).map(|i| independent[i]).collect()));
         }
         found
     }

@@ -200,6 +200,8 @@ impl Store {
         let image = remote.object(&id, record.seal.size).map_err(Untaken::Store)?;
         let image = image.ok_or_else(|| refused("its object is not there".to_owned()))?;
         if let Some(why) = record.seal.difference(&Seal::of(&image)) {
+            // Nothing was read of what is larger, a link, a pipe or a device.
+            let why = if image.is_empty() { "it is no plain file of the recorded size".to_owned() } else { why };
             return Err(refused(format!("{why}; it is computed again when it is needed")));
         }
         prove::bytes(&id, image.clone()).map_err(refused)?;

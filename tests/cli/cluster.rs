@@ -123,7 +123,7 @@ fn a_campaign_on_a_cluster_gives_what_it_gives_here_and_computes_each_task_once(
     let again = cluster.run(&[]);
     assert!(Ran::read(&again).ran.is_empty() && cluster.calls("sbatch") == 1, "{}", told(&again));
     // Nothing of a queue is a stranger in the store, and gc takes it away.
-    assert!(!cluster.0.stdout(&["store", "verify"]).contains("not by flow"));
+    assert!(!cluster.0.stdout(&["store", "verify"]).contains("not written by flow"));
     cluster.until("the workers have ended", || cluster.alive() == 0);
     cluster.0.stdout(&["store", "gc", "w.toml", "--yes"]);
     assert!(std::fs::read_dir(cluster.0.path("store/queue")).unwrap().next().is_none());

@@ -178,7 +178,7 @@ fn gc_and_verify_leave_alone_what_lies_outside_and_what_flow_did_not_write() {
         symlink(space.path("victim"), space.path(link)).expect("a link");
     }
     let said = space.stdout(&["store", "verify"]);
-    assert!(said.contains("not by flow, and not touched: "), "{said}");
+    assert!(said.contains("not written by flow, not touched: "), "{said}");
     space.stdout(&["store", "gc", "w.toml"]);
     space.stdout(&["store", "gc", "w.toml", "--yes"]);
     assert!(space.path("victim/thesis.tex").exists() && space.path("victim/deep/b").exists());

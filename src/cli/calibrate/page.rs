@@ -8,7 +8,7 @@ use crate::cli::store::bytes;
 use crate::report::{calibrator_page, gather};
 use std::path::Path;
 
-/// Writes the page of a calibration whose surfaces are there.
+/// Writes the page of a calibration whose surfaces are stored.
 pub(super) fn write(campaign: &Campaign, asked: &Asked, file: &Path) -> Result<Exit, Exit> {
     let text = std::fs::read_to_string(&campaign.workflow).map_err(|e| system(&e))?;
     let own = crate::report::Asked { text, sets: campaign.sets.clone(), store: String::new() };

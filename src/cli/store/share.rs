@@ -17,7 +17,7 @@ pub(super) struct Push {
     /// Sign with this SSH key, such as `~/.ssh/id_ed25519`.
     #[arg(long, value_name = "KEY", required_unless_present = "unsigned")]
     sign: Option<PathBuf>,
-    /// Do not sign: those who pull must say that they trust anybody who can write there.
+    /// Do not sign: people who pull must then use --unsigned too.
     #[arg(long, conflicts_with = "sign")]
     unsigned: bool,
 }
@@ -26,10 +26,10 @@ pub(super) struct Push {
 pub(super) struct Pull {
     /// The remote.
     remote: PathBuf,
-    /// Whose results are taken: a file of allowed signers as ssh and git have it, one `NAME namespaces="flow-store" KEY` a line.
+    /// The people whose results are taken: a file of allowed signers as for ssh and git, one `NAME namespaces="flow-store" KEY` a line.
     #[arg(long, value_name = "FILE", default_value = "allowed_signers")]
     signers: PathBuf,
-    /// Take what anybody has pushed. Objects are proven to belong to their tasks, not to be what those give.
+    /// Take results of anybody. It is proven that a result belongs to its task, not that its values are right.
     #[arg(long)]
     unsigned: bool,
 }

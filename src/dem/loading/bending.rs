@@ -51,7 +51,7 @@ pub(super) fn run<S: Space>(
         return Err(Faults(vec![Fault::Setting { quantity: "span", value: span, wanted }]).into());
     }
     let beam = Beam { span, height, notch: test.particulars.notch };
-    let (cut, kept) = beam.cut(piece);
+    let (cut, remaining) = beam.cut(piece);
     let rollers = [(-0.5 * span, -1.0), (0.5 * span, -1.0), (0.0, 1.0)];
     let rollers = rollers.map(|(x, side)| beam.roller(&cut, x, side)).to_vec();
     let balls = cut.radii.len();
@@ -80,9 +80,9 @@ pub(super) fn run<S: Space>(
     };
     let mut run = drive(engine, &schedule, &test.rule, &mut measure, watch);
     for snapshot in &mut run.snapshots {
-        snapshot.state.centres = restored::<S>(&snapshot.state.centres, &kept, &piece.centres);
+        snapshot.state.centres = restored::<S>(&snapshot.state.centres, &remaining, &piece.centres);
         for link in &mut snapshot.state.forces {
-            link.ends = link.ends.map(|end| kept.get(end).copied().unwrap_or(usize::MAX));
+            link.ends = link.ends.map(|end| remaining.get(end).copied().unwrap_or(usize::MAX));
         }
         snapshot.state.forces.retain(|link| link.ends[1] != usize::MAX);
     }
@@ -93,9 +93,9 @@ pub(super) fn run<S: Space>(
 }
 
 /// Centres of all balls of the whole piece: the `kept` ones where they are now, the notch's where they were.
-fn restored<S: Space>(now: &[Vector<S>], kept: &[usize], start: &[Vector<S>]) -> Vec<Vector<S>> {
+fn restored<S: Space>(now: &[Vector<S>], remaining: &[usize], start: &[Vector<S>]) -> Vec<Vector<S>> {
     let mut centres = start.to_vec();
-    kept.iter().zip(now).for_each(|(&ball, &centre)| centres[ball] = centre);
+    remaining.iter().zip(now).for_each(|(&ball, &centre)| centres[ball] = centre);
     centres
 }
 
@@ -137,22 +137,22 @@ impl Beam {
         let Some(Notch { depth, width }) = self.notch else { return (piece.clone(), (0..piece.radii.len()).collect()) };
         let tip = -0.5 * self.height + depth * self.height;
         let within = |x: Vector<S>| x.at(0).abs() < 0.5 * width * self.height && x.at(1) < tip;
-        let kept: Vec<usize> = (0..piece.radii.len()).filter(|&i| !within(piece.centres[i])).collect();
+        let remaining: Vec<usize> = (0..piece.radii.len()).filter(|&i| !within(piece.centres[i])).collect();
         let mut index = vec![None; piece.radii.len()];
-        kept.iter().enumerate().for_each(|(new, &old)| index[old] = Some(new));
+        remaining.iter().enumerate().for_each(|(new, &old)| index[old] = Some(new));
         let clump = |clump: &Clump<S>| {
             let pebbles: Vec<usize> = clump.pebbles.iter().filter_map(|&pebble| index[pebble]).collect();
             (!pebbles.is_empty()).then(|| Clump { pebbles, ..clump.clone() })
         };
         let cut = Piece {
             outline: piece.outline,
-            centres: kept.iter().map(|&i| piece.centres[i]).collect(),
-            radii: kept.iter().map(|&i| piece.radii[i]).collect(),
-            groups: kept.iter().map(|&i| piece.groups[i]).collect(),
+            centres: remaining.iter().map(|&i| piece.centres[i]).collect(),
+            radii: remaining.iter().map(|&i| piece.radii[i]).collect(),
+            groups: remaining.iter().map(|&i| piece.groups[i]).collect(),
             density: piece.density,
             clumps: piece.clumps.iter().filter_map(clump).collect(),
         };
-        (cut, kept)
+        (cut, remaining)
     }
 
     /// The roller at `x` that touches the beam from below (`side` −1) or above (1).

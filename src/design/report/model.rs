@@ -68,7 +68,7 @@ pub struct Model {
     pub terms: Vec<String>,
     /// The factor of each term of [`Kind::Levels`]; none for the constant and other kinds.
     pub factor: Vec<Option<usize>>,
-    /// Indices of the terms that can be told apart, in order.
+    /// Indices of the terms that can be separated, in order.
     pub independent: Vec<usize>,
     runs: usize,
     judged: bool,
@@ -89,15 +89,15 @@ pub struct ModelReport {
     pub kind: Kind,
     /// Number of terms, the constant included.
     pub terms: usize,
-    /// How many of them can be told apart; none if the model was too large to judge.
+    /// How many of them can be separated; none if the model was too large to judge.
     pub rank: Option<usize>,
     /// Runs less rank.
     pub residual_df: usize,
     /// Terms that are combinations of earlier ones.
     pub missing: Vec<String>,
-    /// Largest variance inflation among the terms that can be told apart, and the term.
+    /// Largest variance inflation among the terms that can be separated, and the term.
     pub largest_inflation: Option<(String, f64)>,
-    /// Condition number of the terms that can be told apart.
+    /// Condition number of the terms that can be separated.
     pub condition: f64,
 }
 
@@ -240,7 +240,7 @@ impl Model {
 }
 
 impl ModelReport {
-    /// Whether all its terms can be told apart.
+    /// Whether all its terms can be separated.
     pub fn estimable(&self) -> bool {
         self.rank == Some(self.terms)
     }

@@ -114,8 +114,8 @@ impl Gaussian {
         let start = vec![0.5; PRIORS.len()];
         let mut descent = Local::new(&prior_box, &start, loss(&start));
         for _ in 0..80 {
-            let told = |point: Vec<f64>| Trial { misfit: loss(&point), point, responses: Vec::new() };
-            let trials: Vec<Trial> = descent.ask().into_iter().map(told).collect();
+            let trial = |point: Vec<f64>| Trial { misfit: loss(&point), point, responses: Vec::new() };
+            let trials: Vec<Trial> = descent.ask().into_iter().map(trial).collect();
             descent.tell(&trials);
             if descent.stop().is_some() {
                 break;

@@ -97,7 +97,7 @@ fn on_surfaces(
     seed: u64,
 ) -> Result<Solved, Failure> {
     let surfaces = knowledge.trend.clone().ok_or_else(|| StageError::new("there are no surfaces"))?;
-    // The optimiser must find what the surfaces hold, not be told it.
+    // The optimiser must find the optimum of the surfaces by itself.
     let mut search = Search::new(&problem, &params.method, &params.limits, seed, &Knowledge::default());
     let (mut history, mut best, mut count) = (Vec::new(), f64::INFINITY, 0);
     let stop = loop {

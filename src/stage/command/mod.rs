@@ -187,7 +187,7 @@ impl Stage for Command {
         for (key, files) in [("files", &self.files), ("templates", &self.templates)] {
             for (name, path) in files {
                 let Some(full) = found.file(&format!("{key}.{name}"), path) else { continue };
-                // A template that is no text is told when it is filled.
+                // A template that is no text is reported when it is filled.
                 let text = (key == "templates").then(|| std::fs::read_to_string(full).ok()).flatten();
                 if let Some(fault) = text.and_then(|text| template::fault(&text, || self.values(context))) {
                     let complaint = Complaint::new(key, format!("{path}, {}", fault.message));

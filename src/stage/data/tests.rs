@@ -114,3 +114,86 @@ fn workbooks_are_read_by_sheet() {
         assert!(parse_as(&bytes, &wrong).unwrap_err().message.contains("no sheet `cubes`"));
     }
 }
+
+/// The check sum of archives (CRC-32, ISO 3309).
+fn crc(bytes: &[u8]) -> u32 {
+    let bit = |crc: u32| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg());
+    !bytes.iter().fold(!0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| bit(crc)))
+}
+
+/// A workbook with one sheet of these cells, as an archive without compression.
+fn workbook_of(sheet: &str) -> Vec<u8> {
+    let types = "application/vnd.openxmlformats-officedocument.spreadsheetml";
+    let relations = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+    let package = "http://schemas.openxmlformats.org/package/2006";
+    let files = [
+        (
+            "[Content_Types].xml",
+            format!(
+                "<Types xmlns=\"{package}/content-types\"><Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\
+                 <Override PartName=\"/xl/workbook.xml\" ContentType=\"{types}.sheet.main+xml\"/>\
+                 <Override PartName=\"/xl/worksheets/sheet1.xml\" ContentType=\"{types}.worksheet+xml\"/></Types>"
+            ),
+        ),
+        (
+            "_rels/.rels",
+            format!(
+                "<Relationships xmlns=\"{package}/relationships\"><Relationship Id=\"r1\" Type=\"{relations}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
+            ),
+        ),
+        (
+            "xl/workbook.xml",
+            format!(
+                "<workbook xmlns=\"{main}\" xmlns:r=\"{relations}\"><sheets><sheet name=\"a\" sheetId=\"1\" r:id=\"r1\"/></sheets></workbook>"
+            ),
+        ),
+        (
+            "xl/_rels/workbook.xml.rels",
+            format!(
+                "<Relationships xmlns=\"{package}/relationships\"><Relationship Id=\"r1\" Type=\"{relations}/worksheet\" Target=\"worksheets/sheet1.xml\"/></Relationships>"
+            ),
+        ),
+        ("xl/worksheets/sheet1.xml", format!("<worksheet xmlns=\"{main}\"><sheetData>{sheet}</sheetData></worksheet>")),
+    ];
+    let (mut bytes, mut list, count) = (Vec::new(), Vec::new(), files.len() as u16);
+    for (name, text) in files {
+        let at = bytes.len() as u32;
+        let sizes = [crc(text.as_bytes()), text.len() as u32, text.len() as u32];
+        let mut common = vec![20, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        sizes.iter().for_each(|size| common.extend(size.to_le_bytes()));
+        common.extend((name.len() as u32).to_le_bytes());
+        bytes.extend(b"PK\x03\x04");
+        bytes.extend(&common);
+        bytes.extend(name.bytes().chain(text.bytes()));
+        list.extend(b"PK\x01\x02\x14\0");
+        list.extend(&common);
+        list.extend([0; 10]);
+        list.extend(at.to_le_bytes());
+        list.extend(name.bytes());
+    }
+    let (start, length) = (bytes.len() as u32, list.len() as u32);
+    bytes.extend(list);
+    bytes.extend(b"PK\x05\x06\0\0\0\0");
+    [count, count].iter().for_each(|count| bytes.extend(count.to_le_bytes()));
+    [length, start].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+    bytes.extend([0, 0]);
+    bytes
+}
+
+/// A sheet is as large as the place of its last cell says: one in the last corner would take 512 GB.
+#[test]
+fn a_cell_far_out_costs_no_memory() {
+    let text = |place: &str, text: &str| format!("<c r=\"{place}\" t=\"inlineStr\"><is><t>{text}</t></is></c>");
+    let number = |place: &str| format!("<c r=\"{place}\"><v>1.5</v></c>");
+    let head = format!("<row r=\"1\">{}{}</row>", text("A1", "a"), text("B1", "y"));
+    let line = format!("<row r=\"2\">{}{}</row>", number("A2"), number("B2"));
+    let table = parse(&workbook_of(&format!("{head}{line}"))).unwrap();
+    assert_eq!(table.columns[1].values, Values::Reals(vec![1.5]));
+    let far = format!("{head}{line}<row r=\"1048576\">{}</row>", number("XFD1048576"));
+    assert!(parse(&workbook_of(&far)).unwrap_err().message.contains("every column needs a name of its own"));
+    let beyond = format!("{head}<row r=\"2\">{}</row>", number("ZZZZZ2"));
+    assert!(parse(&workbook_of(&beyond)).unwrap_err().message.contains("has a cell in column"));
+    let below = format!("{head}{line}<row r=\"4000000\">{}</row>", number("A4000000"));
+    assert_eq!(parse(&workbook_of(&below)).unwrap().rows(), 2);
+}

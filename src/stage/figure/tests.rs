@@ -213,44 +213,47 @@ fn only_what_is_drawn_decides_the_picture() {
 
 #[test]
 fn faults_of_the_settings_are_told_before_anything_runs() {
-    let said = |text: &str| {
+    let message_of = |text: &str| {
         let found = settings(text).check(&context());
         found.into_iter().map(|c| c.message).collect::<Vec<_>>().join("; ")
     };
     assert_eq!(
-        said("show = 'range'\nof = 'a'\nresponse = 'UCS'\nband = 0.1"),
+        message_of("show = 'range'\nof = 'a'\nresponse = 'UCS'\nband = 0.1"),
         "`band` has no effect on a figure that shows `range`"
     );
-    assert_eq!(said("show = 'range'\nof = 'a'"), "`response` names 0, but `range` shows 1");
+    assert_eq!(message_of("show = 'range'\nof = 'a'"), "`response` names 0, but `range` shows 1");
     assert_eq!(
-        said("show = 'specimen'\nof = 'a'\nresponse = 'UCS'"),
+        message_of("show = 'specimen'\nof = 'a'\nresponse = 'UCS'"),
         "`response` has no effect on a figure that shows `specimen`"
     );
     assert_eq!(
-        said("show = 'contour'\nof = 'a'\nresponse = 'x'\nfactors = ['Ec', 'y']"),
+        message_of("show = 'contour'\nof = 'a'\nresponse = 'x'\nfactors = ['Ec', 'y']"),
         "there is no [response.x]; there is no [factor.y]"
     );
     assert_eq!(
-        said("show = 'agreement'\nof = ['a', 'b']\nresponse = 'UCS'\ncompare = 'c'"),
+        message_of("show = 'agreement'\nof = ['a', 'b']\nresponse = 'UCS'\ncompare = 'c'"),
         "`of` names 2 stages and `compare` 1; they are compared in pairs"
     );
     let width = toml::from_str::<Figure>("show = 'specimen'\nof = 'a'\nwidth = 'tripple'").unwrap_err().to_string();
     assert!(width.contains("wanted \"single\", \"double\" or a length"), "{width}");
-    assert!(said("show = 'specimen'\nof = 'a'\nwidth = '9 mm'").contains("9 mm is no width"));
-    assert!(said("show = 'specimen'\nof = 'a'\nnames = { UCS = '$\\\\sgma$' }").contains("unknown command"));
+    assert!(message_of("show = 'specimen'\nof = 'a'\nwidth = '9 mm'").contains("9 mm is no width"));
+    assert!(message_of("show = 'specimen'\nof = 'a'\nnames = { UCS = '$\\\\sgma$' }").contains("unknown command"));
 }
 
 #[test]
 fn what_an_input_lacks_is_named() {
-    let said = |text: &str, from: Artifact| match made(text, &[from], &[]) {
+    let message_of = |text: &str, from: Artifact| match made(text, &[from], &[]) {
         Err(Failure::Failed(e)) => format!("{} ({})", e.message, e.hint.unwrap_or_default()),
         other => panic!("{other:?}"),
     };
     let residuals = "show = 'residuals'\nof = 'a'\nresponse = 'UCS'";
     let empty = Artifact::of(Anova::KIND, Group::new());
-    assert_eq!(said(residuals, empty), "anova.anova: wanted table, found nothing ()");
+    assert_eq!(message_of(residuals, empty), "anova.anova: wanted table, found nothing ()");
     let contour = "show = 'contour'\nof = 'a'\nresponse = 'UCS'\nfactors = ['Ec', 'null']";
-    assert_eq!(said(contour, surfaces()), "the surface of `UCS` does not depend on `null` (it depends on Ec, mu)");
+    assert_eq!(
+        message_of(contour, surfaces()),
+        "the surface of `UCS` does not depend on `null` (it depends on Ec, mu)"
+    );
 }
 
 /// A sweep: five strengths, two ratios, three packings each.
@@ -298,7 +301,7 @@ fn plots_of_own_columns_hold_the_numbers_of_the_table() {
     assert_eq!(boxes.table("data").unwrap().shown("n").unwrap().0, [20.0, 10.0]);
     let bins = made("show = 'histogram'\nof = 'a'\nx = 'stiffness'\nbins = 5", &[sweep()], &[]).unwrap();
     assert_eq!(numbers(&bins, "count").iter().sum::<f64>(), 30.0);
-    // Pascal are told in the unit that the field uses.
+    // Pascals are shown in the unit of the field.
     assert_eq!(bins.table("data").unwrap().column("stiffness_to").unwrap().unit, "GPa");
 
     let curves = made("show = 'curves'\nof = ['a', 'b']", &[run(), run()], &[]).unwrap();
@@ -312,18 +315,18 @@ fn plots_of_own_columns_hold_the_numbers_of_the_table() {
 
 #[test]
 fn plots_say_what_they_lack() {
-    let said =
+    let message_of =
         |text: &str| settings(text).check(&context()).into_iter().map(|c| c.message).collect::<Vec<_>>().join("; ");
-    assert_eq!(said("show = 'xy'\nof = 'a'\nx = 'Ec'"), "`xy` needs `y`, the name of a column");
+    assert_eq!(message_of("show = 'xy'\nof = 'a'\nx = 'Ec'"), "`xy` needs `y`, the name of a column");
     assert_eq!(
-        said("show = 'histogram'\nof = 'a'\nx = 'Ec'\nby = 'mu'\nfit = 'line'"),
+        message_of("show = 'histogram'\nof = 'a'\nx = 'Ec'\nby = 'mu'\nfit = 'line'"),
         "`by` has no effect on a figure that shows `histogram`; `fit` has no effect on a figure that shows `histogram`"
     );
     assert_eq!(
-        said("show = 'range'\nof = 'a'\nresponse = 'UCS'\nx = 'Ec'"),
+        message_of("show = 'range'\nof = 'a'\nresponse = 'UCS'\nx = 'Ec'"),
         "`x` has no effect on a figure that shows `range`"
     );
-    assert!(said("show = 'xy'\nof = 'a'\nx = 'Ec'\ny = 'UCS'\nconfidence = 0.9").contains("without `fit`"));
+    assert!(message_of("show = 'xy'\nof = 'a'\nx = 'Ec'\ny = 'UCS'\nconfidence = 0.9").contains("without `fit`"));
     let fails = |text: &str| match made(text, &[sweep()], &[]) {
         Err(Failure::Failed(e)) => e.message,
         other => panic!("{other:?}"),

@@ -221,7 +221,7 @@ fn microparameter(
     let mean =
         if parameter == Parameter::TensileDeviation { Parameter::TensileStrength } else { Parameter::ShearStrength };
     let mean = all.iter().find(|(key, _)| *key == mean.key()).map(|(_, mean)| mean.value);
-    // Without a mean the contact lacks its strength, which is told there.
+    // Without a mean the contact lacks its strength, which is reported there.
     Ok((parameter, mean.map_or(0.0, |mean| found.value / mean)))
 }
 

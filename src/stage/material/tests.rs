@@ -20,7 +20,7 @@ fn made(text: &str, groups: &[&str]) -> Result<dem::loading::material::Material,
     material.contacts(&values, Need { name: Some("m"), groups: &groups, bonding: &bonding })
 }
 
-fn told(text: &str, groups: &[&str]) -> Vec<String> {
+fn faults_of(text: &str, groups: &[&str]) -> Vec<String> {
     made(text, groups).unwrap_err().into_iter().map(|fault| fault.message).collect()
 }
 
@@ -38,10 +38,10 @@ fn a_material_of_one_group_is_one_line_and_fits_whatever_its_name() {
 fn contacts_that_the_specimen_cannot_have_are_not_asked_for() {
     let text = format!("{ROCK}stone = {{ Ec = '1 GPa' }}\ninterface = {{ between = ['rock', 'stone'] }}");
     assert_eq!(made(&text, &["rock"]).unwrap(), made(ROCK, &["rock"]).unwrap());
-    let lacks = told(&text, &["rock", "stone"]);
+    let lacks = faults_of(&text, &["rock", "stone"]);
     assert!(lacks.iter().any(|t| t.starts_with("contact `stone` lacks `sigma_c`")), "{lacks:?}");
     assert!(lacks.iter().any(|t| t.starts_with("contact `interface` lacks `Ec`")), "{lacks:?}");
-    let absent = told(ROCK, &["rock", "stone"]);
+    let absent = faults_of(ROCK, &["rock", "stone"]);
     assert_eq!(absent, ["the specimen has particles of group `stone`, and the material has no such group"]);
 }
 
@@ -64,8 +64,8 @@ fn a_pair_is_an_entry_by_its_name_or_by_between_or_follows_the_rule() {
     assert_eq!(of(&format!("joint = {between}")), spelt("joint"));
     assert_eq!(of("pairs = 'weaker'"), ("a-b".to_owned(), 20e9, 20e6, Some(0.5)));
     assert_eq!(of("pairs = 'mean'"), ("a-b".to_owned(), 30e9, 30e6, Some(0.75)));
-    assert_eq!(told(two, &["a", "b"]), ["contacts of `a` and `b` have no values"]);
-    let twice = told(&format!("a-b = {values}\njoint = {between}\n{two}"), &["a", "b"]);
+    assert_eq!(faults_of(two, &["a", "b"]), ["contacts of `a` and `b` have no values"]);
+    let twice = faults_of(&format!("a-b = {values}\njoint = {between}\n{two}"), &["a", "b"]);
     assert_eq!(twice, ["`a-b` and `joint` both hold the contacts of `a` and `b`"]);
 }
 
@@ -76,7 +76,7 @@ fn no_rule_joins_what_differs_in_kind() {
     assert_eq!(with("weaker").unwrap().contact(0, 1).unwrap().1.bond, BondKind::None);
     assert!(with("mean").unwrap_err()[0].message.contains("differ in their bond"));
     let direct = "b = { kn = '1e7 N/m', ks = '1e7 N/m', mu = 1, bond = 'none' }\n";
-    let fault = told(&format!("pairs = 'weaker'\n{ROCK}{direct}"), &["rock", "b"]);
+    let fault = faults_of(&format!("pairs = 'weaker'\n{ROCK}{direct}"), &["rock", "b"]);
     assert!(fault[0].contains("differ in `Ec`"), "{fault:?}");
 }
 
@@ -92,7 +92,7 @@ fn a_deviation_is_a_stress_or_a_share_of_the_mean_each_strength_its_own() {
 
 #[test]
 fn units_and_keys_are_those_of_the_declaration() {
-    let with = |value: &str| told(&ROCK.replace("mu = 0.5", value), &["rock"])[0].clone();
+    let with = |value: &str| faults_of(&ROCK.replace("mu = 0.5", value), &["rock"])[0].clone();
     assert_eq!(with("mu = '0.5 m'"), "`rock.mu` is a pure number and has no unit");
     assert_eq!(with("mu = 0.5, pb_Ec = '1 m'"), "`rock.pb_Ec` is measured in Pa, not in m");
     assert_eq!(with("mu = 0.5, pb_Ec = 5"), "`rock.pb_Ec` needs a unit, found the number 5");

@@ -73,8 +73,8 @@ impl Layout {
 
     /// The same model without the named terms.
     pub(super) fn without(&self, labels: &[String]) -> Self {
-        let kept = (0..self.terms.len()).filter(|&term| !labels.contains(&self.label(term)));
-        Self::new(&self.names, kept.map(|term| self.terms[term].clone()).collect(), self.levels.clone())
+        let remaining = (0..self.terms.len()).filter(|&term| !labels.contains(&self.label(term)));
+        Self::new(&self.names, remaining.map(|term| self.terms[term].clone()).collect(), self.levels.clone())
     }
 }
 

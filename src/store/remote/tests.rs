@@ -119,7 +119,7 @@ fn a_flipped_byte_a_torn_push_and_a_forged_record_are_refused() {
     change(&object, |bytes| bytes[100] ^= 1);
     assert!(pull("a").refused[0].contains("its bytes are not those that were written; it is computed again"));
     change(&object, |bytes| bytes.push(0));
-    assert!(pull("b").refused[0].contains("bytes instead of"));
+    assert!(pull("b").refused[0].contains("it is no plain file of the recorded size"));
     // A torn push: the object is not there, or the segment is cut.
     std::fs::remove_file(&object).unwrap();
     assert!(pull("c").refused[0].contains("its object is not there"));

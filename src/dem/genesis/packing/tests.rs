@@ -165,7 +165,7 @@ fn faults_of_the_settings_are_named_at_once() {
     assert!(matches!(large[..], [PackingError::Large { .. }]), "{large:?}");
 }
 
-/// A radius of a nanometre: said with the number of balls and what they would take, before any is made.
+/// A radius of a nanometre: the error states the number of balls and their memory, before any is made.
 #[test]
 fn a_monstrous_packing_is_refused_with_its_number() {
     let tiny = Packing::uniform(0.12, 1e-9, 2.5).faults::<D2>(&SPECIMEN);

@@ -9,13 +9,13 @@ fn with(bond: BondKind, values: &[(Parameter, f64)]) -> Contact {
     Contact { bond, values: values.iter().copied().collect(), ..rock() }
 }
 
-fn told(contact: &Contact) -> Vec<String> {
+fn sentences(contact: &Contact) -> Vec<String> {
     contact.faults("rock").iter().map(ToString::to_string).collect()
 }
 
 #[test]
 fn a_bonded_contact_needs_its_spring_friction_and_strengths_and_nothing_else() {
-    assert_eq!(told(&rock()), [""; 0]);
+    assert_eq!(sentences(&rock()), [""; 0]);
     let keys = |contact: &Contact| contact.missing().iter().map(|p| p.key()).collect::<Vec<_>>();
     assert_eq!(keys(&with(BondKind::Parallel, &[])), ["Ec", "kn_ks", "mu", "sigma_c", "tau_c"]);
     assert_eq!(keys(&with(BondKind::None, &[])), ["Ec", "kn_ks", "mu"]);
@@ -31,10 +31,12 @@ fn what_has_no_effect_is_a_fault() {
     contact.values.insert(Parameter::RadiusMultiplier, 0.5);
     contact.values.insert(Parameter::Kn, 1e7);
     contact.values.insert(Parameter::Friction, -1.0);
-    let told = told(&contact);
-    assert!(told.iter().any(|t| t == "`radius_multiplier` has no effect on contact `rock`, which has a contact bond"));
-    assert!(told.iter().any(|t| t == "`kn` of contact `rock` has no effect beside `Ec`"), "{told:?}");
-    assert!(told.iter().any(|t| t == "`mu` of contact `rock` is -1; it must be 0 or more"), "{told:?}");
+    let sentences = sentences(&contact);
+    assert!(
+        sentences.iter().any(|t| t == "`radius_multiplier` has no effect on contact `rock`, which has a contact bond")
+    );
+    assert!(sentences.iter().any(|t| t == "`kn` of contact `rock` has no effect beside `Ec`"), "{sentences:?}");
+    assert!(sentences.iter().any(|t| t == "`mu` of contact `rock` is -1; it must be 0 or more"), "{sentences:?}");
 }
 
 /// Contact between equal discs: k_n = E* (2 r t)/(2 r) = E* t; spheres: (π/2) E* R.

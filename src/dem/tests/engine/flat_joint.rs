@@ -6,7 +6,7 @@
 //! elastic–brittle section, k_n θ (R³ + x³)/3 with x = σ_b/(k_n θ) (plane, exact). Slit under P: M = k_n I θ until its rim
 //! opens at M = P R/3 (plane), and beyond ∫ r k_n min(g, 0) dr. Gapped: no force until g₀ is closed. Torsion: M = k_s J θ,
 //! all elements of one ring break at c_b A R/√2. N = 1 with a bond in the plane is a parallel bond without spring and with
-//! β = 0. The balls move by 1/4000 of the way in a step: that is the tolerance, where none is said.
+//! β = 0. The balls move by 1/4000 of the way in a step: that is the tolerance, unless another is stated.
 
 use crate::block::*;
 use crate::case::{Case, Family, Near};

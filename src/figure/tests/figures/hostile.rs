@@ -6,8 +6,11 @@ use figure::{DOUBLE, Figure, Quantity, SINGLE, Style};
 /// A name as a file may hold it.
 const LONG: &str = "a_factor_with_a_rather_long_name";
 
+/// What is made of a number.
+type Map = fn(f64) -> f64;
+
 /// What becomes of an ordinary number: shifted far from zero, negative and large, small, near the ends of the range.
-const MAPS: [(&str, fn(f64) -> f64); 7] = [
+const MAPS: [(&str, Map); 7] = [
     ("as it is", |v| v),
     ("above 100000", |v| 1e5 + 1e-3 * v),
     ("above 5", |v| 5.0 + 1e-9 * v),
@@ -22,7 +25,7 @@ fn long(quantity: &Quantity) -> Quantity {
 }
 
 /// The figures with their numbers and names replaced.
-fn figures(map: fn(f64) -> f64, name: &dyn Fn(&Quantity) -> Quantity) -> Vec<(&'static str, Box<dyn Figure>)> {
+fn figures(map: Map, name: &dyn Fn(&Quantity) -> Quantity) -> Vec<(&'static str, Box<dyn Figure>)> {
     let all = |values: &mut [f64]| values.iter_mut().for_each(|v| *v = map(*v));
     let mut bars = samples::pareto();
     bars.quantity = name(&bars.quantity);

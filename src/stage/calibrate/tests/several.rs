@@ -143,7 +143,7 @@ fn proportional_corrections_begin_at_the_known_slope_and_hold_the_rest() {
     assert!((found[0] - 25.0).abs() < 1e-9 && (found[1] - 5.0 / 0.3).abs() < 1e-9, "{found:?}");
     assert_eq!(numbers(&artifact, "history", "sigma_c")[0], 20.0);
     assert_eq!(numbers(&artifact, "solution", "evaluations"), [2.0, 2.0]);
-    // Two runs say nothing of scatter, and it is said so.
+    // Two runs show no scatter, and the result states this.
     assert!(numbers(&artifact, "prediction", "low").iter().all(|low| low.is_nan()));
     assert_eq!(texts(&artifact, "parameters", "known"), ["unknown", "unknown"]);
     assert!(texts(&artifact, "notes", "note")[0].contains("2 runs gave responses, and an interval needs at least 4"));

@@ -109,8 +109,8 @@ proptest! {
         let point: Vec<f64> = whole.factors.iter().map(|f| f.values[row]).collect();
         let deleted = own.observed - left.model.value(&point);
         prop_assert!((deleted - own.residual / (1.0 - own.leverage)).abs() < 1e-9);
-        let said = left.model.predict(&point, 0.95);
-        let spread = left.fit.s.unwrap() * (1.0 + said.leverage).sqrt();
+        let predicted = left.model.predict(&point, 0.95);
+        let spread = left.fit.s.unwrap() * (1.0 + predicted.leverage).sqrt();
         prop_assert!((own.studentized.unwrap() - deleted / spread).abs() < 1e-8);
     }
 }

@@ -54,9 +54,9 @@ fn fits_through_the_origin_by_groups() {
     all_close(beside.iter().map(|c| c.estimate), &column("with_slope"), 1e-11, "slope beside an intercept");
     all_close(beside.iter().map(|c| c.std_error.unwrap()), &column("with_slope_error"), 1e-11, "its error");
     all_close(line.iter().map(|r| r.fit.r2), &column("with_r2"), 1e-12, "R² with an intercept");
-    let said = zero[0].model.predict(&[6.0], 0.95);
-    let (mean, run) = (said.confidence.unwrap(), said.prediction.unwrap());
-    all_close([said.value, mean.0, mean.1, run.0, run.1], &column("band"), 1e-11, "band");
+    let predicted = zero[0].model.predict(&[6.0], 0.95);
+    let (mean, run) = (predicted.confidence.unwrap(), predicted.prediction.unwrap());
+    all_close([predicted.value, mean.0, mean.1, run.0, run.1], &column("band"), 1e-11, "band");
     let cells = pivot(&radius, &ratio, &column("st")).cells;
     all_close(cells.iter().map(|c| c.unwrap().mean), &column("pivot_mean"), 1e-14, "pivot");
     all_close(cells.iter().map(|c| c.unwrap().deviation.unwrap()), &column("pivot_std"), 1e-14, "pivot");

@@ -135,14 +135,15 @@ fn rows_agree(found: &Regression, set: &Table) {
 }
 
 fn point_agrees(found: &Regression, set: &Table) {
-    let said = found.model.predict(&numbers(&set["point"]), 0.95);
-    let (confidence, prediction) = (said.confidence.unwrap(), said.prediction.unwrap());
-    let numbers_said = [said.value, said.std_error.unwrap(), confidence.0, confidence.1, prediction.0, prediction.1];
-    all_close(numbers_said, &numbers(&set["prediction"]), 1e-10, "prediction");
-    assert!(said.outside.is_empty() && !said.far);
+    let predicted = found.model.predict(&numbers(&set["point"]), 0.95);
+    let (confidence, prediction) = (predicted.confidence.unwrap(), predicted.prediction.unwrap());
+    let predicted_numbers =
+        [predicted.value, predicted.std_error.unwrap(), confidence.0, confidence.1, prediction.0, prediction.1];
+    all_close(predicted_numbers, &numbers(&set["prediction"]), 1e-10, "prediction");
+    assert!(predicted.outside.is_empty() && !predicted.far);
     let beyond: Vec<f64> = found.model.axes.iter().map(|a| a.high + 0.1 * a.half).collect();
-    let said = found.model.predict(&beyond, 0.95);
-    assert!(said.far && said.outside.len() == found.model.axes.len());
+    let predicted = found.model.predict(&beyond, 0.95);
+    assert!(predicted.far && predicted.outside.len() == found.model.axes.len());
 }
 
 fn canonical_agrees(found: &Regression, set: &Table) {
@@ -181,8 +182,8 @@ fn backward_selection_takes_the_same_steps() {
     let gone: Vec<&str> = found.steps.iter().map(|s| s.term.as_str()).collect();
     assert_eq!(gone, texts(&wanted["gone"]));
     all_close(found.steps.iter().map(|s| s.p), &numbers(&wanted["p"]), 1e-8, "p of the steps");
-    let kept: Vec<&str> = found.natural.iter().map(|c| c.term.as_str()).collect();
-    assert_eq!(kept, texts(&wanted["kept"]));
+    let terms: Vec<&str> = found.natural.iter().map(|c| c.term.as_str()).collect();
+    assert_eq!(terms, texts(&wanted["kept"]));
     close(found.fit.r2, number(&wanted["r2"]), 1e-11, "R²");
     let forward = regress(&table, "nu", &Term::second_order(&names), &settings(Direction::Forward)).unwrap();
     assert!(forward.steps.iter().all(|s| s.added && s.p <= 0.05));
