@@ -159,17 +159,18 @@ command 2
 data 2
 design 2
 effort 1
-figure 12
+figure 13
 fit 3
 formula 2
 gather 2
-groups 2
+groups 3
+mix 1
 range 3
 screening 4
 shapes 1
 simulate 3
 specimen 2
-table 5
+table 6
 verify 2
 ";
 

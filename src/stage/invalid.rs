@@ -77,8 +77,11 @@ impl Invalid {
     }
 }
 
-/// The words with a capital in front and a full stop behind.
+/// The words with a capital in front, unless a name with a colon is there, and a full stop behind.
 pub(super) fn sentence(words: &str) -> String {
+    if words.split(' ').next().is_some_and(|first| first.ends_with(':')) {
+        return format!("{words}.");
+    }
     let mut letters = words.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default();
     format!("{first}{}.", letters.as_str())
@@ -144,6 +147,13 @@ mod tests {
         let refused = Invalid::Refuse.judge(&table).err().unwrap();
         assert_eq!(refused.message, "2 of 4 runs are not valid: rotation (1); at grip (1)");
         assert!(Invalid::Refuse.judge(&Table::default()).unwrap().sentence().is_none());
+    }
+
+    #[test]
+    fn a_sentence_begins_with_a_capital_or_with_a_name_as_it_is() {
+        assert_eq!(sentence("2 of 4 runs"), "2 of 4 runs.");
+        assert_eq!(sentence("the run is not valid"), "The run is not valid.");
+        assert_eq!(sentence("sigma_t: 1 of 4 runs"), "sigma_t: 1 of 4 runs.");
     }
 
     #[test]

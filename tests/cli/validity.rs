@@ -193,7 +193,7 @@ targets = [{ E = "20 GPa" }]
     assert!(said.contains("`sigma_t` comes in `Pa` and cannot be shown in `kN`"), "{said}");
 }
 
-/// Of discs whose radii differ tenfold the small ones are swallowed at a twentieth of the modulus: that row alone has no
+/// Of discs whose radii differ tenfold the small ones are swallowed at 0.07 of the modulus: that row alone has no
 /// result, and every disc that can be packed has one.
 #[test]
 fn a_disc_that_cannot_be_packed_costs_its_row_alone() {
@@ -203,12 +203,12 @@ fn a_disc_that_cannot_be_packed_costs_its_row_alone() {
         "[workflow]\nseed = 1\n[factor]\nratio = { sets = 'disc.radius_ratio', levels = [1.5, 2, 10] }\n\
          [response]\nsigma_t = { unit = 'MPa' }\n\
          [material.rock]\nrock = { Ec = '1 GPa', kn_ks = 2.5, sigma_c = '5 MPa', tau_c = '20 MPa', mu = 0.5 }\n\
-         [stage.disc]\nkind = 'specimen'\ndiameter = '20 mm'\npacking = { stress = '50 MPa', modulus = '1 GPa' }\n\
+         [stage.disc]\nkind = 'specimen'\ndiameter = '50 mm'\npacking = { stress = '70 MPa', modulus = '1 GPa' }\n\
          smallest_radius = '0.5 mm'\nradius_ratio = 1.5\ngives_way = 'number'\ndensity = '2600 kg/m^3'\ngroup = 'rock'\n\
          [stage.rows]\nkind = 'design'\nmethod = 'full-factorial'\nfactors = ['ratio']\n\
          [stage.runs]\nkind = 'simulate'\nspecimen = 'disc'\nmaterial = 'rock'\ndesign = 'rows'\ntest = 'brazilian'\n\
          bond = { kind = 'contact' }\nplaten_speed = { transits = 20 }\nmasses = 'equal-step'\n\
-         [stage.fit]\nkind = 'regression'\ntable = 'runs'\nterms.sigma_t = ['ratio']\n",
+         [stage.fit]\nkind = 'regression'\ntable = 'runs'\nterms.sigma_t = ['ratio']\ninvalid = 'keep'\n",
     );
     let output = space.flow(&["run", "w.toml"]);
     let said = told(&output);
@@ -222,4 +222,26 @@ fn a_disc_that_cannot_be_packed_costs_its_row_alone() {
     assert!(rows[..2].iter().all(|row| !row.contains("no specimen")), "{runs}");
     // A second run repeats nothing: the reason is stored.
     assert!(space.run(&[]).ran.is_empty());
+}
+
+#[test]
+fn a_group_without_a_fit_says_how_many_of_its_runs_are_missing() {
+    let space = Space::new();
+    space.write(
+        "w.toml",
+        "[workflow]\nseed = 1\n[factor]\na = { levels = [1, 2, 3] }\n[response]\ny = {}\n[stage.runs]\nkind = 'data'\n\
+         file = 'runs.csv'\n[stage.groups]\nkind = 'regression'\ntable = 'runs'\nterms.y = ['a']\nby = ['site']\n",
+    );
+    space.write("runs.csv", "a,y,validity,site\n1,3,,1\n2,5,,1\n3,7.1,,1\n1,3,rotation,2\n2,5,rotation,2\n3,7,,2\n");
+    space.run(&[]);
+    let table = space.stdout(&["show", "w.toml", "groups", "--table", "groups", "--csv"]);
+    let column = |name: &str| table.lines().next().unwrap().split(',').position(|head| head == name).expect("a column");
+    let missing = |group: &str| {
+        let line = table.lines().find(|line| line.starts_with(group)).expect("the group");
+        line.split(',').nth(column("missing")).expect("a cell")
+    };
+    assert_eq!((missing("y,1,"), missing("y,2,")), ("0", "2"), "{table}");
+    assert!(table.contains("has 1 usable rows (2 missing) for 2 coefficients"), "{table}");
+    let notes = space.stdout(&["show", "w.toml", "groups", "--table", "notes", "--csv"]);
+    assert!(notes.contains("site 2: 2 of 3 runs have no value or are left out"), "{notes}");
 }

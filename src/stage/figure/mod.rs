@@ -328,8 +328,9 @@ impl Kind for Figure {
     /// units than their factors and responses are converted and no longer taken as they stand. 9: standardised effects
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
     /// one another. 11: runs that are not valid are left out or marked, which is stated below the picture. 12: titles of
-    /// axes stay on the page; lines of a contour are labelled in the words of its bar.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 12, run: draw }];
+    /// axes stay on the page; lines of a contour are labelled in the words of its bar. 13: names
+    /// in what is stated below the picture keep their letters.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 13, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

@@ -44,6 +44,8 @@ struct By<'a> {
 struct Found<'a> {
     response: &'a str,
     group: Grouped,
+    /// Runs of the group that have no value, or were left out.
+    missing: usize,
     fit: Result<(Regression, Option<Beside>), String>,
 }
 
@@ -61,8 +63,14 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
         let sample = fitting.columns.sample(table)?;
         not_valid.append(fitting.columns.not_valid(table)?);
         for group in &all {
-            let fit = one(&sample.with_rows(&group.rows), fitting, &params);
-            found.push(Found { response: &fitting.response, group: group.clone(), fit });
+            let own = sample.with_rows(&group.rows);
+            let fit = one(&own, fitting, &params);
+            found.push(Found {
+                response: &fitting.response,
+                group: group.clone(),
+                missing: missing(&own, &fitting.response),
+                fit,
+            });
         }
     }
     let stored = Groups {
@@ -98,6 +106,12 @@ fn one(sample: &Sample, fitting: &Fitting, params: &Params) -> Result<(Regressio
     let found = regress(sample, &fitting.response, &fitting.terms, &settings).map_err(|e| refused(e).message)?;
     let beside = params.through_origin.then(|| Beside::of(sample, &fitting.response, &fitting.terms, &settings));
     Ok((found, beside.flatten()))
+}
+
+/// Rows in which the response has no value.
+fn missing(sample: &Sample, response: &str) -> usize {
+    let own = sample.responses.iter().find(|own| own.name == response);
+    own.map_or(0, |own| own.values.iter().filter(|value| value.is_none()).count())
 }
 
 /// The values that make a group, as texts.
@@ -158,7 +172,7 @@ fn group_table(found: &[Found], by: &[By], params: &Params) -> Table {
         t: of(|_, c| c.t),
         p: of(|_, c| c.p),
         n: rows.ints(|Line(_, fit)| fit.map_or(0, |(fit, ..)| fit.fit.n)),
-        missing: rows.ints(|Line(_, fit)| fit.map_or(0, |f| f.0.fit.missing)),
+        missing: rows.ints(|l| l.0.missing),
         s: of(|fit, _| fit.fit.s),
         r2: of(|fit, _| Some(fit.fit.r2)),
         r2_about_mean: params.through_origin.then(|| of(|fit, _| fit.fit.r2_about_mean)),
@@ -198,7 +212,7 @@ fn notes<'a>(found: &[Found], by: &[By], not_valid: &'a NotValid) -> Notes<'a> {
         notes.add(found.response, format!("{}: no fit: {why}", key_texts(by, &found.group).join(", ")));
     }
     for found in found {
-        let missing = found.fit.as_ref().map_or(0, |(fit, _)| fit.fit.missing);
+        let missing = found.missing;
         if missing > 0 {
             let group = key_texts(by, &found.group).join(", ");
             notes.add(
