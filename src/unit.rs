@@ -384,6 +384,8 @@ kinds! {
     Time, TimeKind = (0, 0, 1), "time", "30 s";
     /// Newtons.
     Force, ForceKind = (1, 1, -2), "force", "10 kN";
+    /// Kilograms.
+    Mass, MassKind = (0, 1, 0), "mass", "2.5 kg";
     /// Radians.
     Angle, AngleKind = (0, 0, 0), "angle", "30 deg";
 }

@@ -70,7 +70,7 @@ pub(super) const STORE: &str = "Examples:
       what no stage of w.toml can reach; --yes removes it
   flow store verify
       every result against its record
-  flow store push results/rocks
+  flow store push results/rocks --sign ~/.ssh/id_ed25519
       the results for colleagues, signed
   flow store pull results/rocks
       their results, proven before they are used";

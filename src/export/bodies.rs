@@ -1,7 +1,7 @@
 //! A specimen and a run on it as other programs want them: balls (discs in the plane, spheres in space), groups, contacts.
 
 use dem::Space;
-use dem::genesis::heap::Heap;
+use dem::genesis::heap::{Heap, Still};
 use dem::genesis::specimen::Specimen;
 use dem::space::Tuple;
 
@@ -18,7 +18,8 @@ pub(super) struct Contact {
 /// The contacts of the balls that are nearer than `margin` (m) and not of one clump, in the order of their ends.
 pub(super) fn contacts<S: Space>(specimen: &Specimen<S>, margin: f64) -> Vec<Contact> {
     let (centres, radii) = (&specimen.centres, &specimen.radii);
-    let heap = Heap::<S> { region: specimen.region, centres: centres.clone(), radii: radii.clone() };
+    let still = Still::default();
+    let heap = Heap::<S> { region: specimen.region, centres: centres.clone(), radii: radii.clone(), still };
     let clump = specimen.clump_of_balls();
     let contact = |(i, j): (usize, usize)| {
         let gap = centres[j].minus(centres[i]).norm() - radii[i] - radii[j];

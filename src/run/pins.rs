@@ -164,6 +164,7 @@ fit 3
 formula 2
 gather 2
 groups 3
+mix 1
 range 3
 screening 4
 shapes 1

@@ -229,8 +229,10 @@ impl Stages {
                 key,
                 stage: &maker.name,
                 content,
-                vary: Box::new(|point, number| vary::replicate(&workflow.context, &maker.name, point, number)),
-                replicate: Box::new(|number| maker.stage.replicate(&workflow.context, number)),
+                vary: Box::new(move |point, number| {
+                    vary::replicate(&self.known(workflow, input, library), point, number)
+                }),
+                replicate: Box::new(move |number| maker.stage.replicate(&self.known(workflow, input, library), number)),
                 sample: Box::new(move |point, number| {
                     vary::sample(&*maker.stage, &self.known(workflow, input, library), point, number)
                 }),

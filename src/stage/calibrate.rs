@@ -98,7 +98,7 @@ impl Stage for Calibrate {
             Port { key: "simulators", stages: self.simulators.clone(), accepts: simulators },
             Port { key: "coarse", stages: self.coarse.list(), accepts: simulators },
             Port { key: "learn_from", stages: self.learn_from.clone(), accepts: results },
-            Port { key: "curve", stages: curve, accepts: results },
+            Port { key: "curve", stages: curve, accepts: simulators },
             Port { key: "proportional", stages: one(&slopes), accepts: Accepts::Tables },
         ]
     }

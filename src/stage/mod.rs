@@ -173,8 +173,8 @@ pub trait Stage: Settings + Send + Sync {
     }
 
     /// The task that makes replicate `number` (counted from 1) of this stage's result, for kinds that have replicates
-    /// (specimens): the result of the stage itself is replicate 1.
-    fn replicate(&self, _context: &Context, _number: u64) -> Option<Task> {
+    /// (specimens): the result of the stage itself is replicate 1. `known` is what this stage knows.
+    fn replicate(&self, _known: &Known, _number: u64) -> Option<Task> {
         None
     }
 

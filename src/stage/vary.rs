@@ -108,14 +108,15 @@ pub fn sample(stage: &dyn Stage, known: &super::Known, point: &Point, number: u6
     }
 }
 
-/// The task that makes replicate `number` of the stage `name` with settings of the point; none when the point sets none
-/// of them.
+/// The task that makes replicate `number` of the stage that knows `known`, with settings of the point; none when the point
+/// sets none of them.
 ///
 /// # Errors
 /// As [`varied`]; or the stage has no replicates, or refuses its settings.
-pub fn replicate(context: &Context, name: &str, point: &Point, number: u64) -> Result<Option<Task>, StageError> {
+pub fn replicate(known: &super::Known, point: &Point, number: u64) -> Result<Option<Task>, StageError> {
+    let (context, name) = (known.context, known.name);
     let Some(stage) = varied(context, name, point)? else { return Ok(None) };
-    let task = stage.replicate(context, number).ok_or_else(|| {
+    let task = stage.replicate(known, number).ok_or_else(|| {
         let faults: Vec<String> = stage.check(context).into_iter().map(|fault| fault.message).collect();
         let why = if faults.is_empty() { "it cannot make replicates".to_owned() } else { faults.join("; ") };
         StageError::new(format!("stage `{name}`: {why}"))

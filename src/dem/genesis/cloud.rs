@@ -32,16 +32,36 @@ pub fn scale_to_porosity<S: Space>(radii: &mut [f64], volume: f64, porosity: f64
 /// Random centres for balls of half the given radii, inside `region` and without overlap. A ball that finds no position in
 /// a thousand tries is put at the last one tried; the relaxation moves it.
 pub fn scatter<S: Space>(radii: &[f64], region: &Region, stream: &mut Stream) -> Vec<Vector<S>> {
+    scatter_where::<S>(radii, region, &|_, _| true, stream)
+}
+
+/// The same at places that are free for a ball of half the radius, as `room(centre, half radius)` says. A ball that finds no
+/// place is put at the last one tried that `room` allowed; after a million tries without one, at the last tried.
+pub(super) fn scatter_where<S: Space>(
+    radii: &[f64],
+    region: &Region,
+    room: &dyn Fn(Vector<S>, f64) -> bool,
+    stream: &mut Stream,
+) -> Vec<Vector<S>> {
     let largest = radii.iter().copied().fold(0.0, f64::max);
     let edges = region.edges();
     let mut grid = Bins::new(edges, largest.max(1e-300), S::DIMENSION);
     let mut centres: Vec<Vector<S>> = Vec::with_capacity(radii.len());
     for (i, r) in radii.iter().map(|r| 0.5 * r).enumerate() {
         let mut centre = Vector::<S>::zero();
-        for _ in 0..1000 {
-            centre = Vector::<S>::build(|k| edges[k] * (stream.uniform() - 0.5));
+        let mut allowed = false;
+        for attempt in 0..1_000_000 {
+            if allowed && attempt >= 1000 {
+                break;
+            }
+            let tried = Vector::<S>::build(|k| edges[k] * (stream.uniform() - 0.5));
+            let roomy = room(tried, r);
+            if allowed && !roomy {
+                continue;
+            }
+            (centre, allowed) = (tried, roomy);
             let free = |j: usize| centres[j].minus(centre).norm() >= r + 0.5 * radii[j];
-            if region.depth::<S>(centre) >= r && grid.near::<S>(centre).all(free) {
+            if roomy && region.depth::<S>(centre) >= r && grid.near::<S>(centre).all(free) {
                 break;
             }
         }

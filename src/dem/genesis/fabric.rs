@@ -1,7 +1,7 @@
 //! What a heap of balls at rest looks like: contacts, overlaps, stress.
 //!
 //! ```text
-//! coordination = 2 C / N,  C contacts between N balls (walls not counted)
+//! coordination = 2 C / N,  C contacts between N balls (walls not counted; a contact with a stone counts once)
 //! σ_ij = (1/Ω) Σ f_i l_j,  f = k_n U n and l from centre to centre (or to the wall), for a modulus of 1 Pa;  compression positive
 //! F_ij = mean of n_i n_j over the contacts between balls
 //! a = √(8 F'·F') in the plane, (15/2) √(3/2 F'·F') in the solid,  F' the deviator of F
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// Contacts, overlaps and stress of a packing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fabric {
-    /// 2 × contacts between balls / balls.
+    /// Contacts with balls and stones per ball.
     pub coordination: f64,
     /// Balls with fewer contacts than hold a ball ([`held`]), walls counted.
     pub floaters: usize,
@@ -61,7 +61,7 @@ impl Pressure {
             stress += overlap.stiffness * overlap.depth * length;
             slope += overlap.stiffness * length * (length + overlap.depth);
         });
-        let share = 1.0 / (S::DIMENSION as f64 * heap.region.volume());
+        let share = 1.0 / (S::DIMENSION as f64 * heap.room());
         Self { stress: stress * share, slope: slope * share }
     }
 }
@@ -69,14 +69,15 @@ impl Pressure {
 impl Fabric {
     /// Reads the heap; a heap without contacts has zeros.
     pub fn of<S: Space>(heap: &Heap<S>) -> Self {
-        let (mut overlaps, mut largest) = (0.0, 0.0_f64);
+        let still = heap.still.pebbles;
+        let (mut overlaps, mut largest, mut ends) = (0.0, 0.0_f64, 0);
         let mut stress = Dyads::<S>::default();
         let mut normals: Vec<Vector<S>> = Vec::new();
         heap.overlaps(|overlap| {
-            let [first, second] = heap.ends(&overlap);
-            let relative = overlap.depth / first.min(second);
+            let relative = heap.relative(&overlap);
             largest = largest.max(relative);
-            if overlap.second.is_some() {
+            if let Some(second) = overlap.second {
+                ends += usize::from(overlap.first >= still) + usize::from(second >= still);
                 overlaps += relative;
                 normals.push(overlap.normal);
             }
@@ -87,13 +88,13 @@ impl Fabric {
         let [x, y, z] = std::array::from_fn(|k| stress.sum[k][k]);
         let across = if dimension == 2 { x } else { 0.5 * (x + z) };
         let sum = across + y;
-        let counts = heap.contact_counts();
+        let counts = &heap.contact_counts()[still..];
         Self {
-            coordination: 2.0 * contacts as f64 / heap.radii.len() as f64,
+            coordination: ends as f64 / counts.len() as f64,
             floaters: counts.iter().filter(|&&n| n < held::<S>()).count(),
             mean_overlap: if contacts > 0 { overlaps / contacts as f64 } else { 0.0 },
             largest_overlap: largest,
-            mean_stress: (x + y + z) / dimension as f64 / heap.region.volume(),
+            mean_stress: (x + y + z) / dimension as f64 / heap.room(),
             anisotropy: if sum > 0.0 { (across - y) / sum } else { 0.0 },
             normals: amplitude(&mean_dyad::<S>(normals.into_iter()), dimension),
             contacts,
@@ -101,9 +102,12 @@ impl Fabric {
     }
 }
 
-/// Distance from centre to centre, or from the centre to the wall (m).
+/// Distance from centre to centre, or from the centre to the wall or stone (m): stresses are those of the room between them.
 fn branch<S: Space>(heap: &Heap<S>, overlap: &Overlap<S>) -> f64 {
     let [first, second] = heap.ends(overlap);
+    if overlap.first < heap.still.pebbles {
+        return second - overlap.depth;
+    }
     first + if second.is_finite() { second } else { 0.0 } - overlap.depth
 }
 
@@ -118,6 +122,7 @@ fn amplitude(fabric: &[[f64; 3]; 3], dimension: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::heap::Still;
     use super::super::region::Region;
     use super::*;
     use crate::{D2, D3};
@@ -131,8 +136,12 @@ mod tests {
         let step = side / f64::from(n);
         let at = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
         let centres = (0..n * n).map(|k| [at(k % n), at(k / n)]).collect();
-        let heap =
-            Heap::<D2> { region: Region::Rectangle { width: side, height: side }, centres, radii: vec![1.0; 36] };
+        let heap = Heap::<D2> {
+            region: Region::Rectangle { width: side, height: side },
+            centres,
+            radii: vec![1.0; 36],
+            still: Still::default(),
+        };
         let fabric = Fabric::of(&heap);
         assert!((fabric.coordination - 2.0 * 60.0 / 36.0).abs() < 1e-12);
         assert_eq!(fabric.floaters, 0);
@@ -152,7 +161,7 @@ mod tests {
         let at = |k: i32| (f64::from(k) + 0.5) * step - 0.5 * side;
         let centres = (0..n * n * n).map(|k| [at(k % n), at(k / n % n), at(k / n / n)]).collect();
         let region = Region::Box { width: side, height: side, depth: side };
-        let heap = Heap::<D3> { region, centres, radii: vec![1.0; 64] };
+        let heap = Heap::<D3> { region, centres, radii: vec![1.0; 64], still: Still::default() };
         let fabric = Fabric::of(&heap);
         assert!((fabric.coordination - 2.0 * 144.0 / 64.0).abs() < 1e-12);
         let stress = std::f64::consts::PI * e / (step * step);

@@ -17,6 +17,18 @@ pub struct Heap<S: Space = D2> {
     pub centres: Vec<Vector<S>>,
     /// Radii.
     pub radii: Vec<f64>,
+    /// Those that stand still.
+    pub still: Still,
+}
+
+/// The first balls of a heap where they are pebbles of stones that stand still; they overlap one another and the walls as they
+/// like.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Still {
+    /// How many.
+    pub pebbles: usize,
+    /// Volume of the stones (m³).
+    pub volume: f64,
 }
 
 /// Two balls, or a ball and a wall (`second` is then `None`), that overlap.
@@ -59,7 +71,9 @@ impl<S: Space> Heap<S> {
     /// All pairs whose surfaces are nearer than `margin` (m), each once with the smaller index first, sorted.
     pub fn pairs(&self, margin: f64) -> Vec<(usize, usize)> {
         let centres: Vec<[f64; 3]> = self.centres.iter().map(|&x| flat::<S>(x)).collect();
-        let bodies: Vec<u32> = (0..self.radii.len() as u32).collect();
+        // Pebbles that stand still are one body, so that no pair of them is listed.
+        let bodies: Vec<u32> =
+            (0..self.radii.len()).map(|i| if i < self.still.pebbles { 0 } else { i as u32 }).collect();
         let mut pairs = Vec::with_capacity(4 * self.radii.len());
         neighbour::pairs(&centres, &self.radii, &bodies, margin, |i, j| pairs.push((i as usize, j as usize)));
         pairs
@@ -69,11 +83,12 @@ impl<S: Space> Heap<S> {
     pub(super) fn neighbours(&self, margin: f64, scale: f64) -> Neighbours {
         let pair = |(i, j): (usize, usize)| {
             let (ri, rj) = (self.radii[i], self.radii[j]);
-            let stiffness = scale * UNIT.normal::<S>([ri, rj]);
+            // A stone is rigid however small its pebbles are: it resists a ball as another one of the ball's size does.
+            let stiffness = scale * UNIT.normal::<S>(if i < self.still.pebbles { [rj, rj] } else { [ri, rj] });
             Pair { i: i as u32, j: j as u32, reach: ri + rj, stiffness }
         };
         let near = |&i: &usize| self.region.depth::<S>(self.centres[i]) < self.radii[i] + margin;
-        let at_wall = (0..self.radii.len()).filter(near).map(|i| i as u32).collect();
+        let at_wall = (self.still.pebbles..self.radii.len()).filter(near).map(|i| i as u32).collect();
         Neighbours { pairs: self.pairs(margin).into_iter().map(pair).collect(), at_wall, scale }
     }
 
@@ -112,6 +127,22 @@ impl<S: Space> Heap<S> {
         [self.radii[overlap.first], overlap.second.map_or(f64::INFINITY, |j| self.radii[j])]
     }
 
+    /// Depth of an overlap over the smaller radius, or over that of the ball at a stone, whose pebbles are as small as they like.
+    pub fn relative(&self, overlap: &Overlap<S>) -> f64 {
+        let [first, second] = self.ends(overlap);
+        overlap.depth / if overlap.first < self.still.pebbles { second } else { first.min(second) }
+    }
+
+    /// Volume between the stones (m³, or m²).
+    pub fn room(&self) -> f64 {
+        self.region.volume() - self.still.volume
+    }
+
+    /// Radii of the balls that do not stand still.
+    pub fn free(&self) -> &[f64] {
+        &self.radii[self.still.pebbles..]
+    }
+
     /// Number of contacts of every ball, those with walls included.
     pub fn contact_counts(&self) -> Vec<u32> {
         let mut counts = vec![0; self.radii.len()];
@@ -124,20 +155,20 @@ impl<S: Space> Heap<S> {
         counts
     }
 
-    /// Σ V(R), overlaps counted twice (m³, or m²).
+    /// Σ V(R) of the balls that do not stand still, overlaps counted twice (m³, or m²).
     pub fn ball_volume(&self) -> f64 {
-        ball_volume::<S>(&self.radii)
+        ball_volume::<S>(self.free())
     }
 
-    /// Multiplies all radii.
+    /// Multiplies the radii of the balls that do not stand still.
     pub(super) fn scale(&mut self, factor: f64) {
-        self.radii.iter_mut().for_each(|r| *r *= factor);
+        self.radii[self.still.pebbles..].iter_mut().for_each(|r| *r *= factor);
     }
 
-    /// The balls with these indices, in this order.
+    /// The balls with these indices, in this order; pebbles that stand still must come first and all be there.
     pub(super) fn chosen(&self, order: &[usize]) -> Self {
         let centres = order.iter().map(|&i| self.centres[i]).collect();
-        Self { region: self.region, centres, radii: order.iter().map(|&i| self.radii[i]).collect() }
+        Self { region: self.region, centres, radii: order.iter().map(|&i| self.radii[i]).collect(), still: self.still }
     }
 }
 
@@ -160,7 +191,7 @@ mod tests {
         let centres: Vec<[f64; 3]> =
             (0..300).map(|_| std::array::from_fn(|k| edges[k] * (stream.uniform() - 0.5))).collect();
         let radii: Vec<f64> = (0..300).map(|_| stream.uniform_in(0.03, 0.06)).collect();
-        let heap = Heap::<D3> { region, centres, radii };
+        let heap = Heap::<D3> { region, centres, radii, still: Still::default() };
         let mut expected = Vec::new();
         for i in 0..300 {
             for j in i + 1..300 {

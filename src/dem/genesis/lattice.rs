@@ -14,7 +14,7 @@
 //! nearest to the one asked for. Across, there are as many balls as fit, in the middle. Neighbours overlap by 10⁻⁹ of the
 //! radius, so that rounding leaves no contact open.
 
-use super::heap::Heap;
+use super::heap::{Heap, Still};
 use super::region::Region;
 use crate::space::{Space, Tuple, Vector};
 use serde::{Deserialize, Serialize};
@@ -106,7 +106,7 @@ impl Lattice {
             }
         }
         let radii = vec![radius * (1.0 + OVERLAP); centres.len()];
-        Heap { region: *region, centres, radii }
+        Heap { region: *region, centres, radii, still: Still::default() }
     }
 
     /// Largest whole number of half repeats (whole ones where there is one site) in `room`.

@@ -6,6 +6,7 @@
 //! * [`groups`]: minerals by their share
 //! * [`gradation`]: how many particles of aggregate of each size; [`polygon`]: random convex outlines; [`placement`]: their
 //!   positions without overlap; [`clump`]: balls inside a polygon as pebbles of a rigid body (plane only)
+//! * [`stones`]: clumps of given shapes placed in a solid; [`mix`]: mortar of balls packed around them (`mortar`)
 //! * [`network`]: fractures by their statistics
 //! * [`specimen`]: all of it put together; [`quality`]: the report on it
 
@@ -17,6 +18,8 @@ pub mod gradation;
 pub mod groups;
 pub mod heap;
 pub mod lattice;
+pub mod mix;
+mod mortar;
 pub mod network;
 pub mod packing;
 pub mod placement;
@@ -26,3 +29,4 @@ pub mod region;
 pub mod relax;
 pub mod sizes;
 pub mod specimen;
+pub mod stones;

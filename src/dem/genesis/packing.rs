@@ -22,7 +22,7 @@
 use super::cloud::{scale_to_porosity, scatter};
 use super::compress::{Compressed, Floaters, StressTarget};
 use super::fabric::{Fabric, held};
-use super::heap::Heap;
+use super::heap::{Heap, Still};
 use super::lattice::Lattice;
 use super::region::Region;
 use super::relax::Until;
@@ -232,8 +232,8 @@ impl PackingError {
 /// Most balls that are packed.
 pub const MOST_BALLS: f64 = 5e6;
 /// Mean unbalanced force over the mean contact force that counts as rest at a fixed porosity.
-const REST: f64 = 1e-3;
-const AT_REST: Until = Until { unbalanced: REST, slack: 0.0, iterations: 40_000, margin: 0.5 };
+pub(super) const REST: f64 = 1e-3;
+pub(super) const AT_REST: Until = Until { unbalanced: REST, slack: 0.0, iterations: 40_000, margin: 0.5 };
 const MOST_ROUNDS: usize = 30;
 /// Factor on a floater's radius in one round.
 const GROWTH: f64 = 1.02;
@@ -241,7 +241,7 @@ const GROWTH: f64 = 1.02;
 const NEAR_STATED: f64 = 5e-4;
 const MOST_RECOUNTS: usize = 6;
 /// Shares of their radius through which balls grow that are put into a packing.
-const INSERTION: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
+pub(super) const INSERTION: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 
 impl Packing {
     /// Uniform radii with a mean that gives way to the porosity; no floaters are left.
@@ -309,33 +309,33 @@ fn cloud<S: Space>(sizes: &Sizes, porosity: f64, region: &Region, stream: &mut S
         GivesWay::Number => 1.0,
     };
     let centres = scatter::<S>(&radii, region, stream);
-    (renumbered(&Heap { region: *region, centres, radii }), factor)
+    (renumbered(&Heap { region: *region, centres, radii, still: Still::default() }), factor)
 }
 
 /// Enlarges floaters until few enough are left; a round that finds no rest is undone and ends it.
-fn hold_floaters<S: Space>(
+pub(super) fn hold_floaters<S: Space>(
     packed: &mut Packed<S>,
     porosity: f64,
     share: f64,
     gives_way: GivesWay,
     watch: &dyn Fn() -> Watch,
 ) {
-    let count = packed.heap.radii.len();
+    let (still, count) = (packed.heap.still.pebbles, packed.heap.radii.len());
     let mut growth = vec![1.0_f64; count];
     while packed.floater_rounds < MOST_ROUNDS && packed.unbalanced < REST {
         let contacts = packed.heap.contact_counts();
         let floats = |&i: &usize| contacts[i] < held::<S>();
-        if (0..count).filter(floats).count() as f64 <= share * count as f64 {
+        if (still..count).filter(floats).count() as f64 <= share * (count - still) as f64 {
             break;
         }
         let mut next = packed.clone();
-        for i in (0..count).filter(floats) {
+        for i in (still..count).filter(floats) {
             next.heap.radii[i] *= GROWTH;
             growth[i] *= GROWTH;
         }
         if gives_way == GivesWay::Radius {
-            let volume = next.heap.region.volume();
-            next.radius_factor *= scale_to_porosity::<S>(&mut next.heap.radii, volume, porosity);
+            let volume = next.heap.room();
+            next.radius_factor *= scale_to_porosity::<S>(&mut next.heap.radii[still..], volume, porosity);
         }
         let rest = next.heap.relax(AT_REST, watch);
         packed.iterations += rest.iterations;
@@ -348,7 +348,7 @@ fn hold_floaters<S: Space>(
     }
 }
 
-fn judge<S: Space>(packed: &Packed<S>, porosity: f64) -> Result<(), PackingError> {
+pub(super) fn judge<S: Space>(packed: &Packed<S>, porosity: f64) -> Result<(), PackingError> {
     let coordination = Fabric::of(&packed.heap).coordination;
     if packed.unbalanced >= REST {
         return Err(PackingError::Restless { iterations: packed.iterations, unbalanced: packed.unbalanced });
@@ -430,7 +430,7 @@ fn as_lattice<S: Space>(lattice: Lattice, radius: f64, region: &Region) -> Packe
 
 impl<S: Space> Packed<S> {
     /// A heap to which nothing happened.
-    fn of(heap: Heap<S>) -> Self {
+    pub(super) fn of(heap: Heap<S>) -> Self {
         Self {
             heap,
             radius_factor: 1.0,
@@ -445,13 +445,13 @@ impl<S: Space> Packed<S> {
 }
 
 /// The balls in the order of a Morton curve over 1024 cells along each axis of the vessel.
-fn renumbered<S: Space>(heap: &Heap<S>) -> Heap<S> {
+pub(super) fn renumbered<S: Space>(heap: &Heap<S>) -> Heap<S> {
     let edges = heap.region.edges();
     let cell = |x: f64, length: f64| ((x / length + 0.5).clamp(0.0, 0.999_999) * 1024.0) as u32;
     let code =
         |c: &Vector<S>| (0..S::DIMENSION).fold(0, |code, k| code | spread(cell(c.at(k), edges[k]), S::DIMENSION) << k);
     let mut order: Vec<usize> = (0..heap.radii.len()).collect();
-    order.sort_by_key(|&i| code(&heap.centres[i]));
+    order[heap.still.pebbles..].sort_by_key(|&i| code(&heap.centres[i]));
     heap.chosen(&order)
 }
 

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub struct Quality {
     /// Balls, pebbles included.
     pub balls: usize,
-    /// Mean radius (m).
+    /// Mean radius (m); this and the numbers per ball are those of the mortar where there are stones.
     pub mean_radius: f64,
     /// Smallest and largest radius (m).
     pub radius_range: [f64; 2],
@@ -143,10 +143,10 @@ impl Quality {
         circles: &Circles,
     ) -> Self {
         let Heap { region, radii, .. } = &packed.heap;
-        let (volume, all) = (region.volume(), packed.heap.ball_volume());
-        let mean_radius = radii.iter().sum::<f64>() / radii.len() as f64;
+        let (volume, all, free) = (region.volume(), packed.heap.ball_volume(), packed.heap.free());
+        let mean_radius = free.iter().sum::<f64>() / free.len() as f64;
         let bounds = |(low, high): (f64, f64), &r: &f64| (low.min(r), high.max(r));
-        let (smallest, largest) = radii.iter().fold((f64::INFINITY, 0.0), bounds);
+        let (smallest, largest) = free.iter().fold((f64::INFINITY, 0.0), bounds);
         let pebbles: Vec<f64> = clumps.iter().flat_map(|clump| &clump.pebbles).map(|&i| radii[i]).collect();
         let (fabric, contacts) = (Fabric::of(&packed.heap), contacts_by_kind(&packed.heap, clumps));
         Self {
@@ -164,12 +164,13 @@ impl Quality {
             stress: packed.modulus.map(|modulus| modulus * fabric.mean_stress),
             particles_across: region.narrowest() / (2.0 * mean_radius),
             contacts,
-            bonds_per_ball: (contacts[0] + contacts[1]) as f64 / radii.len() as f64,
+            bonds_per_ball: (contacts[0] + contacts[1]) as f64 / free.len() as f64,
             circle_fraction: circles.area / volume,
             polygon_fraction: polygons.iter().fold(0.0, |sum, p| sum + p.moments().area) / volume,
             pebble_fraction: super::heap::ball_volume::<S>(&pebbles) / all,
             polygons: polygons.len(),
-            empty_polygons: polygons.len() - clumps.len(),
+            // Stones are clumps without polygons.
+            empty_polygons: polygons.len().saturating_sub(clumps.len()),
             empty_classes: circles.empty_classes,
         }
     }

@@ -69,7 +69,7 @@ impl<S: Space> Heap<S> {
 
     /// The same while some balls swell.
     pub(super) fn relax_swelling(&mut self, until: Until, swelling: Swelling<'_>, watch: &dyn Fn() -> Watch) -> Rest {
-        let smallest = self.radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let smallest = self.free().iter().copied().fold(f64::INFINITY, f64::min);
         let (margin, longest) = (until.margin * smallest, 0.1 * smallest);
         let scale = self.unit_scale();
         let mut fire = Fire::<S>::new(self.radii.len(), swelling.balls.len());
@@ -103,7 +103,8 @@ impl<S: Space> Heap<S> {
 
     /// Inverse of the stiffness between two balls of the mean radius; exactly 1 in the plane.
     fn unit_scale(&self) -> f64 {
-        let mean = self.radii.iter().sum::<f64>() / self.radii.len() as f64;
+        let free = self.free();
+        let mean = free.iter().sum::<f64>() / free.len() as f64;
         2.0 * mean / S::section(mean)
     }
 
@@ -154,7 +155,9 @@ impl<S: Space> Forces<S> {
             sum += size;
             count += 1;
         });
-        let unbalanced = balls.iter().map(|f| f.norm()).sum::<f64>() / balls.len() as f64;
+        balls[..heap.still.pebbles].fill(Vector::<S>::zero());
+        let free = &balls[heap.still.pebbles..];
+        let unbalanced = free.iter().map(|f| f.norm()).sum::<f64>() / free.len() as f64;
         *mean = if count == 0 { 0.0 } else { sum / count as f64 };
         if count == 0 { 0.0 } else { unbalanced * count as f64 / sum }
     }
@@ -232,6 +235,7 @@ impl<S: Space> Fire<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::heap::Still;
     use super::super::region::Region;
     use super::*;
     use crate::{D2, D3};
@@ -245,7 +249,7 @@ mod tests {
     fn a_row_shares_its_overlap_by_compliance() {
         fn row<S: Space>(region: Region) -> Vec<f64> {
             let centres = [-1.2, 0.3, 1.7].map(|x| Vector::<S>::build(|k| if k == 0 { x } else { 0.0 })).to_vec();
-            let mut heap = Heap::<S> { region, centres, radii: vec![1.0; 3] };
+            let mut heap = Heap::<S> { region, centres, radii: vec![1.0; 3], still: Still::default() };
             let rest = heap.relax(UNTIL, GO_ON);
             assert!(rest.unbalanced < 1e-10, "{rest:?}");
             heap.centres.iter().map(|x| x.at(0)).collect()
@@ -261,7 +265,8 @@ mod tests {
     #[test]
     fn separate_balls_stay_where_they_are() {
         let region = Region::Rectangle { width: 10.0, height: 10.0 };
-        let mut heap = Heap::<D2> { region, centres: vec![[-2.0, 0.0], [2.0, 0.0]], radii: vec![1.0; 2] };
+        let mut heap =
+            Heap::<D2> { region, centres: vec![[-2.0, 0.0], [2.0, 0.0]], radii: vec![1.0; 2], still: Still::default() };
         let until = Until { unbalanced: 1e-3, slack: 0.0, iterations: 100, margin: 0.5 };
         assert_eq!(heap.relax(until, GO_ON), Rest { iterations: 0, unbalanced: 0.0 });
         assert_eq!(heap.centres, [[-2.0, 0.0], [2.0, 0.0]]);
@@ -274,7 +279,7 @@ mod tests {
         let region = Region::Rectangle { width: 3.98, height: 3.98 };
         let mut centres: Vec<[f64; 2]> = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]].to_vec();
         centres.push([0.05, 0.02]);
-        let mut heap = Heap::<D2> { region, centres, radii: vec![1.0, 1.0, 1.0, 1.0, 0.2] };
+        let mut heap = Heap::<D2> { region, centres, radii: vec![1.0, 1.0, 1.0, 1.0, 0.2], still: Still::default() };
         let until = Until { unbalanced: 1e-4, slack: 0.0, iterations: 20_000, margin: 0.5 };
         let rest = heap.relax_swelling(until, Swelling { balls: &[4], pushes: &[1.0] }, GO_ON);
         assert!(rest.unbalanced < 1e-4, "{rest:?}");

@@ -19,6 +19,7 @@ use super::placement::{DoesNotFit, Placement, place};
 use super::polygon::{Polygon, PolygonError, PolygonRecipe};
 use super::quality::{Circles, Quality};
 use super::region::Region;
+use super::stones::StoneFault;
 use crate::Watch;
 use crate::particle::Group;
 use crate::space::{D2, Space, Vector, flat};
@@ -109,6 +110,9 @@ pub enum SpecimenError {
         /// What it must be.
         expected: &'static str,
     },
+    /// Stones.
+    #[error(transparent)]
+    Stones(#[from] StoneFault),
     /// Polygons in a solid.
     #[error(
         "specimen: aggregate is made of polygons and needs a plane outline (a rectangle or a disc), not a solid one"
@@ -147,8 +151,9 @@ impl SpecimenError {
     pub fn is_outcome(&self) -> bool {
         match self {
             Self::Packing(packing) => packing.is_outcome(),
-            Self::Placement(_) => true,
+            Self::Placement(_) | Self::Stones(StoneFault::NoPlace { .. }) => true,
             Self::Gradation(_)
+            | Self::Stones(_)
             | Self::Polygon(_)
             | Self::Groups(_)
             | Self::Value { .. }
@@ -209,7 +214,7 @@ impl Recipe {
         let names = self.groups.iter().map(|group| &group.name).chain(self.aggregate.iter().map(|a| &a.group));
         let group_names = names.cloned().collect();
         let quality = Quality::of(&packed, &polygons, &clumps, &circles);
-        let Heap { region, centres, radii } = packed.heap;
+        let Heap { region, centres, radii, .. } = packed.heap;
         let density = self.density;
         Ok((Specimen { region, centres, radii, groups, group_names, density, polygons, clumps }, quality))
     }

@@ -8,9 +8,11 @@
 use super::goal::Wanted;
 use super::params::{ORDINATE, TargetParam};
 use crate::artifact::results::Results;
-use crate::artifact::{Artifact, Table};
+use crate::artifact::run::Run;
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::stage::StageError;
 use crate::stage::figure::Names;
+use crate::unit::Conversion;
 use optim::misfit::{Form, ordinates};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,7 +25,8 @@ pub struct Curve {
     pub strain: Vec<f64>,
     /// Axial stress at each, compression positive, such as `"12.5 MPa"`.
     pub stress: Vec<Wanted>,
-    /// The stage of kind `data` that holds the curve in place of these; several, one per target set.
+    /// The stage that holds the curve in place of these: of kind `data`, or a single simulation, whose curve is then followed;
+    /// several, one per target set.
     pub of: Names,
     /// Names of its columns of strain and stress.
     pub columns: Option<[String; 2]>,
@@ -127,8 +130,11 @@ impl Curve {
         Ok(Measured { strain: self.strain.clone(), stress: stress.map_err(StageError::new)? })
     }
 
-    /// The curve of a data stage, in order of its strains, rows without a number left out.
+    /// The curve of a data stage, in order of its strains, rows without a number left out; or that of a run.
     fn read(&self, data: &Artifact) -> Result<Measured, StageError> {
+        if data.is(ArtifactKind::RUN) {
+            return self.of_run(data);
+        }
         let table = Results::table(data)?;
         let [strain, stress] = self.columns.clone().unwrap_or_else(|| ["strain".to_owned(), "stress".to_owned()]);
         let (strain, stress) = (column(table, &strain, "")?, column(table, &stress, STRESS)?);
@@ -140,6 +146,24 @@ impl Curve {
         }
         let (strain, stress) = rows.into_iter().unzip();
         Ok(Measured { strain, stress })
+    }
+
+    /// The curve of a single simulation.
+    fn of_run(&self, run: &Artifact) -> Result<Measured, StageError> {
+        if self.columns.is_some() {
+            return Err(
+                StageError::new("curve: `columns` has no effect on the curve of a simulation").hint("leave it out")
+            );
+        }
+        let run = Run::from_artifact(run)?;
+        if !run.failure.is_empty() {
+            return Err(StageError::new(format!("curve: the simulation gave no result: {}", run.failure)));
+        }
+        let curve = run.curve.filter(|curve| !curve.axial_strain.is_empty());
+        let curve = curve.ok_or_else(|| StageError::new("curve: the simulation stores no stress–strain curve"))?;
+        let unit = Conversion::between("Pa", STRESS).map_err(|fault| StageError::new(fault.to_string()))?;
+        let stress = curve.stress.iter().map(|&stress| unit.of(stress)).collect();
+        Ok(Measured { strain: curve.axial_strain, stress })
     }
 
     /// Where curves are compared.
@@ -181,7 +205,7 @@ fn column(table: &Table, name: &str, unit: &str) -> Result<Vec<f64>, StageError>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::artifact::{ArtifactKind, Group, Node};
+    use crate::artifact::{Group, Node, run};
 
     fn measured() -> Artifact {
         let table = Table::default().reals_column("strain", "%", "", vec![0.0, 0.1, 0.2, f64::NAN, 0.4]).reals_column(
@@ -206,6 +230,27 @@ mod tests {
             (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9 && (a.2 - b.2).abs() < 1e-12
         };
         assert!(found.len() == 4 && found.iter().zip(&wanted).all(near), "{found:?}");
+    }
+
+    #[test]
+    fn a_simulation_is_followed_by_its_curve() {
+        let curve = run::Curve {
+            axial_strain: vec![0.0, 0.001, 0.002, 0.003],
+            stress: vec![0.0, 4e5, 6e5, 3e5],
+            lateral_strain: vec![0.0; 4],
+            volumetric_strain: vec![0.0; 4],
+            cracks: vec![0; 4],
+            speed: None,
+        };
+        let plain = Run::plain("", run::Responses::of(&[]));
+        let truth = Run { curve: Some(curve), ..plain.clone() }.to_artifact();
+        let curve = Curve { of: Names::One("truth".into()), points: Some(2), ..Curve::default() };
+        let found = points(&curve.targets(Some(&truth), Form::Sum).unwrap());
+        assert!((found[0].1 - 0.4).abs() < 1e-12 && (found[1].1 - 0.6).abs() < 1e-12, "{found:?}");
+        let none = curve.targets(Some(&plain.to_artifact()), Form::Sum).unwrap_err();
+        assert_eq!(none.message, "curve: the simulation stores no stress–strain curve");
+        let named = Curve { columns: Some(["e".into(), "s".into()]), ..curve };
+        assert!(named.targets(Some(&truth), Form::Sum).unwrap_err().message.contains("`columns` has no effect"));
     }
 
     #[test]

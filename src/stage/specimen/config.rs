@@ -3,6 +3,7 @@
 use super::super::Complaint;
 use super::aggregate::AggregateConfig;
 use super::fault::key;
+use super::stones::StonesConfig;
 use crate::unit::{Density, Length, Pressure};
 use dem::genesis::compress::{Floaters, StressTarget};
 use dem::genesis::groups::Share;
@@ -59,8 +60,11 @@ pub struct Specimen {
     /// Largest share of balls with too few contacts (3 in the plane, 4 in the solid) at a fixed porosity.
     #[serde(default)]
     pub floaters: f64,
-    /// Polygons of aggregate.
+    /// Polygons of aggregate, in the plane.
     pub aggregate: Option<AggregateConfig>,
+    /// Stones of given shapes, in a box or cylinder; the balls are the mortar between them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stones: Option<StonesConfig>,
 }
 
 /// Law of the radii.

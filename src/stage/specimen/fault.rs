@@ -21,6 +21,7 @@ pub(super) fn key(fault: &SpecimenError) -> &'static str {
         SpecimenError::Polygon(PolygonError::Fill(_)) => "aggregate.least_fill",
         SpecimenError::Placement(_) | SpecimenError::NoAggregate { .. } | SpecimenError::SolidAggregate => "aggregate",
         SpecimenError::Groups(_) => "groups",
+        SpecimenError::Stones(fault) => super::stones::key(fault),
     }
 }
 

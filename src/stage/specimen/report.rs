@@ -1,6 +1,7 @@
 //! The report on a specimen as a table.
 
-use crate::artifact::Table;
+use crate::artifact::{Table, Values};
+use dem::genesis::mix::MixReport;
 use dem::genesis::quality::Quality;
 
 /// Quantities, values and units; `balls` is the word for what is packed, `groups` the names of its groups.
@@ -55,4 +56,36 @@ pub(super) fn report(quality: &Quality, balls: &str, groups: &[String]) -> Table
         .texts_column("quantity", "", names)
         .reals_column("value", "", "in the unit beside it", rest.iter().map(|row| row.0).collect())
         .texts_column("unit", "", rest.iter().map(|row| row.1.to_owned()).collect())
+}
+
+/// The report with the rows of a mix; contacts are those between mortar, of mortar and stones, between stones.
+pub(super) fn with_mix(mut table: Table, mix: &MixReport, contacts: [usize; 3]) -> Table {
+    let mut rows = Vec::new();
+    for ([from, to], number, volume) in &mix.classes {
+        let class = format!("stones of {} to {} mm", 1e3 * from, 1e3 * to);
+        rows.push((class.clone(), *number as f64, ""));
+        rows.push((format!("volume of {class}"), *volume, "m^3"));
+    }
+    rows.extend([
+        ("pebbles of the stones".to_owned(), mix.pebbles as f64, ""),
+        ("mortar balls".to_owned(), mix.balls as f64, ""),
+        ("share of the volume that is stones".to_owned(), mix.stones, ""),
+        ("ball porosity of the mortar between the stones".to_owned(), mix.mortar_porosity, ""),
+        ("bulk density".to_owned(), mix.bulk_density, "kg/m^3"),
+        ("density of the mortar balls".to_owned(), mix.ball_density, "kg/m^3"),
+        ("share of stones at the walls / inside".to_owned(), mix.wall_effect, ""),
+        ("contacts mortar-stone".to_owned(), contacts[1] as f64, ""),
+        ("contacts stone-stone".to_owned(), contacts[2] as f64, ""),
+    ]);
+    for (name, value, unit) in rows {
+        for column in &mut table.columns {
+            match (&mut column.values, column.name.as_str()) {
+                (Values::Reals(values), _) => values.push(value),
+                (Values::Texts(values), "quantity") => values.push(name.clone()),
+                (Values::Texts(values), _) => values.push(unit.to_owned()),
+                (Values::Ints(_), _) => {}
+            }
+        }
+    }
+    table
 }

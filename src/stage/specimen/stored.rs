@@ -13,6 +13,16 @@ use dem::space::Tuple;
 use dem::{D2, D3, Group, Space, Vector};
 use ndarray::Array2;
 
+/// Columns of the inertia of a clump in space.
+const INERTIA: [(&str, [usize; 2]); 6] = [
+    ("inertia_xx", [0, 0]),
+    ("inertia_yy", [1, 1]),
+    ("inertia_zz", [2, 2]),
+    ("inertia_xy", [0, 1]),
+    ("inertia_xz", [0, 2]),
+    ("inertia_yz", [1, 2]),
+];
+
 /// A specimen of either space.
 #[derive(Clone, Debug)]
 pub enum Loaded {
@@ -40,12 +50,36 @@ pub(super) fn store<S: Space>(made: &Specimen<S>, quality: &Quality) -> Stored {
     let [width, height, depth] = made.region.edges();
     let number = |clump: &Option<usize>| clump.map_or(-1, |index| index as i64);
     let of = |pick: &dyn Fn(&Clump<S>) -> f64| made.clumps.iter().map(pick).collect::<Vec<f64>>();
-    let clumps = Table { about: "rigid clumps".to_owned(), columns: Vec::new() }
-        .ints_column("polygon", "its polygon", made.clumps.iter().map(|clump| clump.polygon as i64).collect())
-        .reals_column("mass", "kg/m", "mass per metre of thickness", of(&|clump| clump.mass))
-        .reals_column("inertia", "kg*m", "moment of inertia per metre of thickness", of(&|clump| clump.inertia[2][2]))
-        .reals_column("x", "m", "centre of mass", of(&|clump| clump.centre.at(0)))
-        .reals_column("y", "m", "centre of mass", of(&|clump| clump.centre.at(1)));
+    let shape = |about| {
+        let table = Table { about: "rigid clumps".to_owned(), columns: Vec::new() };
+        table.ints_column("polygon", about, made.clumps.iter().map(|clump| clump.polygon as i64).collect())
+    };
+    let clumps = if S::DIMENSION == 2 || made.clumps.is_empty() {
+        shape("its polygon")
+            .reals_column("mass", "kg/m", "mass per metre of thickness", of(&|clump| clump.mass))
+            .reals_column(
+                "inertia",
+                "kg*m",
+                "moment of inertia per metre of thickness",
+                of(&|clump| clump.inertia[2][2]),
+            )
+            .reals_column("x", "m", "centre of mass", of(&|clump| clump.centre.at(0)))
+            .reals_column("y", "m", "centre of mass", of(&|clump| clump.centre.at(1)))
+    } else {
+        let mut table = shape("its shape").reals_column("mass", "kg", "mass", of(&|clump| clump.mass));
+        for (name, [i, j]) in INERTIA {
+            table = table.reals_column(
+                name,
+                "kg*m^2",
+                "inertia about the centre of mass",
+                of(&|clump| clump.inertia[i][j]),
+            );
+        }
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            table = table.reals_column(name, "m", "centre of mass", of(&|clump| clump.centre.at(axis)));
+        }
+        table
+    };
     let corners = made.polygons.iter().enumerate().flat_map(|(index, p)| p.vertices.iter().map(move |_| index as i64));
     Stored {
         outline: made.region.name().to_owned(),
@@ -150,15 +184,30 @@ fn polygons(stored: &Stored) -> Result<Vec<Polygon>, StageError> {
 
 fn clumps<S: Space>(stored: &Stored) -> Result<Vec<Clump<S>>, StageError> {
     let table = &stored.clumps;
-    let (mass, inertia) = (table.numbers("mass", "kg/m")?, table.numbers("inertia", "kg*m")?);
-    let (x, y) = (table.numbers("x", "m")?, table.numbers("y", "m")?);
-    let polygon_of = table.ints("polygon")?;
-    let mut clumps = Vec::with_capacity(polygon_of.len());
-    for (k, &polygon) in polygon_of.iter().enumerate() {
-        let pebbles = (0..stored.clump_of.len()).filter(|&i| stored.clump_of[i] == k as i64).collect();
+    let plane = S::DIMENSION == 2 || table.rows() == 0;
+    let mass = table.numbers("mass", if plane { "kg/m" } else { "kg" })?;
+    let mut inertia = vec![[[0.0; 3]; 3]; mass.len()];
+    if plane {
+        let moments = table.numbers("inertia", "kg*m")?;
+        inertia = moments.into_iter().map(plane_inertia).collect();
+    } else {
+        for (name, [i, j]) in INERTIA {
+            for (own, value) in inertia.iter_mut().zip(table.numbers(name, "kg*m^2")?) {
+                (own[i][j], own[j][i]) = (value, value);
+            }
+        }
+    }
+    let axes: &[&str] = if plane { &["x", "y"] } else { &["x", "y", "z"] };
+    let places = axes.iter().map(|axis| table.numbers(axis, "m")).collect::<Result<Vec<_>, _>>()?;
+    let mut pebbles: Vec<Vec<usize>> = vec![Vec::new(); mass.len()];
+    for (ball, &clump) in stored.clump_of.iter().enumerate().filter(|(_, clump)| **clump >= 0) {
+        pebbles.get_mut(clump as usize).ok_or_else(|| odd("clumps"))?.push(ball);
+    }
+    let mut clumps = Vec::with_capacity(mass.len());
+    for (k, (&polygon, pebbles)) in table.ints("polygon")?.iter().zip(pebbles).enumerate() {
         let polygon = usize::try_from(polygon).map_err(|_| odd("clumps"))?;
-        let centre = Vector::<S>::build(|axis| [x[k], y[k], 0.0][axis]);
-        clumps.push(Clump { polygon, pebbles, mass: mass[k], inertia: plane_inertia(inertia[k]), centre });
+        let centre = Vector::<S>::build(|axis| places.get(axis).map_or(0.0, |place| place[k]));
+        clumps.push(Clump { polygon, pebbles, mass: mass[k], inertia: inertia[k], centre });
     }
     Ok(clumps)
 }

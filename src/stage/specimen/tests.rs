@@ -54,6 +54,53 @@ fn a_solid_specimen_to_a_stress_comes_back_as_it_was_stored() {
     assert!(load(&artifact).unwrap().plane().is_err());
 }
 
+const STONES: &str = "width = '40 mm'\nheight = '40 mm'\ndepth = '40 mm'\nporosity = 0.36\n[stones]\nshapes = 'shapes'\n\
+                      density = '2700 kg/m^3'\nbulk_density = '2300 kg/m^3'\n";
+
+/// Rigid clumps in space come back with their pebbles, whole inertia and centre.
+#[test]
+fn a_mix_comes_back_as_it_was_stored() {
+    let classes = "classes = [{ from = '8 mm', to = '14 mm', count = 5 }]";
+    let config = read(&format!("{RADII}{STONES}{classes}"));
+    assert!(config.check(&Context::default()).is_empty());
+    let recipe = config.recipe().unwrap();
+    let mix = config.stones.as_ref().unwrap().mix(&recipe).unwrap();
+    let shape = dem::genesis::stones::Template {
+        share: 1.0,
+        breadth: 10e-3,
+        volume: 7e-7,
+        inertia: [6e-12, 9e-12, 9e-12],
+        centres: vec![[-3e-3, 0.0, 0.0], [3e-3, 0.0, 0.0]],
+        radii: vec![5e-3; 2],
+    };
+    let (made, quality, report) = mix.make(&recipe, &[shape], 1, &|| dem::Watch::Continue).unwrap();
+    let mut stored = stored::store(&made, &quality);
+    stored.quality = report::with_mix(stored.quality, &report, quality.contacts);
+    let artifact = stored.to_artifact();
+    let Loaded::Solid(loaded) = load(&artifact).unwrap() else { panic!("a plane specimen") };
+    assert_eq!(format!("{loaded:?}"), format!("{made:?}"));
+    let table = artifact.table("quality").unwrap();
+    let row = table.texts("quantity").unwrap().iter().position(|name| name == "bulk density").unwrap();
+    assert!((table.numbers("value", "").unwrap()[row] - 2300.0).abs() < 1e-6);
+}
+
+/// Masses and Fuller's curve become numbers; what lacks or is twice there is named.
+#[test]
+fn classes_of_stones_have_one_number_each() {
+    let of = |keys: &str| messages(&format!("{RADII}{STONES}{keys}"));
+    let class = |number: &str| format!("classes = [{{ from = '8 mm', to = '14 mm'{number} }}]");
+    assert!(of(&class(", mass = '20 g'")).is_empty());
+    assert!(of(&format!("{}\nfuller = {{ content = 0.2 }}", class(""))).is_empty());
+    let lacks = ["stones.classes: class 1 needs one of `count`, `mass`, `share`"];
+    assert_eq!(of(&class("")), lacks);
+    assert_eq!(of(&class(", count = 3, share = 0.1")), lacks);
+    let odd = of(&format!("{}\ncoarsen = 0.5\ngroup = 'mortar'", class(", share = 2")));
+    assert_eq!(
+        odd.iter().map(|f| f.split(':').next().unwrap()).collect::<Vec<_>>(),
+        ["stones.classes", "stones.coarsen", "stones.group"]
+    );
+}
+
 /// Each outline has its keys and no other.
 #[test]
 fn outlines_are_told_by_their_keys() {
