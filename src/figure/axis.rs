@@ -399,7 +399,12 @@ mod tests {
             let span = centre.abs() * pow(10.0, f64::from(exponent));
             proptest::prop_assume!(span > 1e-9);
             let axis = Axis::between("x", Scale::Linear, centre, centre + span, want);
-            let number = |text: &str| text.replace('−', "-").parse::<f64>();
+            let number = |text: &str| {
+                let text = text.replace('−', "-");
+                let Some((digits, power)) = text.split_once("×$10^{") else { return text.parse::<f64>() };
+                let power = power.trim_end_matches("}$").parse::<i32>().unwrap();
+                Ok(digits.parse::<f64>()? * power_of_ten(power))
+            };
             let (mut power, mut base) = (0, 0.0);
             for part in axis.common.split(", ").filter(|part| !part.is_empty()) {
                 match part.strip_prefix("×$10^{") {
