@@ -59,6 +59,9 @@ pub struct Solid {
     pub modes: Vec<String>,
     /// Where the specimen is cut open.
     pub cut: Option<Cut>,
+    /// Whether the vertical of the picture is the y of the numbers, as of specimens that are loaded along y; the axis
+    /// into the depth of the picture is then their −z. Otherwise the vertical is z.
+    pub y_up: bool,
     /// Direction of the view: azimuth and elevation in degrees.
     pub view: Option<[f64; 2]>,
 }
@@ -104,7 +107,7 @@ impl Figure for Solid {
 
     fn data(&self) -> Vec<Column> {
         if self.cracks.is_empty() {
-            let axis = |k: usize| self.centres.iter().map(|c| c[k]).collect();
+            let axis = |k: usize| self.centres.iter().map(|c| self.named(*c)[k]).collect();
             let name = |g: &usize| self.groups.get(*g).cloned().unwrap_or_default();
             return vec![
                 Column::reals("x", axis(0)).with_unit("mm"),
@@ -118,10 +121,10 @@ impl Figure for Solid {
         let mode = |c: &Penny| self.modes.get(c.mode).cloned().unwrap_or_default();
         let mut columns = Vec::new();
         for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
-            columns.push(Column::reals(axis, reals(&|c| c.at[k])).with_unit("mm"));
+            columns.push(Column::reals(axis, reals(&|c| self.named(c.at)[k])).with_unit("mm"));
         }
         for (k, axis) in ["normal_x", "normal_y", "normal_z"].into_iter().enumerate() {
-            columns.push(Column::reals(axis, reals(&|c| c.normal[k])));
+            columns.push(Column::reals(axis, reals(&|c| self.named(c.normal)[k])));
         }
         columns.push(Column::reals("radius", reals(&|c| c.radius)).with_unit("mm"));
         columns.push(Column::words("mode", self.cracks.iter().map(mode).collect()));
@@ -162,6 +165,16 @@ impl Solid {
         self.modes.iter().enumerate().map(entry).collect()
     }
 
+    /// Names of the axes of the picture; the third is its vertical.
+    fn names(&self) -> [&'static str; 3] {
+        if self.y_up { ["x", "z", "y"] } else { ["x", "y", "z"] }
+    }
+
+    /// A position or direction of the picture as x, y and z of the numbers.
+    fn named(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        if self.y_up { [x, z, 0.0 - y] } else { [x, y, z] }
+    }
+
     fn describe(&self) -> String {
         let size: Vec<String> = (0..3).map(|k| format!("{} mm", round(self.high[k] - self.low[k]))).collect();
         let what = if self.cracks.is_empty() {
@@ -170,7 +183,11 @@ impl Solid {
             format!("{} cracks", self.cracks.len())
         };
         let cut = match self.cut {
-            Some(cut) => format!(", cut open at {} = {} mm", ["x", "y", "z"][cut.axis.min(2)], round(cut.at)),
+            Some(cut) => {
+                let axis = cut.axis.min(2);
+                let at = if self.y_up && axis == 1 { 0.0 - cut.at } else { cut.at };
+                format!(", cut open at {} = {} mm", self.names()[axis], round(at))
+            }
             None => String::new(),
         };
         format!("{what} in {}{cut}.", size.join(" × "))
@@ -323,7 +340,7 @@ impl Solid {
         let bottom = |x: f64, y: f64| (page.place)([x, y, self.low[2]]);
         let front = [0, 1].map(|k| if back[k] > 0.0 { self.low[k] } else { self.high[k] });
         let far = [0, 1].map(|k| if back[k] > 0.0 { self.high[k] } else { self.low[k] });
-        let names = ["x", "y"];
+        let names = self.names();
         for k in 0..2 {
             let ends = match k {
                 0 => [bottom(far[0], front[1]), bottom(front[0], front[1])],
@@ -337,7 +354,7 @@ impl Solid {
         let edge = (page.place)([far[0], front[1], (self.low[2] + self.high[2]) / 2.0]);
         let other = (page.place)([front[0], far[1], (self.low[2] + self.high[2]) / 2.0]);
         let [x, y] = if edge[0] < other[0] { edge } else { other };
-        let line = Line::new(&format!("z {} mm", round(self.high[2] - self.low[2])), size);
+        let line = Line::new(&format!("{} {} mm", names[2], round(self.high[2] - self.low[2])), size);
         scene.text(line, [x - 0.8 * size, y], Anchor::Middle, 90.0, INK);
     }
 }

@@ -159,7 +159,7 @@ command 2
 data 2
 design 2
 effort 1
-figure 13
+figure 14
 fit 3
 formula 2
 gather 2

@@ -330,7 +330,7 @@ impl Kind for Figure {
     /// one another. 11: runs that are not valid are left out or marked, which is stated below the picture. 12: titles of
     /// axes stay on the page; lines of a contour are labelled in the words of its bar. 13: names
     /// in what is stated below the picture keep their letters.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 13, run: draw }];
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 14, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

@@ -19,7 +19,7 @@ fn upright([x, y, z]: [f64; 3]) -> [f64; 3] {
 /// A specimen in space, without its balls, in mm.
 fn frame(stored: &StoredSpecimen) -> Solid {
     let half = [stored.width, stored.depth, stored.height].map(|edge| 0.5 * edge * MM);
-    Solid { low: half.map(|edge| -edge), high: half, ..Solid::default() }
+    Solid { low: half.map(|edge| -edge), high: half, y_up: true, ..Solid::default() }
 }
 
 /// A specimen in space: cut open through its middle, where rigid clumps would be hidden by the mortar around them.
@@ -53,7 +53,7 @@ pub(super) fn cracks(run: &Run, sources: &Sources) -> Result<Solid, StageError> 
         None => {
             let axis = |k: usize| figure::axis::extent(cracks.iter().map(|crack| crack.at[k]));
             let ends = [0, 1, 2].map(axis);
-            Solid { low: ends.map(|end| end.0), high: ends.map(|end| end.1), ..Solid::default() }
+            Solid { low: ends.map(|end| end.0), high: ends.map(|end| end.1), y_up: true, ..Solid::default() }
         }
     };
     let modes = found.into_iter().map(|mode| mode.word().to_owned()).collect();

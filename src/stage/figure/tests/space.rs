@@ -24,13 +24,15 @@ fn cube() -> Artifact {
     stored.to_artifact()
 }
 
-/// Height points up, and all balls are numbers of the figure.
+/// Height points up and is called y, as in files of the specimen; all balls are numbers of the figure.
 #[test]
 fn a_specimen_in_space_stands_upright() {
     let picture = made("show = 'specimen'\nof = 'a'", &[cube()], &[]).unwrap();
     let data = picture.table("data").unwrap();
-    assert_eq!(data.shown("z").unwrap().0, [10.0, 0.0, 10.0]);
-    assert_eq!(data.shown("y").unwrap().0, [-5.0, 0.0, 4.0]);
+    assert_eq!(data.shown("x").unwrap().0, [0.0, 2.0, 4.0]);
+    assert_eq!(data.shown("y").unwrap().0, [10.0, 0.0, 10.0]);
+    assert_eq!(data.shown("z").unwrap().0, [5.0, 0.0, -4.0]);
+    assert!(text(&picture, "svg").contains("y 40 mm"));
     assert!(text(&picture, "description").contains("3 balls in 20 mm × 30 mm × 40 mm"));
 }
 
@@ -43,7 +45,7 @@ fn cracks_in_space_are_discs() {
     cracks.normal = Array2::from_shape_fn((30, 3), |(_, axis)| [0.0, 1.0, 0.0][axis]);
     let picture = made("show = 'cracks'\nof = 'a'\ncompare = 'b'", &[run.to_artifact()], &[cube()]).unwrap();
     let data = picture.table("data").unwrap();
-    assert_eq!(data.shown("normal_z").unwrap().0[3], 1.0);
+    assert_eq!(data.shown("normal_y").unwrap().0[3], 1.0);
     assert!((data.shown("radius").unwrap().0[0] - 0.5).abs() < 1e-12);
     assert!(text(&picture, "description").starts_with("30 cracks in 20 mm"));
 }
