@@ -88,10 +88,7 @@ fn line(stage: &StageReport, open: Vec<&TaskReport>, ahead: Forecast, past: &Pas
     if more > 0 {
         reasons.push(format!("… and {more} more reasons"));
     }
-    let tasks = match expected {
-        Some(TaskForecast::Exactly(tasks) | TaskForecast::AtMost(tasks)) => tasks,
-        None => open.len(),
-    };
+    let tasks = expected.map_or(open.len(), TaskForecast::count);
     let seconds = past.seconds(&stage.name).map(|each| each * tasks as f64).filter(|_| tasks > 0);
     Line {
         name: stage.name.clone(),
@@ -120,15 +117,10 @@ fn print_lines(lines: &[Line]) {
 
 /// The whole campaign in one line; none when nothing is left to do.
 fn total(lines: &[Line]) -> Option<String> {
+    let expected = || lines.iter().filter_map(|line| line.expected);
     let known: usize = lines.iter().map(|line| line.to_run).sum();
-    let (mut tasks, mut bounded) = (known, false);
-    for line in lines {
-        match line.expected {
-            Some(TaskForecast::Exactly(more)) => tasks = tasks.saturating_add(more),
-            Some(TaskForecast::AtMost(more)) => (tasks, bounded) = (tasks.saturating_add(more), true),
-            None => {}
-        }
-    }
+    let tasks = expected().fold(known, |tasks, more| tasks.saturating_add(more.count()));
+    let bounded = expected().any(TaskForecast::is_bound);
     let busy: Vec<&Line> = lines.iter().filter(|line| line.to_run > 0 || line.expected.is_some()).collect();
     let unknown = lines.iter().filter(|line| line.unknown).count();
     if busy.is_empty() && unknown == 0 {
@@ -154,9 +146,8 @@ fn document(name: &str, report: &Report, lines: &[Line]) -> serde_json::Value {
             serde_json::json!({
                 "name": stage.name, "kind": stage.kind, "state": stage.status.word(),
                 "cached": stage.tasks.cached, "to_run": line.to_run, "reasons": line.reasons, "seconds": line.seconds,
-                "expected": line.expected.map(|expected| match expected {
-                    TaskForecast::Exactly(tasks) => serde_json::json!({ "tasks": tasks, "at_most": false }),
-                    TaskForecast::AtMost(tasks) => serde_json::json!({ "tasks": tasks, "at_most": true }),
+                "expected": line.expected.map(|expected| {
+                    serde_json::json!({ "tasks": expected.count(), "at_most": expected.is_bound() })
                 }),
             })
         })

@@ -38,10 +38,7 @@ impl Whole {
     /// The campaign of these stages.
     pub(super) fn of<'a>(forecasts: impl IntoIterator<Item = (&'a str, Forecast)>) -> Self {
         let part = |(name, forecast): (&str, Forecast)| {
-            let expected = match forecast.tasks {
-                Some(TaskForecast::Exactly(tasks) | TaskForecast::AtMost(tasks)) => tasks,
-                None => 0,
-            };
+            let expected = forecast.tasks.map_or(0, TaskForecast::count);
             (name.to_owned(), Part { expected, total: 0, ended: 0, closed: false, seconds: None })
         };
         Self { stages: forecasts.into_iter().map(part).collect() }

@@ -26,6 +26,7 @@ mod memo;
 #[cfg(test)]
 mod pins;
 mod run_memo;
+mod settings;
 mod stages;
 mod streamed;
 mod task;
@@ -38,11 +39,11 @@ pub use commit::commit;
 pub use event::{Event, Silent, Watch};
 pub use forecast::{forecasts, forecasts_of};
 pub use memo::remembered;
+pub use settings::{Cluster, RunSettings};
 pub use stages::{StageReport, StageStatus};
 pub use worker::{Worked, Worker, program};
 
 use crate::artifact::{ContentHash, Key};
-use crate::cluster::Site;
 use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
@@ -55,38 +56,9 @@ use stages::Stages;
 use std::any::Any;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use streamed::Streamed;
-
-/// How a campaign is run.
-#[derive(Clone, Debug)]
-pub struct RunSettings {
-    /// Cores that all tasks together may use.
-    pub jobs: usize,
-    /// Go on with what does not depend on a failed task.
-    pub keep_going: bool,
-    /// Decide only: start nothing.
-    pub dry: bool,
-    /// Stages that are wanted, with all they need; all stages when empty.
-    pub targets: Vec<String>,
-    /// Stages whose tasks are computed although their results are stored.
-    pub again: Vec<String>,
-    /// Complete unchanged stages from their memos; without it every task is looked up.
-    pub memos: bool,
-    /// The cluster whose workers compute what takes long; none when all is computed here.
-    pub cluster: Option<Cluster>,
-}
-
-/// A cluster, for one run.
-#[derive(Clone, Debug)]
-pub struct Cluster {
-    /// What is known of it.
-    pub site: Site,
-    /// Set before the run is stopped when its workers are to go on.
-    pub leave: Arc<AtomicBool>,
-}
 
 /// The outcome of a campaign.
 pub struct Report {

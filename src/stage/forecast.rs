@@ -18,9 +18,9 @@ pub struct Forecast {
 /// How many tasks a stage asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaskForecast {
-    /// So many; fewer where stages ask for the same ones.
+    /// This number; fewer where stages ask for the same tasks.
     Exactly(usize),
-    /// So many, or fewer: it may end early.
+    /// This number or fewer: the stage may end early.
     AtMost(usize),
 }
 
@@ -35,6 +35,18 @@ pub struct Ahead<'a> {
 }
 
 impl TaskForecast {
+    /// The number, exact or greatest.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Exactly(tasks) | Self::AtMost(tasks) => tasks,
+        }
+    }
+
+    /// Whether the number is only the greatest one.
+    pub fn is_bound(self) -> bool {
+        matches!(self, Self::AtMost(_))
+    }
+
     /// These and `more`.
     pub fn and(self, more: usize) -> Self {
         match self {

@@ -269,7 +269,7 @@ fn a_test_that_hardly_moves_is_refused_or_ends_when_it_is_told() {
     let mut run = space.start(&[&["run", "w.toml", "--jobs", "1"], &slow[..]].concat());
     // Long enough to be within the first sample, which takes millions of steps.
     std::thread::sleep(Duration::from_millis(1500));
-    assert!(run.try_wait().expect("a child").is_none(), "it has ended before it was told to");
+    assert!(run.try_wait().expect("a child").is_none(), "the run ended before the interrupt");
     kill_process(Pid::from_child(&run), Signal::INT).expect("sending a signal");
     for _ in 0..6000 {
         if run.try_wait().expect("a child").is_some() {

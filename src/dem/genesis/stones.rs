@@ -64,11 +64,11 @@ pub enum WithinClass {
 /// How many stones a class has.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum HowMany {
-    /// So many.
+    /// This number of stones.
     Count(usize),
-    /// So many as have this mass (kg).
+    /// As many as have this mass together (kg).
     Mass(f64),
-    /// So many as fill this share of the specimen.
+    /// As many as fill this share of the specimen's volume.
     Share(f64),
 }
 
