@@ -278,7 +278,7 @@ impl Loading {
             pace: self.pace,
             localised: self.kind.localised(),
             transit: height / scales.wave_speed(),
-            transits: 0.5 * scales.strain() * scales.wave_speed() / speed,
+            transits: self.speed.transits(speed, scales),
             rate,
             sample_strain: rule.sample_strain.of(scales.strain()),
             seating: rule.seating.of(scales.stress()),

@@ -36,6 +36,15 @@ impl Speed {
         }
     }
 
+    /// Wave transits of the height within the reference strain when each platen moves at `speed` (m/s): the number that was
+    /// given, where it was.
+    pub fn transits(&self, speed: f64, scales: &Scales) -> f64 {
+        match *self {
+            Self::Transits(transits) => transits,
+            Self::Each(_) | Self::StrainRate(_) => 0.5 * scales.strain() * scales.wave_speed() / speed,
+        }
+    }
+
     /// The number that was given.
     pub fn value(&self) -> f64 {
         match *self {
