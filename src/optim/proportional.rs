@@ -60,7 +60,15 @@ impl Proportional {
         assert!(factors == 1 && targets == 1, "BUG: one factor and one response, not {factors} and {targets}");
         let first = problem.start.as_deref().unwrap_or(problem.domain.centre());
         let next = problem.domain.natural(first)[0];
-        Self { settings: settings.clone(), problem: problem.clone(), next, done: 0, misses: 0, missed: vec![], stopped: None }
+        Self {
+            settings: settings.clone(),
+            problem: problem.clone(),
+            next,
+            done: 0,
+            misses: 0,
+            missed: vec![],
+            stopped: None,
+        }
     }
 
     /// The point that is tried next: the wanted value, or one beside it after runs without the response.
