@@ -135,7 +135,7 @@ const SECTIONS: &str = "shape,position [mm],thickness [mm],height [mm]\nslab,0,2
 /// Stage and the first digits of the hash of its result, then work and version.
 const PINS: &str = "\
 specimen 3dc1aee5970f
-simulate 216b9c27fbe6
+simulate 0fef41b28042
 design 4707cd1886b9
 formula c57272d7c660
 command ab7cb869a592
@@ -168,7 +168,7 @@ mix 1
 range 3
 screening 4
 shapes 1
-simulate 3
+simulate 4
 specimen 2
 table 6
 verify 2

@@ -1,6 +1,6 @@
 //! Starts the test of each kind, on a piece whose outline suits it.
 
-use super::judgement::{LoadingWarning, rate_warnings};
+use super::judgement::LoadingWarning;
 use super::kind::TestKind;
 use super::material::Material;
 use super::piece::{Outline, Piece};
@@ -43,13 +43,28 @@ impl Loading {
     /// # Errors
     /// An outline that does not suit the test, a test that would not end within its bound on steps, or all faults of the
     /// input that the engine finds.
-    pub fn warnings<S: Space>(&self, piece: &Piece<S>, material: &Material) -> Result<Vec<LoadingWarning>, TestError> {
+    pub fn warning<S: Space>(
+        &self,
+        piece: &Piece<S>,
+        material: &Material,
+    ) -> Result<Option<LoadingWarning>, TestError> {
         self.kind.suits(&piece.outline, S::DIMENSION)?;
         let (mounted, _) = between_platens(self, piece, material, 0)?;
-        let (height, time_step) = (piece.outline.height(), mounted.engine.time_step());
-        let schedule = self.schedule(&mounted.scales, height, (2.0, height), time_step)?;
-        let speed_ratio = schedule.speed / mounted.scales.wave_speed();
-        Ok(rate_warnings(schedule.speed, schedule.rate * time_step, speed_ratio))
+        let schedule = self.schedule(&mounted.scales, &piece.outline, mounted.engine.time_step())?;
+        Ok(LoadingWarning::of(schedule.speed, schedule.transits))
+    }
+
+    /// How the strain grows with the way of a platen, grip or roller: by the first number times the way over the second (m).
+    pub(super) fn stretch(&self, outline: &Outline) -> (f64, f64) {
+        let [width, height, _] = outline.extents();
+        match self.kind {
+            TestKind::Uniaxial | TestKind::Brazilian | TestKind::Biaxial | TestKind::Triaxial => (2.0, height),
+            TestKind::Tension => (1.0, tension::half_free(height)),
+            TestKind::Bending => {
+                let span = bending::span(self, width);
+                (6.0 * height, span * span)
+            }
+        }
     }
 }
 
