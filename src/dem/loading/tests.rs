@@ -160,6 +160,25 @@ fn a_test_without_a_peak_is_a_result_with_a_reason() {
     );
 }
 
+/// Tension stretches 0.8 of the height between grips, bending strains the outer fibre by 6 h w/L²: a rate of strain that is
+/// asked for is that of the piece in each test.
+#[test]
+fn a_rate_of_strain_is_that_of_the_piece_in_every_kind_of_test() {
+    let scales = super::rig::Scales { modulus: 20e9, strength: 20e6, density: 2000.0 };
+    let outline = Region::Rectangle { width: 0.2, height: 0.04 }.into();
+    for kind in super::kind::KINDS {
+        let test = Loading { speed: Speed::StrainRate(0.25), ..Loading::new(kind) };
+        let schedule = test.schedule(&scales, &outline, 1e-7).unwrap();
+        assert!((schedule.rate - 0.25).abs() < 1e-15, "{kind:?}: {}", schedule.rate);
+        let speed = match kind {
+            TestKind::Tension => 0.25 * 0.4 * 0.04,
+            TestKind::Bending => 0.25 * 0.18 * 0.18 / (6.0 * 0.04),
+            _ => 0.25 * 0.02,
+        };
+        assert!((schedule.speed - speed).abs() < 1e-12 * speed, "{kind:?}: {}", schedule.speed);
+    }
+}
+
 #[test]
 fn an_outline_that_does_not_fit_names_the_remedy() {
     let disc = random(Region::Disc { diameter: 0.05 }, 2e-3);

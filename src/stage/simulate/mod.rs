@@ -161,7 +161,7 @@ impl Kind for Simulate {
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
     /// 4: the rate is judged by wave transits before failure, no longer by an absolute strain in a step and speed; the strain
-    /// rate of a tension test is that between its grips.
+    /// rate of a tension test is that between its grips, and a rate that is given is that of the piece in tension and bending.
     /// 3: thresholds and sampling follow from the specimen where the workflow gives none, checks say what they mean.
     /// 2: the same numbers in another layout: states and their centres stand beside the curve, positions and normals are
     /// `position_x`, `normal_x`, ….
