@@ -44,7 +44,7 @@ pub struct Agreement {
     pub y_word: String,
     /// Responses.
     pub pairs: Vec<Pair>,
-    /// Half width of the band as a share of the horizontal value: 0.1 for ±10 %.
+    /// Half width of the band as a fraction of the horizontal value: 0.1 for ±10 %.
     pub band: Option<f64>,
 }
 

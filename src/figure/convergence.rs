@@ -95,7 +95,7 @@ impl Convergence {
         Axis::between(self.effort.clone(), Scale::Linear, low.min(0.0), high + 0.03 * (high - low), 5)
     }
 
-    /// Logarithmic; what has reached zero is drawn at the lower end.
+    /// A logarithmic axis; a misfit of zero is drawn at its lower end.
     fn y_axis(&self) -> Axis {
         let values = self.runs.iter().flat_map(|r| r.best.iter().chain(&r.median).copied());
         let (low, high) = extent(values.filter(|v| *v > 0.0));
@@ -123,7 +123,7 @@ fn floored(values: &[f64], low: f64) -> Vec<f64> {
     values.iter().map(|v| v.max(low)).collect()
 }
 
-/// The best so far holds until it is beaten.
+/// A step line: the best misfit so far holds until the next improvement.
 fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::with_capacity(2 * points.len());
     for &[x, y] in points {

@@ -1,7 +1,7 @@
 //! Stress–strain curves, with the growth of cracks by mode below on the same strain axis.
 //!
-//! Axial strain runs to the right; lateral strain, when given, to the left of zero, as is usual for rock and
-//! concrete. The peak is marked; a secant through the origin shows the modulus.
+//! Axial strain is positive to the right; lateral strain, if there is any, lies to the left of zero, as is usual for rock
+//! and concrete. The peak is marked; a secant through the origin shows the modulus.
 
 use super::axis::{Axis, Scale, extent, significant};
 use super::column::Column;
@@ -93,7 +93,7 @@ impl Figure for StressStrain {
                 modes.push(mode);
             }
         }
-        // A column of counts is named after its mode.
+        // A column of counts has the name of its mode.
         for mode in modes {
             let counts = |c: &Curve| {
                 let own = c.cracks.iter().find(|(own, _)| own == mode).map_or(&[][..], |(_, counts)| counts);
@@ -157,7 +157,7 @@ impl StressStrain {
         self.curves.iter().filter_map(tell).collect::<Vec<_>>().join(" ")
     }
 
-    /// With one test its name is the caption's business.
+    /// Only several tests have their names in the legend; with one test the caption names it.
     fn names(&self) -> Vec<Entry> {
         let several = self.curves.len() > 1;
         let named = self.curves.iter().enumerate().filter(|_| several);

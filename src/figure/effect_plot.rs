@@ -48,7 +48,7 @@ pub struct EffectPlot {
     pub effects: Vec<Effect>,
     /// Standard error that the line shows: Lenth's pseudo standard error, or that of the model.
     pub error: f64,
-    /// Whether the effects are over their standard errors: pure numbers.
+    /// Whether the effects are divided by their standard errors, and so are pure numbers.
     pub standardized: bool,
     /// Margin of error to mark, and its name; `None` to leave out.
     pub margin: Option<(String, f64)>,

@@ -13,7 +13,7 @@ use super::{Figure, Quantity, Style};
 pub struct FactorMeans {
     /// The factor.
     pub factor: Quantity,
-    /// What it belongs to ("mortar"); gives the colour. May be empty.
+    /// Group that gives the colour, such as "mortar"; may be empty.
     pub group: String,
     /// Levels in natural units, ascending.
     pub levels: Vec<f64>,

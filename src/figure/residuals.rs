@@ -21,7 +21,7 @@ pub struct Residuals {
     pub fitted: Vec<f64>,
     /// Externally studentized residuals.
     pub studentized: Vec<f64>,
-    /// Standard normal quantile that belongs to each residual's rank.
+    /// Standard normal quantile of each residual's rank.
     pub quantiles: Vec<f64>,
     /// Diagonal of the hat matrix.
     pub leverage: Vec<f64>,

@@ -1,8 +1,8 @@
-//! Runs of earlier campaigns, so that a design with one new row does not look at ten thousand old ones.
+//! Summaries of the runs of earlier campaigns, so that a design with one new row does not read ten thousand old runs.
 //!
-//! A run is a function of its point, its replicate, and of what all rows share. While the shared part is unchanged, the
-//! runner knows the key and the result of an old row without making its task, and a [`RunSummary`]: all that gathering takes
-//! from a run. Summaries only save work: the gathered table is the same with them and without them.
+//! A run is a function of its point, its replicate, and of parameters that all rows share. While the shared part is
+//! unchanged, the runner knows the key and the result of an old row without making its task, and a [`RunSummary`]: all
+//! that the gathered table needs of a run. Summaries only save work: the table is the same with them and without them.
 
 use crate::artifact::run::{Outcome, Run};
 use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
@@ -15,7 +15,7 @@ pub struct CachedRun<'a> {
     pub key: Key,
     /// Its result.
     pub content: ContentHash,
-    /// What gathering takes from it.
+    /// Its summary.
     pub summary: RunSummary<'a>,
 }
 
@@ -54,7 +54,7 @@ pub struct RunSummary<'a> {
 }
 
 impl<'a> RunSummary<'a> {
-    /// As gathering sees a run.
+    /// The summary of a run.
     pub(super) fn responses(&self) -> Outcome<'a> {
         let found = self.names.iter().zip(self.values);
         let (failure, validity, cautions) = self.verdict;
@@ -97,7 +97,7 @@ impl RunSummaries {
         self.values.extend_from_slice(summary.values);
     }
 
-    /// Adds a run as its artifact holds it; false when it holds no responses.
+    /// Adds the run of an artifact; false when it holds no responses.
     pub fn push_run(&mut self, run: &Artifact) -> bool {
         let Ok(Outcome { failure, validity, cautions, responses }) = Run::outcome(run) else { return false };
         let names: Vec<_> = responses.iter().map(|(name, _, unit)| ((*name).to_owned(), (*unit).to_owned())).collect();
@@ -153,7 +153,7 @@ impl RunSummaries {
     }
 }
 
-/// Index of the value in the list, to which it is added when it is new. The last value is the likeliest.
+/// Index of the value in the list, to which it is added when it is new. The search begins at the last value.
 fn index_of<T>(list: &mut Vec<T>, is: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> u32 {
     let found = list.iter().rposition(is).unwrap_or_else(|| {
         list.push(make());

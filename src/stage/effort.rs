@@ -1,11 +1,10 @@
-//! `kind = "effort"`: what calibrations cost, side by side.
+//! `kind = "effort"`: the cost of calibrations, side by side.
 //!
-//! `of` names calibrations, each perhaps with several target sets and `seeds`. The artifact `effort` holds
+//! `of` names calibrations, which may have several target sets and `seeds`. The artifact `effort` holds
 //! * `effort`: a row per search: stage, method, set, seed, and the evaluations until all responses lay within 10, 5 and
-//!   2 % of their targets, by a run and by the prediction at the recommended point; empty where they never
-//!   did;
-//! * `distribution`: how large a part of the searches of a stage was done after how many evaluations, level by level:
-//!   the empirical distribution of effort, a row per step. A stage whose searches did not all get there ends below 1
+//!   2 % of their targets, by a run and by the prediction at the recommended point; empty where they never did;
+//! * `distribution`: the part of the searches of a stage that reached a level within a number of evaluations: the empirical
+//!   distribution of effort, a row per step. It ends below 1 for a stage whose searches did not all reach the level
 //!   (Hansen et al. 2021, doi:10.1080/10556788.2020.1808977).
 
 use super::figure::Names;
@@ -75,7 +74,7 @@ struct Search {
     seed: f64,
     evaluations: f64,
     coarse: f64,
-    /// Evaluations by count and level, NaN where it never got there.
+    /// Evaluations by count and level, NaN where the search never reached the level.
     counts: Vec<f64>,
 }
 
@@ -152,7 +151,7 @@ fn distribution(stages: &[String], searches: &[Search]) -> Table {
             let mut done: Vec<f64> = own.iter().map(|search| search.counts[k]).filter(|n| n.is_finite()).collect();
             done.sort_by(f64::total_cmp);
             for (i, &evaluations) in done.iter().enumerate() {
-                // Searches that were done at once are one step.
+                // Searches with the same number of evaluations are one step.
                 if done.get(i + 1) != Some(&evaluations) {
                     let share = (i + 1) as f64 / own.len() as f64;
                     steps.push(Rise { stage, count, level, evaluations, share });

@@ -1,4 +1,4 @@
-//! `kind = "verify"`: the calibrated parameters on fresh specimens.
+//! `kind = "verify"`: runs of the calibrated parameters on new specimens.
 //!
 //! Every set of a `solution` is run on n specimens that no design or calibration has used. Per set and response, with
 //! the mean m and the standard deviation s (divisor n − 1) of the runs that gave a value and the target t:
@@ -34,19 +34,19 @@ pub struct Verify {
     pub solution: String,
     /// The stage whose simulation is run: its specimen, material and test.
     pub simulator: Option<String>,
-    /// Several such stages, as the calibration has them.
+    /// Several such stages, as in the calibration.
     #[serde(default)]
     pub simulators: Vec<String>,
-    /// The simulator that a response is taken from, when several give it; the first that does when not given.
+    /// The simulator that gives a response, when several do; by default the first that does.
     #[serde(default)]
     pub from: BTreeMap<String, String>,
-    /// Fresh specimens per set.
+    /// New specimens per set.
     #[serde(default = "five")]
     pub replicates: u64,
-    /// What `flow run` makes of targets that lie outside the interval of the mean.
+    /// What `flow run` does when a target lies outside the interval of the mean.
     #[serde(default)]
     pub unmet: Unmet,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
 }
@@ -55,10 +55,10 @@ fn five() -> u64 {
     5
 }
 
-/// More specimens of one set are a slip of the pen: 10,000 give a standard deviation to 0.7 %.
+/// Most specimens of one set: 10,000 give a standard deviation to 0.7 %, and more are a typing error.
 const MOST_SPECIMENS: u64 = 10_000;
 
-/// Replicates of a verification are numbered from here, above all that designs and calibrations use.
+/// First replicate of a verification, above all that designs and calibrations use.
 const FRESH: u64 = 1_000_001;
 
 /// Parameters of the work `verify`.
@@ -96,7 +96,7 @@ impl Stage for Verify {
         let sets = (ahead.behind)("solution").first().and_then(|solution| solution.rows);
         let replicates = usize::try_from(self.replicates).unwrap_or(usize::MAX);
         let simulators = || ["simulator", "simulators"].into_iter().flat_map(|port| (ahead.behind)(port));
-        // The sets share the specimens, and so may the simulators.
+        // The sets share the specimens, and the simulators may.
         let specimens: usize = simulators().map(|simulator| simulator.per_run - 1).sum();
         let tasks = |sets: usize| {
             let runs = replicates.saturating_mul(sets.saturating_mul(simulators().count()).saturating_add(specimens));
@@ -145,7 +145,7 @@ impl Stage for Verify {
             let unit = |name: &String| known.context.factors.get(name).map_or("", |factor| factor.unit.as_str());
             let value = |name: &String| Ok((name.clone(), table.numbers(name, unit(name))?[set]));
             let mut point = factors.iter().map(value).collect::<Result<Point, StageError>>()?;
-            // What other sets hold and this one does not.
+            // Factors that other sets hold and this one does not.
             point.retain(|_, value| value.is_finite());
             for replicate in 0..self.replicates {
                 let index = set * self.replicates as usize + replicate as usize;
@@ -180,7 +180,7 @@ impl Kind for Verify {
     const WORKS: &'static [Work] = &[Work { name: "verify", version: 2, run: verify }];
 }
 
-/// One target and what its runs gave; NaN where a run failed.
+/// One target and the values of its runs; NaN where a run failed.
 struct Verified {
     set: i64,
     response: String,
@@ -195,7 +195,7 @@ impl Verified {
         (value - self.target.nearest(value)).abs()
     }
 
-    /// The wanted value that others are measured by: the target, or the end of the band that is nearest.
+    /// The reference of a deviation: the target, or the nearest end of its band.
     fn wanted(&self, value: f64) -> f64 {
         let nearest = self.target.nearest(value);
         if nearest == value { self.target.value() } else { nearest }
@@ -221,7 +221,7 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
             .into());
         }
         for one in verified.iter_mut().filter(|one| one.set == set) {
-            // Of a run that is left out the table of runs shows what it gave.
+            // The table of runs shows the values of a run that is left out too.
             one.values.push(match read_response(&runs, &params.from, (&one.response, &one.unit), Invalid::Keep)? {
                 Ok(value) => value,
                 Err(reason) => {
@@ -244,7 +244,7 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
     Ok(Artifact::of(ArtifactKind::VERIFICATION, root))
 }
 
-/// Lists the runs that are not valid, and takes the values of those that are left out.
+/// Lists the runs that are not valid, and removes the values of those that are left out.
 fn leave_out(runs: &Table, params: &Params, verified: &mut [Verified]) -> Result<NotValid, StageError> {
     let judged = params.invalid.judge(runs)?;
     let mut list = NotValid::default();
@@ -285,7 +285,7 @@ fn targets(solution: &Artifact) -> Result<Vec<Verified>, StageError> {
     Ok(sets.iter().zip(&targets).zip(names).map(one).collect())
 }
 
-/// Mean, standard deviation and half the 95 % interval of the mean of the values there are, and their number.
+/// Mean, standard deviation, half the 95 % interval of the mean, and number of the values that are not missing.
 fn moments(values: &[f64]) -> (f64, f64, f64, usize) {
     let there: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let n = there.len() as f64;

@@ -1,10 +1,10 @@
-//! Keeping the store in order: what may go, what it takes.
+//! Garbage collection: what may be removed, and the room that the store takes.
 //!
-//! Only what flow has written is touched: a plain file of a name that flow gives, in a folder that flow makes, that begins
-//! as flow's files do. Folders are reached without links, so nothing outside of the store is reached at all.
+//! Only files that flow has written are removed: plain files with a name that flow gives, in a folder that flow makes, that
+//! begin as flow's files do. Folders are opened without following links, so nothing outside of the store can be reached.
 //!
 //! Nothing is removed from a store that another process uses: every process shares a lock while it has the store open,
-//! and gc wants it alone. Where the file system has no locks, objects younger than a day are kept.
+//! and gc takes that lock exclusively. Where the file system has no locks, objects younger than a day stay.
 
 use super::disk::{Disk, is_temporary};
 use super::folder::{Entry, Folder};
@@ -13,12 +13,12 @@ use super::{Store, StoreError, journal, lock, locked, memo, object, queue, root,
 use crate::artifact::Key;
 use std::collections::HashSet;
 
-/// Files of one sort: how many, and their size together.
+/// Number and total size of files of one sort.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Amount {
-    /// How many.
+    /// Number of files.
     pub files: u64,
-    /// Their size together, bytes.
+    /// Total size, bytes.
     pub bytes: u64,
 }
 
@@ -29,7 +29,7 @@ impl Amount {
     }
 }
 
-/// What the store takes on the disk.
+/// Disk space that the store takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Usage {
     /// Results.
@@ -46,7 +46,7 @@ pub struct Usage {
     pub runs: Amount,
 }
 
-/// What gc removed, or would remove.
+/// Files that gc removed, or would remove.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Swept {
     /// Results that are reachable.
@@ -59,7 +59,7 @@ pub struct Swept {
     pub segments: u64,
 }
 
-/// Something that lies in the store.
+/// A file in the store.
 pub(super) struct Place<'a> {
     /// Its folder, open.
     pub(super) at: &'a Folder,
@@ -83,11 +83,11 @@ impl Place<'_> {
     }
 }
 
-/// Objects that were written this many seconds ago may belong to a run that goes on, where no lock tells.
+/// Where no lock shows it, objects that were written less than this many seconds ago may belong to a process that still runs.
 const GRACE: i64 = 86_400;
 
 impl Store {
-    /// What the store takes on the disk, of what flow has written.
+    /// Disk space that the files of flow take in the store.
     ///
     /// # Errors
     /// The store cannot be listed.
@@ -112,7 +112,7 @@ impl Store {
     }
 
     /// Removes the results of all tasks that are not in `reachable`, memos that rest on them, damaged files and
-    /// leftovers, and merges the journal. Without `really` it only says what it would remove.
+    /// leftovers, and merges the journal. Without `really` it removes nothing and returns what it would remove.
     ///
     /// # Errors
     /// [`StoreError::InUse`] when another process has the store open; the store cannot be read or written.
@@ -137,7 +137,7 @@ impl Store {
         let mut doomed: Vec<(String, String)> = Vec::new();
         // Names hold the first bytes of a key: an object goes only if no reachable key begins like that.
         let starts: HashSet<u64> = reachable.iter().map(|key| presence::first_word(&key.0)).collect();
-        // By the clock of the file system, on which the objects have their times.
+        // By the clock of the file system, as the times of the objects are.
         let now = if grace { self.disk.draft("", 0o444)?.file_time() } else { None };
         let is_young = |place: &Place<'_>| {
             let age = now.zip(place.at.modified(place.name)).map(|(now, written)| now.saturating_sub(written));
@@ -175,7 +175,7 @@ impl Store {
     }
 
     /// Merges all segments into one per origin, without the records whose objects are gone. The new segments are
-    /// whole before the old ones go, so a kill in between costs nothing: a record that stands twice counts once.
+    /// complete before the old ones are removed, so a kill in between loses nothing: a record that stands twice counts once.
     fn compact(&self) -> Result<(), StoreError> {
         let mut segments = locked(&self.segments);
         let mut index = self.new_index();
@@ -198,7 +198,7 @@ impl Store {
         Ok(())
     }
 
-    /// Whether all that a memo rests on stays; another user's memo stays, because only that user can read it.
+    /// Whether all objects that a memo names stay. Another user's memo stays, because only that user can read it.
     fn memo_is_reachable(&self, place: &Place<'_>, reachable: &HashSet<Key>) -> bool {
         if !place.name.ends_with(&format!("-{}", self.mark.name())) {
             return place.name.contains('-');
@@ -209,7 +209,7 @@ impl Store {
     }
 }
 
-/// Calls `visit` with all that lies in the folders that flow makes; other folders are not entered.
+/// Calls `visit` with every file in the folders that flow makes; other folders are not entered.
 pub(super) fn walk(disk: &Disk, visit: &mut impl FnMut(Place<'_>)) -> Result<(), StoreError> {
     let fail = |error| disk.fail("list", &disk.root, error);
     enter(&disk.folder("").map_err(fail)?, "", visit).map_err(fail)

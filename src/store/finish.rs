@@ -10,7 +10,7 @@ impl Store {
     /// Stores the result of a claimed task and releases it. When the function returns, the result can be found.
     ///
     /// # Errors
-    /// The result cannot be held by a file, or the disk refuses it.
+    /// No file can hold the result, or the disk refuses it.
     pub fn finish(
         &self,
         mut claim: Guard,
@@ -57,7 +57,7 @@ impl Store {
         Ok((record, artifact))
     }
 
-    /// Moves other results of a task that was computed again out of the way: that they differ is why it was.
+    /// Sets aside the other results of a task that was computed again because its results differed.
     fn settle(&self, record: &Record) -> Result<(), StoreError> {
         let others = self.index.get().map(|index| locked(index).of_task(&record.key)).unwrap_or_default();
         for other in others.iter().filter(|other| other.content != record.content) {

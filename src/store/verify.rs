@@ -1,4 +1,4 @@
-//! Reading everything: what is sound, what is not, what flow has not written.
+//! Verification: reads every file and tells sound, damaged and foreign ones apart.
 
 use super::folder::Entry;
 use super::object::{self, ObjectId};
@@ -8,14 +8,14 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
-/// What verify found.
+/// The outcome of a verification.
 #[derive(Clone, Debug, Default)]
 pub struct Verdict {
-    /// Results that prove themselves.
+    /// Sound results.
     pub sound: Amount,
-    /// Objects that were not, and were set aside.
+    /// Objects that were not sound, and were set aside.
     pub damages: Vec<Damage>,
-    /// Tasks with a record whose object is not there, and with no other.
+    /// Tasks with records whose objects are all missing.
     pub missing: Vec<Key>,
     /// Sound objects without a record, which have been recorded again.
     pub adopted: Vec<Key>,
@@ -23,17 +23,17 @@ pub struct Verdict {
     pub proven: Vec<Key>,
     /// Records of the journal that could not be read.
     pub lost_records: usize,
-    /// Tasks with two different results that are both sound: they depend on something that is not in their key, or one is
-    /// forged. Neither is believed; the next run computes them again.
+    /// Tasks with two different sound results: the task depends on something that is not in its key, or one result is
+    /// forged. Neither is believed; the next run computes the task again.
     pub contradictions: Vec<(Key, ContentHash, ContentHash)>,
-    /// Memos and records of runs that others have made, or that were changed: they are not believed.
+    /// Memos and campaign records that others have made or that were changed: they are not believed.
     pub not_own: usize,
-    /// What lies in the store and was not written by flow; it is not touched.
+    /// Files in the store that flow has not written; they are not touched.
     pub strangers: Vec<PathBuf>,
 }
 
 impl Verdict {
-    /// Whether all that flow wrote is what it was, and nothing contradicts.
+    /// Whether every file is as flow wrote it, and no two results contradict each other.
     pub fn is_sound(&self) -> bool {
         self.damages.is_empty() && self.contradictions.is_empty()
     }
@@ -49,7 +49,7 @@ impl Store {
         self.refresh()?;
         let mut verdict = Verdict { lost_records: locked(self.index()?).damaged(), ..Verdict::default() };
         let records = self.records()?;
-        // Of what was read only its seal is kept: all results of a store together may be larger than memory.
+        // Only the seals stay in memory: all results of a store together may be larger than it.
         let check = |record| (record, self.read(record).map(|proven| proven.seal));
         let checked: Vec<_> = records.par_iter().map(check).collect();
         let (mut sound, mut lost): (Vec<ObjectId>, Vec<Key>) = Default::default();
@@ -80,7 +80,7 @@ impl Store {
         Ok(verdict)
     }
 
-    /// Records the objects again that no record knows.
+    /// Records the objects again that have no record.
     fn adopt_strays(
         &self,
         records: &[Record],
@@ -111,7 +111,7 @@ impl Store {
         Ok(())
     }
 
-    /// Finds notes that are not this user's, and what flow has not written.
+    /// Finds memos and campaign records that are not this user's, and files that flow has not written.
     fn look_around(&self, verdict: &mut Verdict) -> Result<(), StoreError> {
         for number in self.campaigns()? {
             verdict.not_own += usize::from(!self.campaign(number)?.is_some_and(|campaign| campaign.own));
@@ -131,7 +131,7 @@ impl Store {
     }
 }
 
-/// Whether flow writes what has this name in this folder of the store.
+/// Whether flow writes a file of this name in this folder of the store.
 pub(super) fn is_ours(place: &clean::Place<'_>) -> bool {
     let clean::Place { at, folder, name, entry } = place;
     if !matches!(entry, Entry::File(_)) {

@@ -1,4 +1,4 @@
-//! What a solution promises and how sure it is: the tables `prediction`, `parameters` and `notes`.
+//! Predicted responses and parameters of a solution with their intervals: the tables `prediction`, `parameters`, `notes`.
 
 use super::params::{FactorParam, Params, TargetParam};
 use super::record::{named, numbered};
@@ -82,7 +82,7 @@ pub(super) fn met(params: &Params, solved: &[Solved], set: usize) -> Met {
 }
 
 impl Predicted<'_> {
-    /// Whether the target can be had by itself, and the nearest that can.
+    /// Whether the target can be reached by itself; if not, the nearest value that can.
     fn reach(&self) -> String {
         let [low, high] = self.reach;
         let target = self.target.target();
@@ -141,11 +141,11 @@ pub(super) fn prediction(params: &Params, solved: &[Solved]) -> Table {
         .texts_column("met", "whether the expected value lies within the tolerance", texts(|row| row.met.word().into()))
 }
 
-/// Part of its range over which a determined parameter lies at most, and a free one at least.
+/// Parts of the range: the largest for a determined parameter, and the smallest for a free one.
 pub(super) const DETERMINED: f64 = 0.25;
 pub(super) const FREE: f64 = 0.9;
 
-/// What the targets determine of one parameter.
+/// How far the targets determine one parameter.
 struct Determined<'a> {
     set: usize,
     factor: &'a FactorParam,
@@ -164,7 +164,7 @@ fn determined<'a>(params: &'a Params, solved: &[Solved]) -> Vec<Determined<'a>> 
             let domain: &Factor = &s.problem.domain.factors()[k];
             let [low, high] = s.extents.as_ref().map_or([f64::NAN; 2], |ends| ends[k]);
             let part = domain.unit(high) - domain.unit(low);
-            // A parameter that the responses tie is known as well as they are.
+            // A parameter that the responses fix is known as well as they are.
             let (ends, word) = match part {
                 part if part >= FREE => ([low, high], "free"),
                 _ if part.is_nan() || !known => ([f64::NAN; 2], "unknown"),
@@ -195,7 +195,7 @@ pub(super) fn parameters(params: &Params, solved: &[Solved]) -> Table {
         .texts_column("known", "what the targets say of it", texts(|row| row.word.to_owned()))
 }
 
-/// What to look at before the numbers are used; `learned` are the sentences on the runs that the search learned from.
+/// The notes on a solution; `learned` are the sentences on the runs that the search learned from.
 pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> Table {
     let mut notes = Notes::default();
     learned.iter().for_each(|said| notes.add("", format!("learned from: {said}")));

@@ -190,8 +190,8 @@ fn history(params: &Params, solved: &[Solved]) -> Table {
     table
 }
 
-/// The row under which each evaluation's simulation stands among the stage's tasks, counted from 1. Sets that begin alike
-/// share their first simulations, which stand under the first of them.
+/// The row of each evaluation's simulation among the stage's tasks, counted from 1. Sets whose first points are equal share
+/// their simulations, which have the rows of the first of these sets.
 fn shown(params: &Params, all: &[(usize, &Line)]) -> Vec<i64> {
     let (sets, simulators) = (params.sets.len(), params.simulators);
     let coarse = |set: usize| params.history[set].coarse.len();

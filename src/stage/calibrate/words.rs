@@ -1,9 +1,9 @@
-//! What a calibration found, as sentences for a reader.
+//! The result of a calibration as sentences for a reader.
 
 use crate::artifact::Artifact;
 use crate::stage::notes::short;
 
-/// For every target set, which parameters the targets determine and within what, and which they leave free.
+/// For every target set, which parameters the targets determine, with their intervals, and which they leave free.
 pub fn parameters_in_words(solution: &Artifact) -> Vec<String> {
     read(solution).unwrap_or_default()
 }

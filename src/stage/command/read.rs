@@ -1,4 +1,4 @@
-//! How a response is read from what a program left.
+//! How a response is read from the files of a program.
 
 use super::folder::{Folder, is_plain};
 use super::number::{Number, number};
@@ -9,11 +9,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Where a response stands: in a column of a CSV file, at a pointer of a JSON file, or at a pattern of a text file.
+/// Where a response is: in a column of a CSV file, at a pointer of a JSON file, or at a pattern of a text file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Read {
-    /// The file in the run's folder; `stdout` and `stderr` hold what the program printed.
+    /// The file in the run's folder; `stdout` and `stderr` hold the output of the program.
     file: String,
     /// Column of a CSV file with a first line of names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -24,7 +24,7 @@ pub struct Read {
     /// Regular expression whose first group is the number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pattern: Option<String>,
-    /// Which row of the column, or which match of the pattern, counts.
+    /// Which row of the column, or which match of the pattern, is taken.
     #[serde(default, skip_serializing_if = "Take::is_default")]
     take: Take,
     /// Unit of the number; none for a pure number.
@@ -36,7 +36,7 @@ pub struct Read {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Take {
-    /// The last: what a program prints at the end of a run.
+    /// The last, such as the number that a program prints at the end of a run.
     #[default]
     Last,
     /// The first.
@@ -54,8 +54,8 @@ impl Take {
         *self == Self::default()
     }
 
-    /// The number among these texts, in their order; there is at least one. Missing values are passed over unless the
-    /// first or the last is wanted.
+    /// The number among these texts, in their order; there is at least one. Missing values are skipped unless the first or the
+    /// last is taken.
     fn of(self, texts: &[String]) -> Result<Number, String> {
         let read = |text: &String| number(text).map_err(|why| format!("`{text}` {why}"));
         let ends = match self {
@@ -119,7 +119,7 @@ impl Read {
     /// The number, in the unit of this response, or why it has no value although the program ended well.
     ///
     /// # Errors
-    /// What is wrong with the file or the number.
+    /// The fault of the file or the number.
     pub(super) fn value(&self, folder: &Folder) -> Result<Result<f64, String>, String> {
         let text = folder.text(&self.file)?;
         let found = if let Some(column) = &self.column {
@@ -163,7 +163,8 @@ fn from_json(text: &str, pointer: &str) -> Result<Number, String> {
     }
 }
 
-/// The text with `null` for each bare `NaN`, and with infinities in quotes, where they are refused by name.
+/// The text with `null` for each bare `NaN`, and with infinities in quotes, so that the message that refuses them can name
+/// them.
 fn without_nan(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let (mut rest, mut quoted) = (text, false);

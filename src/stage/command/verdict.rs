@@ -1,4 +1,4 @@
-//! How the words on the validity of a run are read from what a program left.
+//! How the texts on the validity of a run are read from the files of a program.
 
 use super::folder::{Folder, is_plain, shown};
 use super::read::from_csv;
@@ -8,11 +8,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Where a text stands: the words after which a run is not valid, or is to be read with caution.
+/// Where a text is that says why a run is not valid, or needs caution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReadText {
-    /// The file in the run's folder; `stdout` and `stderr` hold what the program printed.
+    /// The file in the run's folder; `stdout` and `stderr` hold the output of the program.
     file: String,
     /// Column of a CSV file with a first line of names; the last row counts. An empty cell is no reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -72,7 +72,7 @@ impl ReadText {
     }
 }
 
-/// The text, or the texts of the list, that the pointer leads to.
+/// The text, or the texts of the list, at the pointer.
 fn reasons_from_json(text: &str, pointer: &str) -> Result<Vec<String>, String> {
     let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
     let word = |value: &Value| value.as_str().map(str::to_owned);

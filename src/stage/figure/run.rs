@@ -42,7 +42,7 @@ fn curve_of(run: &Run) -> Result<&Stored, StageError> {
     run.curve.as_ref().ok_or_else(|| StageError::new("the run has no stress–strain curve"))
 }
 
-/// Numbers of a declared unit in the unit that they are drawn in.
+/// Converts numbers from their declared unit to the unit of the figure.
 fn shown(values: &[f64], from: &str, to: &str) -> Vec<f64> {
     Conversion::between(from, to).unwrap_or_else(|e| panic!("BUG: {from} in {to}: {e}")).of_all(values.to_vec())
 }
@@ -116,7 +116,7 @@ pub(super) fn groups(stored: &StoredSpecimen) -> (Vec<usize>, Vec<String>) {
     (group, used.iter().map(|&number| stored.groups[number as usize].clone()).collect())
 }
 
-/// What cracks and forces are drawn in.
+/// The frame of cracks and forces.
 struct Ground {
     outline: Outline,
     /// Lower left corner in mm.
@@ -127,7 +127,7 @@ struct Ground {
     polygons: Vec<Vec<[f64; 2]>>,
 }
 
-/// Domain and polygons: of the specimen when it is given, else around the points.
+/// Domain and polygons of the specimen if there is one, else the box around the points.
 fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
     if let Some(specimen) = sources.compare.first() {
         let specimen = stored(specimen.0)?;
@@ -150,7 +150,7 @@ fn crack_list(run: &Run) -> Result<CrackList, StageError> {
         return Err(StageError::new("cracks are drawn in the plane, and these are in space"));
     }
     let (length, to_mm) = (shown(&cracks.size, "m", "mm"), |row: usize, axis: usize| cracks.position[[row, axis]] * MM);
-    // The line of a crack is across its normal.
+    // The line of a crack is perpendicular to its normal.
     let crack = |i: usize| Crack {
         at: [to_mm(i, 0), to_mm(i, 1)],
         angle: atan2(cracks.normal[[i, 0]], -cracks.normal[[i, 1]]),

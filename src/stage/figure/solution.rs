@@ -10,7 +10,7 @@ use figure::convergence::{Convergence, Descent};
 use figure::solutions::{SolutionSet, Solutions};
 use figure::verification::{Check, Verification};
 
-/// The target sets in the order in which they appear.
+/// The target sets in the order of their first rows.
 fn distinct(sets: &[i64]) -> Vec<i64> {
     let mut found: Vec<i64> = Vec::new();
     for set in sets {
@@ -26,7 +26,7 @@ fn rows_of(sets: &[i64], set: i64) -> Vec<usize> {
     (0..sets.len()).filter(|&row| sets[row] == set).collect()
 }
 
-/// Prefix of a series when several stages are drawn together.
+/// Prefix of the name of a series when several stages are drawn together.
 fn prefixed(params: &Params, input: usize, name: &str) -> String {
     match params.series.get(input) {
         Some(series) => format!("{series}, {name}"),

@@ -1,4 +1,4 @@
-//! Models to and from the artifact `surfaces`.
+//! Converts models to and from the artifact `surfaces`.
 
 use super::super::StageError;
 use super::unreadable;
@@ -9,7 +9,7 @@ use ndarray::Array2;
 use stats::model::{Axis, Model};
 use stats::terms::Term;
 
-/// A model as it is stored.
+/// The stored form of a model.
 pub(super) fn stored(model: &Model) -> FittedModel {
     let of = |pick: fn(&Axis) -> f64| model.axes.iter().map(pick).collect::<Vec<f64>>();
     let count = model.terms.len();
