@@ -26,7 +26,7 @@ pub mod specimen;
 pub mod statistics;
 pub mod validity;
 
-pub use cells::{Cells, Numbered};
+pub use cells::{Cells, Numbered, Word};
 pub use declare::expect_kind;
 pub use field::{Field, Wanted};
 pub use key::{FirstBytes, Key};

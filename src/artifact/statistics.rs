@@ -3,6 +3,7 @@
 
 use super::validity::NotValid;
 use super::{ArtifactKind, Cells, Table, Unread};
+use math::scale::Scale;
 use ndarray::Array2;
 use std::collections::BTreeMap;
 
@@ -106,17 +107,7 @@ crate::table! {
         /// greatest value fitted
         pub high: Vec<f64>, "";
         /// how the model takes each, where it takes some by their logarithms
-        pub scale: Option<Vec<TakenAs>>, "";
-    }
-}
-
-crate::words! {
-    /// How a model takes the values of a factor.
-    pub enum TakenAs {
-        /// As they are.
-        Linear = "linear",
-        /// By their natural logarithms.
-        Log = "log",
+        pub scale: Option<Vec<Scale>>, "";
     }
 }
 
@@ -328,7 +319,7 @@ crate::table! {
         /// greatest value fitted
         pub high: Vec<f64>, "";
         /// how the model takes each, where it takes some by their logarithms
-        pub scale: Option<Vec<TakenAs>>, "";
+        pub scale: Option<Vec<Scale>>, "";
     }
 }
 

@@ -1,12 +1,10 @@
 //! Effort: the number of evaluations until the responses were near the targets.
 
 use super::solve::Line;
+use crate::artifact::calibration::Percents;
 use optim::{Problem, Recommendation};
 
-/// Relative deviations that are counted, in the order of the columns.
-pub(super) const LEVELS: [f64; 3] = [0.10, 0.05, 0.02];
-
-/// Evaluations of one set until all responses lay within each of [`LEVELS`]; `None` where they never did.
+/// Evaluations of one set until all responses lay within each of [`Percents::LEVELS`]; `None` where they never did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Effort {
     /// Until the responses of a run did.
@@ -40,7 +38,8 @@ impl Effort {
             let batch = || ends.iter().copied().find(|end| *end > last);
             if last < expected.len() { batch() } else { None }
         };
-        Self { seen: LEVELS.map(first), settled: LEVELS.map(stays) }
+        let levels = Percents::LEVELS.map(|percent| f64::from(percent) / 100.0);
+        Self { seen: levels.map(first), settled: levels.map(stays) }
     }
 }
 

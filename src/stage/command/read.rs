@@ -4,7 +4,7 @@ use super::folder::{Folder, is_plain};
 use super::number::{Number, number};
 use crate::stage::sheet::Sheet;
 use crate::stage::{Complaint, Context, rows};
-use regex::Regex;
+use regex_lite::Regex;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -82,6 +82,41 @@ impl Take {
     }
 }
 
+/// The file of a value, and the ways to read it: a column, a pointer and a pattern, of which one must be set.
+pub(super) struct Source<'a> {
+    pub file: &'a str,
+    pub ways: [&'a Option<String>; 3],
+}
+
+impl Source<'_> {
+    /// The faults of the table at `path`, which reads `name`; `group` is the meaning of the pattern's group, with an
+    /// example of a pattern.
+    pub(super) fn check(&self, path: &str, name: &str, group: (&str, &str)) -> Vec<Complaint> {
+        let at = |key: &str| format!("{path}.{key}");
+        let mut found = Vec::new();
+        if !is_plain(self.file) {
+            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
+            let hint = "leave out `..` and a leading `/`; a file outside is in no key: list it in `files`";
+            found.push(Complaint::new(&at("file"), message).hint(hint));
+        }
+        let ways = self.ways.iter().filter(|way| way.is_some()).count();
+        if ways != 1 {
+            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
+            found.push(Complaint::new(path, format!("{ways} ways to read `{name}`, not one")).hint(hint));
+        }
+        let [.., pattern] = self.ways;
+        match pattern.as_deref().map(Regex::new) {
+            Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
+            Some(Ok(regex)) if regex.captures_len() != 2 => {
+                let message = format!("the pattern needs exactly one group: {}", group.0);
+                found.push(Complaint::new(&at("pattern"), message).hint(group.1));
+            }
+            Some(Ok(_)) | None => {}
+        }
+        found
+    }
+}
+
 impl Read {
     pub(super) fn unit(&self) -> &str {
         &self.unit
@@ -89,29 +124,12 @@ impl Read {
 
     pub(super) fn check(&self, name: &str, context: &Context) -> Vec<Complaint> {
         let at = |key: &str| format!("read.{name}.{key}");
-        let mut found = Vec::new();
-        if !is_plain(&self.file) {
-            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
-            let hint = "leave out `..` and a leading `/`: what lies outside is in no key; list it in `files`";
-            found.push(Complaint::new(&at("file"), message).hint(hint));
-        }
-        let ways = [&self.column, &self.pointer, &self.pattern].iter().filter(|way| way.is_some()).count();
-        if ways != 1 {
-            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
-            found.push(Complaint::new(&at(""), format!("{ways} ways to read `{name}`, not one")).hint(hint));
-        }
+        let source = Source { file: &self.file, ways: [&self.column, &self.pointer, &self.pattern] };
+        let mut found = source.check(&at(""), name, ("the number", r"pattern = 'UCS = (\S+)'"));
         found.extend(rows::check_response(&at("unit"), name, &self.unit, context));
         if self.pointer.is_some() && !self.take.is_default() {
             let message = "a pointer names one number, so there is nothing to choose from";
             found.push(Complaint::new(&at("take"), message).hint("leave `take` out, or read a column or a pattern"));
-        }
-        match self.pattern.as_deref().map(Regex::new) {
-            Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
-            Some(Ok(regex)) if regex.captures_len() != 2 => {
-                let message = "the pattern needs exactly one group: the number";
-                found.push(Complaint::new(&at("pattern"), message).hint(r"pattern = 'UCS = (\S+)'"));
-            }
-            Some(Ok(_)) | None => {}
         }
         found
     }

@@ -1,9 +1,9 @@
 //! How the texts on the validity of a run are read from the files of a program.
 
-use super::folder::{Folder, is_plain, shown};
-use super::read::from_csv;
+use super::folder::{Folder, shown};
+use super::read::{Source, from_csv};
 use crate::stage::Complaint;
-use regex::Regex;
+use regex_lite::Regex;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -26,29 +26,10 @@ pub struct ReadText {
 }
 
 impl ReadText {
-    /// What is wrong with it, as the value of the stage's `key`.
+    /// Its faults, as the value of the stage's `key`.
     pub(super) fn check(&self, key: &str) -> Vec<Complaint> {
-        let at = |own: &str| format!("{key}.{own}");
-        let mut found = Vec::new();
-        if !is_plain(&self.file) {
-            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
-            let hint = "leave out `..` and a leading `/`: what lies outside is in no key; list it in `files`";
-            found.push(Complaint::new(&at("file"), message).hint(hint));
-        }
-        let ways = [&self.column, &self.pointer, &self.pattern].iter().filter(|way| way.is_some()).count();
-        if ways != 1 {
-            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
-            found.push(Complaint::new(key, format!("{ways} ways to read `{key}`, not one")).hint(hint));
-        }
-        match self.pattern.as_deref().map(Regex::new) {
-            Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
-            Some(Ok(regex)) if regex.captures_len() != 2 => {
-                let message = "the pattern needs exactly one group: the reason";
-                found.push(Complaint::new(&at("pattern"), message).hint("pattern = 'not valid: (.+)'"));
-            }
-            Some(Ok(_)) | None => {}
-        }
-        found
+        let source = Source { file: &self.file, ways: [&self.column, &self.pointer, &self.pattern] };
+        source.check(key, key, ("the reason", "pattern = 'not valid: (.+)'"))
     }
 
     /// The reasons, joined; empty when there is none.

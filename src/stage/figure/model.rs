@@ -3,9 +3,7 @@
 use super::super::{StageError, artifact_kind};
 use super::source::{Source, Sources, pick, rows_of};
 use super::{Label, Params};
-use crate::artifact::statistics::{
-    Anova, Coefficients, Domains, Residuals as StoredResiduals, Screening, Surfaces, TakenAs,
-};
+use crate::artifact::statistics::{Anova, Coefficients, Domains, Residuals as StoredResiduals, Screening, Surfaces};
 use figure::Quantity;
 use figure::agreement::{Agreement, Cloud, Pair};
 use figure::axis::{fixed, significant};
@@ -137,8 +135,7 @@ struct Domain(Vec<(String, [f64; 2], Scale)>);
 impl Domain {
     fn read(stored: &Domains, response: &str) -> Self {
         let own = (0..stored.response.len()).filter(|&i| stored.response[i] == response);
-        let log = |i: usize| stored.scale.as_ref().is_some_and(|all| all[i] == TakenAs::Log);
-        let scale = |i: usize| if log(i) { Scale::Log } else { Scale::Linear };
+        let scale = |i: usize| stored.scale.as_ref().map_or(Scale::Linear, |all| all[i]);
         Self(own.map(|i| (stored.factor[i].clone(), [stored.low[i], stored.high[i]], scale(i))).collect())
     }
 

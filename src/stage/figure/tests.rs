@@ -1,7 +1,8 @@
 use super::*;
 
 use crate::artifact::calibration::{
-    Alternatives, Evaluations, Prediction, Solution, Solved, Summary, Verification, VerifiedRuns,
+    Alternatives, Answer, Effort, Evaluations, Parameters, Prediction, Solution, Solved, Summary, Verification,
+    VerifiedRuns,
 };
 use crate::artifact::range::{LevelValues, Levels, Range, Ranges};
 use crate::artifact::run::{CrackMode, Cracks, Curve, Forces, Responses, Run, States};

@@ -5,6 +5,7 @@
 //! * A solution gives factors; they are applied to the material of the calibration, or that of its simulator.
 
 use super::{Entry, Material, Microparameter, PairRule, Value};
+use crate::artifact::calibration::Solution;
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Artifact, ArtifactKind};
 use crate::stage::{Context, Parameter, Point, StageError};
@@ -42,9 +43,9 @@ pub fn given(
         let message = format!("stage `{name}` gives factors, and there is no material to put them into");
         return Err(StageError::new(message).hint("give the calibration its `material`"));
     };
-    let table = artifact.table("solution").ok_or_else(|| StageError::new(format!("`{name}` holds no solution")))?;
+    let solution = Solution::from_artifact(artifact)?.solution;
     let mut point = Point::new();
-    for column in &table.columns {
+    for column in &solution.point.columns {
         if let Some(factor) = context.factors.get(&column.name) {
             let values = column.numbers(&factor.unit)?;
             let value = values.get(set.wrapping_sub(1)).copied().filter(|value| value.is_finite());
