@@ -3,7 +3,7 @@
 //! The columns of factors and responses have the names that the workflow gives them: they are in a field of type
 //! [`Table`], and [`Table::numbers`] reads one by its name.
 
-use super::statistics::NoteTable;
+use super::notes::NoteTable;
 use super::validity::NotValid;
 use super::{ArtifactKind, Cells, Table, Unread};
 

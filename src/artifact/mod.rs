@@ -16,6 +16,7 @@ pub mod groups;
 mod key;
 mod kind;
 mod node;
+pub mod notes;
 pub mod presentation;
 pub mod range;
 mod read;
@@ -24,6 +25,7 @@ pub mod run;
 pub mod shapes;
 pub mod specimen;
 pub mod statistics;
+pub mod surfaces;
 pub mod validity;
 
 pub use cells::{Cells, Numbered, Word};

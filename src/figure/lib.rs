@@ -5,7 +5,7 @@
 //!
 //! * page: [`scene`] (what is drawn), [`text`] and [`font`] (labels), [`svg`], [`png`], [`pdf`] (writers)
 //! * plot: [`axis`], [`panel`], [`legend`], [`palette`], [`marks`]
-//! * words and numbers: [`column`], [`table`]
+//! * words and numbers: [`mod@column`], [`table`]
 //! * every other file is a figure
 
 pub mod agreement;

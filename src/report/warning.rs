@@ -5,7 +5,8 @@ use super::paper::Part;
 use crate::artifact::calibration::{Answer, Prediction, Solution, Summary, Verification};
 use crate::artifact::groups::{GroupResiduals, Groups};
 use crate::artifact::run::Run;
-use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
+use crate::artifact::statistics::{Anova, Fits, Residuals, Screening};
+use crate::artifact::surfaces::{Coefficients, Surfaces};
 use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Node, Wanted};
 

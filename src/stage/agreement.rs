@@ -12,7 +12,7 @@ use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names, given::check_given, invalid::Invalid};
 use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
-use crate::artifact::statistics::NoteTable;
+use crate::artifact::notes::NoteTable;
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;

@@ -29,6 +29,7 @@
 //! Where there are more parameters than targets, the solution nearest the centre of the ranges (or `preference`) is taken.
 
 mod config;
+mod constraint;
 mod course;
 mod curve;
 mod effort;
@@ -42,12 +43,14 @@ mod record;
 mod sets;
 mod slope;
 mod solve;
+mod solved;
 #[cfg(test)]
 mod tests;
 mod twin;
 mod words;
 
-pub use config::{Calibrate, Constraint, MethodName, Unmet};
+pub use config::{Calibrate, MethodName, Unmet};
+pub use constraint::Constraint;
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
 pub use instrument::{Instrument, Parameter, Surface, instrument};

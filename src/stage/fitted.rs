@@ -4,13 +4,12 @@
 use super::columns::{Columns, Rows, refused_without, runs};
 use super::notes::Notes;
 use super::published::{Computed, beside, prints};
-use super::regression::origin::Beside;
 use super::{Failure, Job, StageError};
 use crate::artifact::Artifact;
-use crate::artifact::statistics::{
-    Coefficients, Domains, Fits, PrincipalAxes, Residuals, Selections, Stationary, Surfaces, WithConstant,
-};
+use crate::artifact::statistics::{Fits, Residuals};
+use crate::artifact::surfaces::{Coefficients, Domains, PrincipalAxes, Selections, Stationary, Surfaces, WithConstant};
 use crate::artifact::validity::NotValid;
+use origin::Beside;
 use serde::{Deserialize, Serialize};
 use stats::canonical::canonical;
 use stats::diagnostics::Residual;
@@ -20,6 +19,7 @@ use stats::selection::{Direction, Selection};
 use stats::terms::Term;
 
 mod keep;
+pub(super) mod origin;
 mod predict;
 pub use keep::models;
 pub use predict::Predict;
@@ -304,6 +304,12 @@ fn selection_table(found: &[(&Fitting, Regression)]) -> Selections {
         step: rows.texts(|(_, step)| if step.added { "added" } else { "removed" }),
         p: rows.reals(|(_, step)| Some(step.p)),
     }
+}
+
+/// The terms with the constant in front.
+pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
+    let rest = terms.iter().filter(|t| t.degree() > 0).cloned();
+    std::iter::once(Term::constant()).chain(rest).collect()
 }
 
 /// The error of an artifact `surfaces` that cannot be read.

@@ -2,7 +2,7 @@
 //!
 //! A note says in words what the other tables hold as numbers; no note changes an analysis.
 
-use crate::artifact::statistics::NoteTable;
+use crate::artifact::notes::NoteTable;
 use crate::artifact::validity::NotValid;
 use stats::diagnostics::Residual;
 use stats::fit::Fit;

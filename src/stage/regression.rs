@@ -10,11 +10,10 @@
 //! prediction.
 
 mod grouped;
-pub(super) mod origin;
 
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
-use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
+use super::fitted::{self, Fitting, Params, Predict, check_predict, fit, with_constant};
 use super::given::check_given;
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -94,12 +93,6 @@ pub(super) fn factors_of(terms: &[Term]) -> Vec<String> {
     names.sort();
     names.dedup();
     names
-}
-
-/// The terms with the constant in front.
-pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
-    let rest = terms.iter().filter(|t| t.degree() > 0).cloned();
-    std::iter::once(Term::constant()).chain(rest).collect()
 }
 
 impl Stage for Regression {

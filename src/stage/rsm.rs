@@ -7,10 +7,10 @@
 
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, runs};
-use super::fitted::{self, Fitting, Params, Predict, check_predict};
+use super::fitted::{self, Fitting, Params, Predict, check_predict, with_constant};
 use super::given::check_given;
 use super::invalid::Invalid;
-use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
+use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha};
 use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;

@@ -89,7 +89,7 @@ fn number(name: &str) -> Option<u64> {
 
 /// Whether a file among the records is one that flow wrote.
 pub(super) fn is_ours(folder: &Folder, name: &str) -> bool {
-    number(name).is_some() && super::memo::begins_with(folder, name, b"{\n  \"workflow\": ")
+    number(name).is_some() && folder.begins_with(name, b"{\n  \"workflow\": ")
 }
 
 /// Records a campaign under the next free number, which is returned.

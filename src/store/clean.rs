@@ -6,10 +6,9 @@
 //! Nothing is removed from a store that another process uses: every process shares a lock while it has the store open,
 //! and gc takes that lock exclusively. Where the file system has no locks, objects younger than a day stay.
 
-use super::disk::{Disk, is_temporary};
-use super::folder::{Entry, Folder};
+use super::disk::is_temporary;
 use super::presence::{self, short_of_name};
-use super::{Store, StoreError, journal, lock, locked, memo, object, queue, root, verify};
+use super::{Store, StoreError, contents, journal, lock, locked, memo, object, queue};
 use crate::artifact::Key;
 use std::collections::HashSet;
 
@@ -59,30 +58,6 @@ pub struct Swept {
     pub segments: u64,
 }
 
-/// A file in the store.
-pub(super) struct Place<'a> {
-    /// Its folder, open.
-    pub(super) at: &'a Folder,
-    /// The folder below the root.
-    pub(super) folder: &'a str,
-    pub(super) name: &'a str,
-    pub(super) entry: Entry,
-}
-
-impl Place<'_> {
-    /// Whether flow has written it.
-    pub(super) fn is_ours(&self) -> bool {
-        verify::is_ours(self)
-    }
-
-    fn bytes(&self) -> u64 {
-        match self.entry {
-            Entry::File(bytes) => bytes,
-            Entry::Folder | Entry::Strange => 0,
-        }
-    }
-}
-
 /// Where no lock shows it, objects that were written less than this many seconds ago may belong to a process that still runs.
 const GRACE: i64 = 86_400;
 
@@ -93,7 +68,7 @@ impl Store {
     /// The store cannot be listed.
     pub fn usage(&self) -> Result<Usage, StoreError> {
         let mut usage = Usage::default();
-        walk(&self.disk, &mut |place| {
+        contents::walk(&self.disk, &mut |place| {
             if !place.is_ours() {
                 return;
             }
@@ -139,11 +114,11 @@ impl Store {
         let starts: HashSet<u64> = reachable.iter().map(|key| presence::first_word(&key.0)).collect();
         // By the clock of the file system, as the times of the objects are.
         let now = if grace { self.disk.draft("", 0o444)?.file_time() } else { None };
-        let is_young = |place: &Place<'_>| {
+        let is_young = |place: &contents::Place<'_>| {
             let age = now.zip(place.at.modified(place.name)).map(|(now, written)| now.saturating_sub(written));
             grace && age.is_none_or(|age| age < GRACE)
         };
-        walk(&self.disk, &mut |place| {
+        contents::walk(&self.disk, &mut |place| {
             if !place.is_ours() {
                 return;
             }
@@ -199,7 +174,7 @@ impl Store {
     }
 
     /// Whether all objects that a memo names stay. Another user's memo stays, because only that user can read it.
-    fn memo_is_reachable(&self, place: &Place<'_>, reachable: &HashSet<Key>) -> bool {
+    fn memo_is_reachable(&self, place: &contents::Place<'_>, reachable: &HashSet<Key>) -> bool {
         if !place.name.ends_with(&format!("-{}", self.mark.name())) {
             return place.name.contains('-');
         }
@@ -207,28 +182,4 @@ impl Store {
         let memo = memo.and_then(|(key, bytes)| memo::unpack(&self.mark, &key, &bytes));
         memo.is_some_and(|memo| memo.objects.iter().all(|object| reachable.contains(&object.key)))
     }
-}
-
-/// Calls `visit` with every file in the folders that flow makes; other folders are not entered.
-pub(super) fn walk(disk: &Disk, visit: &mut impl FnMut(Place<'_>)) -> Result<(), StoreError> {
-    let fail = |error| disk.fail("list", &disk.root, error);
-    enter(&disk.folder("").map_err(fail)?, "", visit).map_err(fail)
-}
-
-fn enter(at: &Folder, folder: &str, visit: &mut impl FnMut(Place<'_>)) -> std::io::Result<()> {
-    let mut names = Vec::new();
-    at.list(|name, _| names.push(name.to_owned()))?;
-    names.sort_unstable();
-    for name in names {
-        let Ok(entry) = at.entry(&name) else { continue };
-        if entry == Entry::Folder && root::is_folder(folder, &name) {
-            let inside = if folder.is_empty() { name } else { format!("{folder}/{name}") };
-            if let Ok(inner) = at.inner(inside.rsplit('/').next().unwrap_or_default()) {
-                enter(&inner, &inside, visit)?;
-            }
-        } else {
-            visit(Place { at, folder, name: &name, entry });
-        }
-    }
-    Ok(())
 }

@@ -111,6 +111,12 @@ impl Folder {
         Ok(bytes)
     }
 
+    /// Whether a plain file begins with these bytes.
+    pub(super) fn begins_with(&self, name: &str, head: &[u8]) -> bool {
+        let mut found = vec![0; head.len()];
+        self.open(name, false).is_ok_and(|mut file| file.read_exact(&mut found).is_ok() && found == head)
+    }
+
     /// What a name stands for; an error of kind `NotFound` when there is no such name.
     pub(super) fn entry(&self, name: &str) -> io::Result<Entry> {
         let stat = rustix::fs::statat(&self.0, name, AtFlags::SYMLINK_NOFOLLOW)?;

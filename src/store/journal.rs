@@ -19,7 +19,6 @@ pub(super) use record::{RECORD, pack, seal, unpack};
 use super::disk::{Disk, Draft};
 use super::folder::{self, Folder};
 use super::lock::Held;
-use super::memo::begins_with;
 use super::{Origin, Record, StoreError};
 use std::fs::File;
 use std::io::{Seek, SeekFrom};
@@ -41,7 +40,7 @@ const SYNC_EACH: Duration = Duration::from_secs(1);
 
 /// Whether a file among the segments is one that flow wrote.
 pub(super) fn is_ours(folder: &Folder, name: &str) -> bool {
-    is_name(name) && begins_with(folder, name, b"flow journal ")
+    is_name(name) && folder.begins_with(name, b"flow journal ")
 }
 
 fn is_name(name: &str) -> bool {

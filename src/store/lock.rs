@@ -20,7 +20,7 @@
 use super::disk::Disk;
 use super::folder::{Folder, Strange};
 use super::object::is_hex;
-use super::{StoreError, memo, object};
+use super::{StoreError, object};
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
@@ -200,7 +200,7 @@ fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<Fo
         return Ok(Some((file, None, holder)));
     }
     let patience = match holder.process {
-        0 if memo::begins_with(folder, name, object::HEAD) => Some(WRITING),
+        0 if folder.begins_with(name, object::HEAD) => Some(WRITING),
         _ => may_live(&holder).then_some(PATIENCE),
     };
     if let Some(patience) = patience.filter(|_| folder.names(name, &file)) {

@@ -69,13 +69,7 @@ pub(super) fn is_ours(at: &folder::Folder, shard: &str, name: &str) -> bool {
     // Earlier versions had no user in the name.
     let (key, user) = name.split_once('-').unwrap_or((name, "00000000"));
     let named = key.len() == 64 && is_hex(key) && user.len() == 8 && is_hex(user) && key.starts_with(shard);
-    named && begins_with(at, name, HEAD)
-}
-
-/// Whether a plain file begins with these bytes.
-pub(super) fn begins_with(at: &folder::Folder, name: &str, head: &[u8]) -> bool {
-    let mut found = vec![0; head.len()];
-    at.open(name, false).is_ok_and(|mut file| std::io::Read::read_exact(&mut file, &mut found).is_ok() && found == head)
+    named && at.begins_with(name, HEAD)
 }
 
 pub(super) fn pack(mark: &Mark, key: &Key, memo: &Memo) -> Vec<u8> {

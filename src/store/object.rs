@@ -15,7 +15,7 @@
 
 use super::disk::Disk;
 use super::folder::{Entry, Folder};
-use super::{Damage, Guard, StoreError, prove};
+use super::{Damage, StoreError};
 use crate::artifact::{ContentHash, Key};
 use std::io::ErrorKind;
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ pub(super) fn is_name(shard: &str, name: &str) -> bool {
 
 /// Whether a file in a folder of objects is one that flow wrote.
 pub(super) fn is_ours(at: &Folder, shard: &str, name: &str) -> bool {
-    is_name(shard, name) && super::memo::begins_with(at, name, HEAD)
+    is_name(shard, name) && at.begins_with(name, HEAD)
 }
 
 /// Lower-case hexadecimal digits.
@@ -114,42 +114,6 @@ pub(super) fn path(disk: &Disk, id: &ObjectId) -> PathBuf {
 /// Whether the object's name is taken, by a file or anything else.
 pub(super) fn is_there(disk: &Disk, id: &ObjectId) -> bool {
     disk.folder(&id.folder()).is_ok_and(|folder| matches!(folder.entry(&id.file_name()), Ok(Entry::File(_))))
-}
-
-/// Writes an object, into the file of its claim if there is one; returns the seal of the file under the object's name.
-pub(super) fn write(
-    disk: &Disk,
-    id: &ObjectId,
-    image: &[u8],
-    durable: bool,
-    mut claim: Option<&mut Guard>,
-) -> Result<Seal, StoreError> {
-    let (folder, name) = (id.folder(), id.file_name());
-    let seal = Seal::of(image);
-    for _ in 0..3 {
-        let linked = match claim.as_mut().and_then(|claim| claim.draft()) {
-            Some(draft) => disk.link_new(draft, (&folder, &name), image, durable)?,
-            None => None,
-        };
-        let written = match linked {
-            Some(written) => written,
-            // The claim's file belongs to another process now, or there was none.
-            None => {
-                claim = None;
-                disk.write_new(&folder, &name, image, durable)?
-            }
-        };
-        if written {
-            return Ok(seal);
-        }
-        match prove::object(disk, id, None) {
-            // Another version of flow may describe the same values differently.
-            Ok(proven) => return Ok(proven.seal),
-            Err(error) if error.is_missing() => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Err(disk.fail("write", &disk.path(&folder, &name), ErrorKind::AlreadyExists.into()))
 }
 
 /// Moves the file under an object's name to `aside/`, under a unique name. A link is moved as a link.

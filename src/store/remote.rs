@@ -23,9 +23,9 @@ mod sign;
 pub use sign::{Signing, Trust};
 
 use super::object::{self, Seal};
-use super::prove;
 use super::record::moment;
 use super::{ObjectId, Record, Store, StoreError, Timing, locked};
+use super::{finish, prove};
 use crate::artifact::Key;
 use place::Place;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -206,7 +206,7 @@ impl Store {
             return Err(refused(format!("{why}; it is computed again when it is needed")));
         }
         prove::bytes(&id, image.clone()).map_err(refused)?;
-        let seal = object::write(&self.disk, &id, &image, false, None).map_err(Untaken::Store)?;
+        let seal = finish::write(&self.disk, &id, &image, false, None).map_err(Untaken::Store)?;
         let timing = Timing { started: moment(record.started), seconds: record.seconds };
         let own = self.marked(&id, seal, &timing, Arc::clone(&record.origin));
         locked(&self.segments).append(&self.disk, &own, false).map_err(Untaken::Store)?;

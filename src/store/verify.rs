@@ -1,8 +1,7 @@
 //! Verification: reads every file and tells sound, damaged and foreign ones apart.
 
-use super::folder::Entry;
 use super::object::{self, ObjectId};
-use super::{Amount, Damage, Record, Store, StoreError, campaign, clean, journal, locked, memo, prove, root};
+use super::{Amount, Damage, Record, Store, StoreError, contents, locked, memo, prove};
 use crate::artifact::{ContentHash, Key};
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -117,7 +116,7 @@ impl Store {
             verdict.not_own += usize::from(!self.campaign(number)?.is_some_and(|campaign| campaign.own));
         }
         let (mark, disk) = (&self.mark, &self.disk);
-        clean::walk(disk, &mut |place| {
+        contents::walk(disk, &mut |place| {
             if place.folder.starts_with(memo::FOLDER) && place.is_ours() {
                 let memo = memo::key_of(place.name).zip(place.at.read(place.name, memo::MOST).ok());
                 let own = memo.is_some_and(|(key, bytes)| memo::unpack(mark, &key, &bytes).is_some());
@@ -128,26 +127,5 @@ impl Store {
         })?;
         verdict.strangers.sort();
         Ok(())
-    }
-}
-
-/// Whether flow writes a file of this name in this folder of the store.
-pub(super) fn is_ours(place: &clean::Place<'_>) -> bool {
-    let clean::Place { at, folder, name, entry } = place;
-    if !matches!(entry, Entry::File(_)) {
-        return false;
-    }
-    let (top, shard) = folder.split_once('/').unwrap_or((folder, ""));
-    match (top, shard) {
-        _ if super::disk::is_temporary(name) => true,
-        ("", "") => root::is_ours(name) || root::is_note(name),
-        ("objects", shard) => object::is_shard(shard) && object::is_ours(at, shard, name),
-        (memo::FOLDER, shard) => object::is_shard(shard) && memo::is_ours(at, shard, name),
-        (journal::FOLDER, "") => journal::is_ours(at, name),
-        (campaign::FOLDER, "") => campaign::is_ours(at, name),
-        (super::lock::FOLDER, "") => super::lock::is_name(name),
-        (object::ASIDE, "") => object::is_aside(name),
-        (super::queue::FOLDER, inside) => super::queue::is_ours(inside, name),
-        _ => false,
     }
 }

@@ -1,5 +1,6 @@
 //! The settings of a calibration, and the parameters of its task.
 
+use super::constraint::Constraint;
 use super::curve::Curve;
 use super::goal::Goal;
 use super::params::{FactorParam, Params};
@@ -116,16 +117,6 @@ pub enum Unmet {
     Say,
     /// Report it and let `flow run` exit with 1.
     Fail,
-}
-
-/// Σ terms ≤ `at_most`, in the factors' units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Constraint {
-    /// Coefficient of each factor.
-    pub terms: BTreeMap<String, f64>,
-    /// Upper bound.
-    pub at_most: f64,
 }
 
 /// The optimisers.

@@ -1,17 +1,8 @@
 //! Effort: the number of evaluations until the responses were near the targets.
 
-use super::solve::Line;
+use super::solved::{Effort, Line};
 use crate::artifact::calibration::Percents;
 use optim::{Problem, Recommendation};
-
-/// Evaluations of one set until all responses lay within each of [`Percents::LEVELS`]; `None` where they never did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Effort {
-    /// Until the responses of a run did.
-    pub seen: [Option<usize>; 3],
-    /// Until the expected responses of the recommended point did, and still did after every later batch.
-    pub settled: [Option<usize>; 3],
-}
 
 impl Effort {
     /// From the history of one search, its recommendation after the batch of each evaluation, and the number of evaluations

@@ -1,10 +1,9 @@
 //! Predicted responses and parameters of a solution with their intervals: the tables `prediction`, `parameters`, `notes`.
 
 use super::params::{FactorParam, Params, TargetParam};
-use super::record::numbered;
-use super::solve::{Line, Solved};
+use super::solved::{Line, Solved, numbered};
 use crate::artifact::calibration::{Answer, Determination, OUT_OF_REACH, Parameters, Prediction};
-use crate::artifact::statistics::NoteTable;
+use crate::artifact::notes::NoteTable;
 use crate::artifact::validity::Tally;
 use crate::stage::notes::{Notes, short};
 use optim::Interval;

@@ -1,18 +1,15 @@
 //! The parameters of a calibration's task, and the optimisation problem that they define.
 
-use super::config::Constraint;
-use super::read;
-use crate::artifact::Artifact;
+use super::constraint::Constraint;
 use crate::stage::StageError;
 use crate::stage::invalid::Invalid;
 use math::scale::Scale;
 use optim::constraint::{Domain, Factor, Linear};
 use optim::misfit::{Denominator, Form, Misfit, Target};
-use optim::search::{Knowledge, Limits, Method, Run};
+use optim::search::{Limits, Method, Run};
 use optim::{Error, Problem};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// A parameter to find.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -197,22 +194,6 @@ impl Params {
         let start = self.sets[set].start.clone().or_else(|| self.filled(&self.start));
         let start = start.map(|point| domain.repair(&domain.unit(&point)));
         Ok(Problem { domain, misfit: self.misfit(set).map_err(all)?, start })
-    }
-
-    /// The prior knowledge of the surrogate.
-    pub(super) fn knowledge(
-        &self,
-        set: usize,
-        surfaces: Option<&Artifact>,
-        earlier: &[Arc<Artifact>],
-    ) -> Result<Knowledge, StageError> {
-        let SetParam { targets, held, .. } = &self.sets[set];
-        let trend = surfaces.map(|artifact| read::surfaces(artifact, &self.factors, held, targets)).transpose()?;
-        let mut runs = Vec::new();
-        for artifact in earlier {
-            runs.extend(read::runs(artifact, &self.factors, targets, self.invalid)?);
-        }
-        Ok(Knowledge { earlier: runs, trend })
     }
 
     /// The seed of the search of a set.

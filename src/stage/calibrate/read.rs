@@ -1,6 +1,6 @@
 //! Responses for the optimiser: from surfaces, from single runs, from tables of runs.
 
-use super::params::{FactorParam, SetParam, TargetParam};
+use super::params::{FactorParam, Params, SetParam, TargetParam};
 use crate::artifact::results::Results;
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, Table};
@@ -10,7 +10,7 @@ use crate::stage::invalid::{Invalid, refused};
 use crate::unit::Conversion;
 use optim::Interval;
 use optim::misfit::ordinates;
-use optim::search::Run as Trial;
+use optim::search::{Knowledge, Run as Trial};
 use optim::surrogate::Trend;
 use stats::model::Model;
 use std::collections::BTreeMap;
@@ -74,6 +74,24 @@ pub(super) fn outlook(
 
 /// Coverage of the intervals.
 pub(super) const COVERAGE: f64 = 0.95;
+
+impl Params {
+    /// The prior knowledge of the surrogate.
+    pub(super) fn knowledge(
+        &self,
+        set: usize,
+        surfaces: Option<&Artifact>,
+        earlier: &[Arc<Artifact>],
+    ) -> Result<Knowledge, StageError> {
+        let SetParam { targets, held, .. } = &self.sets[set];
+        let trend = surfaces.map(|artifact| self::surfaces(artifact, &self.factors, held, targets)).transpose()?;
+        let mut known = Vec::new();
+        for artifact in earlier {
+            known.extend(runs(artifact, &self.factors, targets, self.invalid)?);
+        }
+        Ok(Knowledge { earlier: known, trend })
+    }
+}
 
 /// The surface of every target.
 fn chosen(

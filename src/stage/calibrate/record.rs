@@ -2,7 +2,7 @@
 
 use super::outlook;
 use super::params::{FactorParam, Params, TargetParam};
-use super::solve::{Line, Solved};
+use super::solved::{Line, Solved, numbered};
 use crate::artifact::calibration::{self, Alternatives, Answer, Evaluations, Level, Percents, Solution};
 use crate::artifact::{Artifact, Table};
 use crate::stage::invalid::Invalid;
@@ -60,10 +60,6 @@ fn columns(params: &Params, rows: &[(usize, &[f64], &[f64])]) -> Table {
         table = table.reals_column(response, unit, "", rows.iter().map(value).collect());
     }
     table
-}
-
-pub(super) fn numbered(sets: impl Iterator<Item = usize>) -> Vec<i64> {
-    sets.map(|set| set as i64 + 1).collect()
 }
 
 fn solution(params: &Params, solved: &[Solved]) -> calibration::Solved {

@@ -1,60 +1,17 @@
 //! The work `calibrate`: computes the artifact `solution` from parameters, surfaces and finished simulations.
 
-use super::effort::Effort;
 use super::params::{History, Params, Told};
+use super::solved::{Effort, Line, Solved};
 use super::twin::{self, Twin, full_limits, full_method};
 use super::{read, record};
 use crate::artifact::Artifact;
 use crate::stage::{Failure, Job, Progress, StageError};
 use optim::determination::{Outlook, extents};
 use optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
-use optim::solution_set::{SolutionSet, explore};
+use optim::solution_set::explore;
 use optim::surrogate::Model;
 use optim::surrogate::models::Models;
 use optim::{Interval, Problem, Recommendation, Stop, Trial};
-
-/// One line of the history.
-#[derive(Default)]
-pub(super) struct Line {
-    pub evaluation: usize,
-    /// Whether it ran the coarse twins.
-    pub coarse: bool,
-    pub point: Vec<f64>,
-    /// NaN where it failed.
-    pub responses: Vec<f64>,
-    pub misfit: f64,
-    pub best: f64,
-    /// Misfit of the recommended point once the batch of this evaluation was known; NaN before there is one.
-    pub recommended: f64,
-    pub failure: String,
-    /// Why a run that is used is not valid.
-    pub validity: String,
-}
-
-/// The solution of one target set.
-pub(super) struct Solved {
-    pub problem: Problem,
-    pub stop: Stop,
-    pub evaluations: usize,
-    /// Evaluations on the coarse twins.
-    pub coarse: usize,
-    pub failed: usize,
-    /// The solution, in natural units.
-    pub point: Vec<f64>,
-    pub expected: Vec<Interval>,
-    /// The responses of the run at the solution, for methods that recommend one of their runs.
-    pub observed: Option<Vec<f64>>,
-    /// Standard deviation of a single run; NaN where it is unknown.
-    pub scatter: Vec<f64>,
-    pub misfit: f64,
-    pub set: Option<SolutionSet>,
-    /// Range of each factor over equally good solutions, natural units; `None` without a model.
-    pub extents: Option<Vec<[f64; 2]>>,
-    /// Why intervals are unknown, where they are.
-    pub unknown: String,
-    pub history: Vec<Line>,
-    pub effort: Effort,
-}
 
 pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;

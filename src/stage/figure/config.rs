@@ -226,6 +226,17 @@ pub(super) struct Needs {
     pub(super) responses: [usize; 2],
     /// Least and greatest number of named factors; the figure draws factors when the second is not 0.
     pub(super) factors: [usize; 2],
+    /// Keys of a plot of the user's own columns that must be set, and those that may be; the first are columns of numbers.
+    pub(super) keys: [&'static [&'static str]; 2],
+    /// Whether the figure draws the single runs of a table, so that some can be left out.
+    pub(super) runs: bool,
+}
+
+impl Needs {
+    /// Whether it draws columns of the user's choice.
+    pub(super) fn is_plot(&self) -> bool {
+        self.keys.iter().any(|keys| !keys.is_empty())
+    }
 }
 
 const MANY: usize = usize::MAX;
@@ -237,6 +248,14 @@ impl Show {
             compare: Accepts::Only(compare),
             responses,
             factors,
+            keys: [&[], &[]],
+            runs: false,
+        };
+        let plot = |required: &'static [&'static str], optional: &'static [&'static str]| Needs {
+            from: Accepts::All,
+            keys: [required, optional],
+            runs: true,
+            ..needs(&[], &[], [0, 0], [0, 0])
         };
         const RESULTS: &[Of] = &[Of::RESULTS];
         const MODELS: &[Of] = &[Of::ANOVA, Of::SCREENING, Of::SURFACES];
@@ -248,7 +267,7 @@ impl Show {
             Show::Stones | Show::Zingg => needs(&[Of::SHAPES], &[], [0, 0], [0, 0]),
             Show::MainEffects | Show::Range => needs(&[Of::RANGE], &[Of::RANGE], [1, 1], [0, MANY]),
             Show::Points => needs(POINTS, &[], [0, 0], [0, 3]),
-            Show::Agreement => needs(RESULTS, RESULTS, [0, MANY], [0, MANY]),
+            Show::Agreement => Needs { runs: true, ..needs(RESULTS, RESULTS, [0, MANY], [0, MANY]) },
             Show::Contour | Show::Surface => needs(&[Of::SURFACES], POINTS, [1, 1], [2, 2]),
             Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
             Show::ObservedPredicted => needs(MODELS, &[], [0, MANY], [0, 0]),
@@ -258,17 +277,17 @@ impl Show {
             Show::Convergence => needs(&[Of::SOLUTION], &[], [0, 0], [0, 0]),
             Show::Solutions => needs(&[Of::SOLUTION], &[], [0, 0], [0, MANY]),
             Show::Verification => needs(&[Of::VERIFICATION], &[], [0, MANY], [0, 0]),
-            Show::Curves => needs(&[Of::RUN, Of::RESULTS], &[], [0, 0], [0, 0]),
-            Show::Xy | Show::Histogram | Show::Box | Show::HeatMap => {
-                Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) }
+            Show::Curves => {
+                Needs { from: Accepts::Only(&[Of::RUN, Of::RESULTS]), ..plot(&[], &["x", "y", "by", "overlay"]) }
             }
+            Show::Xy => {
+                plot(&["x", "y"], &["by", "table", "where", "fit", "bars", "confidence", "log", "joined", "overlay"])
+            }
+            Show::Histogram => plot(&["x"], &["table", "where", "bins"]),
+            Show::Box => plot(&["y"], &["by", "table", "where", "log"]),
+            Show::HeatMap => plot(&["x", "y", "value"], &["table", "where"]),
             Show::Dag => Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) },
         }
-    }
-
-    /// Whether it draws columns of the user's choice.
-    pub(super) fn is_plot(self) -> bool {
-        matches!(self, Show::Xy | Show::Curves | Show::Histogram | Show::Box | Show::HeatMap)
     }
 
     pub(super) fn name(self) -> String {

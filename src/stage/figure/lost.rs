@@ -7,21 +7,10 @@ use super::{Params, Show};
 use crate::artifact::results::Results;
 use crate::stage::StageError;
 
-/// The columns of the figure that must hold numbers.
-fn keys(show: Show) -> &'static [&'static str] {
-    match show {
-        Show::Xy => &["x", "y"],
-        Show::Histogram => &["x"],
-        Show::Box => &["y"],
-        Show::HeatMap => &["x", "y", "value"],
-        _ => &[],
-    }
-}
-
 /// Sentences on rows without a number, values that a logarithmic axis cannot show, and groups without the requested line.
 /// Other footnotes state runs without a result and runs that are not valid.
 pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String>, StageError> {
-    let keys = keys(params.show);
+    let [keys, _] = params.show.needs().keys;
     if keys.is_empty() {
         return Ok(Vec::new());
     }

@@ -32,6 +32,7 @@ mod flow;
 mod lost;
 mod model;
 mod own;
+mod parts;
 mod plot;
 mod run;
 mod solution;
@@ -163,7 +164,7 @@ impl Stage for Figure {
             found.push(Complaint::new("points", format!("{points} points is no size of text")).hint("4 to 30"));
         }
         found.extend(Plot::of(self).check(self.show, &|key| self.without_effect(key)));
-        if self.invalid == Some(Invalid::LeaveOut) && !self.show.draws_runs() {
+        if self.invalid == Some(Invalid::LeaveOut) && !self.show.needs().runs {
             found.push(self.without_effect("invalid"));
         }
         if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
@@ -179,7 +180,7 @@ impl Stage for Figure {
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
-        let plot = self.show.is_plot().then(|| Plot::of(self));
+        let plot = self.show.needs().is_plot().then(|| Plot::of(self));
         let labels = plot.as_ref().map(|plot| plot.labels(self.show, known.context, &self.names)).unwrap_or_default();
         let runs = if self.show == Show::Curves { curves::runs(self, known)? } else { curves::Runs::default() };
         let params = Params {

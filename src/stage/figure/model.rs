@@ -3,7 +3,8 @@
 use super::super::{StageError, artifact_kind};
 use super::source::{Source, Sources, pick, rows_of};
 use super::{Label, Params};
-use crate::artifact::statistics::{Anova, Coefficients, Domains, Residuals as StoredResiduals, Screening, Surfaces};
+use crate::artifact::statistics::{Anova, Residuals as StoredResiduals, Screening};
+use crate::artifact::surfaces::{Coefficients, Domains, Surfaces};
 use figure::Quantity;
 use figure::agreement::{Agreement, Cloud, Pair};
 use figure::axis::{fixed, significant};

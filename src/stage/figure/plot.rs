@@ -125,23 +125,9 @@ impl Plot {
         keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
     }
 
-    /// Keys that a figure needs, and further keys that it accepts.
-    fn keys(show: Show) -> (&'static [&'static str], &'static [&'static str]) {
-        match show {
-            Show::Xy => {
-                (&["x", "y"], &["by", "table", "where", "fit", "bars", "confidence", "log", "joined", "overlay"])
-            }
-            Show::Curves => (&[], &["x", "y", "by", "overlay"]),
-            Show::Histogram => (&["x"], &["table", "where", "bins"]),
-            Show::Box => (&["y"], &["by", "table", "where", "log"]),
-            Show::HeatMap => (&["x", "y", "value"], &["table", "where"]),
-            _ => (&[], &[]),
-        }
-    }
-
     /// Complaints about keys without effect, and keys that are missing.
     pub(super) fn check(&self, show: Show, idle: &dyn Fn(&str) -> Complaint) -> Vec<Complaint> {
-        let (needs, takes) = Self::keys(show);
+        let [needs, takes] = show.needs().keys;
         let given = self.given();
         let without = given.iter().filter(|key| !needs.contains(key) && !takes.contains(key)).map(|key| idle(key));
         let missing = needs.iter().filter(|key| !given.contains(key)).map(|key| {

@@ -2,6 +2,7 @@
 
 use super::super::StageError;
 use super::super::specimen::stored;
+use super::parts::{MM, groups, modes};
 use super::source::Sources;
 use super::{Params, space};
 use crate::artifact::run::{CrackMode, Cracks as StoredCracks, Curve as Stored, Run};
@@ -14,9 +15,6 @@ use figure::curve::{Curve, StressStrain};
 use figure::rose::Rose;
 use figure::specimen::{Outline, Specimen};
 use math::elementary::atan2;
-
-/// Metres to millimetres.
-pub(super) const MM: f64 = 1e3;
 
 pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<StressStrain, StageError> {
     let mut curves = Vec::new();
@@ -52,13 +50,6 @@ fn response(run: &Run, name: &str, unit: &str) -> Option<f64> {
     let at = run.responses.response.iter().position(|own| own == name)?;
     let value = Conversion::between(&run.responses.unit[at], unit).ok()?.of(run.responses.value[at]);
     Some(value).filter(|value| value.is_finite())
-}
-
-/// The modes that occur, in the order in which they are drawn, and the index of each crack's mode among them.
-pub(super) fn modes(cracks: &StoredCracks) -> (Vec<CrackMode>, Vec<usize>) {
-    let found: Vec<CrackMode> = CrackMode::ALL.into_iter().filter(|mode| cracks.mode.contains(mode)).collect();
-    let index = cracks.mode.iter().map(|own| found.iter().position(|mode| mode == own).unwrap_or(0)).collect();
-    (found, index)
 }
 
 /// Number of cracks of each mode up to each axial strain of the curve.
@@ -107,13 +98,6 @@ pub(super) fn specimen(sources: &Sources) -> Result<Box<dyn Picture>, StageError
         groups,
         outlines: outlines(&stored),
     }))
-}
-
-/// The group of each ball among those that occur, and their names, in the order of their numbers.
-pub(super) fn groups(stored: &StoredSpecimen) -> (Vec<usize>, Vec<String>) {
-    let used: Vec<i64> = (0..stored.groups.len() as i64).filter(|number| stored.group_of.contains(number)).collect();
-    let group = stored.group_of.iter().map(|own| used.iter().position(|number| number == own).unwrap_or(0)).collect();
-    (group, used.iter().map(|&number| stored.groups[number as usize].clone()).collect())
 }
 
 /// The frame of cracks and forces.

@@ -2,7 +2,7 @@
 
 use super::super::specimen::stored;
 use super::super::{StageError, shapes};
-use super::run::{MM, groups, modes};
+use super::parts::{MM, groups, modes};
 use super::source::Sources;
 use crate::artifact::run::Run;
 use crate::artifact::shapes::Shapes;

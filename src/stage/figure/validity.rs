@@ -8,17 +8,10 @@ use crate::artifact::results::Results;
 use crate::artifact::validity::{Verdict, faults, of_runs};
 use crate::artifact::{Artifact, ArtifactKind};
 
-impl Show {
-    /// Whether the figure draws the single runs of a table, so that some can be left out.
-    pub(super) fn draws_runs(self) -> bool {
-        matches!(self, Self::Xy | Self::Curves | Self::Histogram | Self::Box | Self::HeatMap | Self::Agreement)
-    }
-}
-
 impl Figure {
     /// The default: a figure of a table of runs treats them as statistics do, a figure of one run draws it.
     pub(super) fn choice(&self) -> Invalid {
-        self.invalid.unwrap_or(if self.show.draws_runs() { Invalid::LeaveOut } else { Invalid::Keep })
+        self.invalid.unwrap_or(if self.show.needs().runs { Invalid::LeaveOut } else { Invalid::Keep })
     }
 }
 
@@ -49,7 +42,7 @@ fn of_source(params: &Params, artifact: &Artifact) -> Result<Vec<String>, StageE
     if artifact.is(ArtifactKind::RESULTS) {
         let runs = Results::table(artifact)?;
         let judged = params.invalid.judge(runs)?;
-        let verdict = if params.show.draws_runs() { judged.verdict() } else { Verdict::NotValid };
+        let verdict = if params.show.needs().runs { judged.verdict() } else { Verdict::NotValid };
         return Ok(of_runs(runs, verdict));
     }
     if artifact.is(ArtifactKind::RUN) && params.invalid == Invalid::Refuse {

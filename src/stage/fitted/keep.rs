@@ -3,7 +3,7 @@
 use super::super::StageError;
 use super::unreadable;
 use crate::artifact::Artifact;
-use crate::artifact::statistics::{CodedFactors, CodedTerms, FittedModel, Surfaces};
+use crate::artifact::surfaces::{CodedFactors, CodedTerms, FittedModel, Surfaces};
 use math::scale::Scale;
 use ndarray::Array2;
 use stats::model::{Axis, Model};

@@ -4,7 +4,7 @@ use super::super::columns::Rows;
 use super::super::notes::Notes;
 use super::super::{Complaint, Context};
 use super::Fitting;
-use crate::artifact::statistics::{Paths, Predictions};
+use crate::artifact::surfaces::{Paths, Predictions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stats::canonical::steepest_path;

@@ -2,7 +2,7 @@
 
 use super::super::{Complaint, Context, Known, StageError};
 use super::Table;
-use crate::artifact::statistics::Surfaces;
+use crate::artifact::surfaces::Surfaces;
 use crate::artifact::{self, Artifact};
 use crate::unit::Unit;
 use schemars::JsonSchema;
