@@ -8,6 +8,11 @@ use super::panel::{Panel, draw_marker};
 use super::scene::{Fill, Path, Rect, Scene, Stroke};
 use super::{Figure, Style};
 
+/// Column of the data: name of the run.
+pub const RUN: &str = "run";
+/// Column of the data: best misfit so far.
+pub const BEST: &str = "best";
+
 /// One optimiser run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Descent {
@@ -68,9 +73,9 @@ impl Figure for Convergence {
         };
         let names = self.runs.iter().flat_map(|r| vec![r.name.clone(); r.effort.len()]).collect();
         let mut columns = vec![
-            Column::words("run", names),
+            Column::words(RUN, names),
             Column::reals(&self.effort.to_lowercase(), all(|r| &r.effort)),
-            Column::reals("best", all(|r| &r.best)),
+            Column::reals(BEST, all(|r| &r.best)),
         ];
         if self.runs.iter().any(|r| !r.median.is_empty()) {
             columns.push(Column::reals("median", all(|r| &r.median)));

@@ -12,6 +12,15 @@ use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Style};
 
+/// Column of the data: number of the curve, from 1.
+pub const CURVE: &str = "curve";
+/// Column of the data: axial strain.
+pub const AXIAL_STRAIN: &str = "axial_strain";
+/// Column of the data: axial stress.
+pub const AXIAL_STRESS: &str = "axial_stress";
+/// Column of the data: lateral strain.
+pub const LATERAL_STRAIN: &str = "lateral_strain";
+
 /// One test.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
@@ -80,12 +89,12 @@ impl Figure for StressStrain {
             |values: &[f64], rows: usize| (0..rows).map(|i| values.get(i).copied().unwrap_or(f64::NAN)).collect();
         let number = |(i, c): (usize, &Curve)| vec![i as i64 + 1; c.axial.len()];
         let mut columns = vec![
-            Column::whole("curve", self.curves.iter().enumerate().flat_map(number).collect()),
-            Column::reals("axial_strain", all(&|c| c.axial.clone())),
-            Column::reals("axial_stress", all(&|c| padded(&c.stress, c.axial.len()))).with_unit("MPa"),
+            Column::whole(CURVE, self.curves.iter().enumerate().flat_map(number).collect()),
+            Column::reals(AXIAL_STRAIN, all(&|c| c.axial.clone())),
+            Column::reals(AXIAL_STRESS, all(&|c| padded(&c.stress, c.axial.len()))).with_unit("MPa"),
         ];
         if self.has_lateral() {
-            columns.push(Column::reals("lateral_strain", all(&|c| padded(&c.lateral, c.axial.len()))));
+            columns.push(Column::reals(LATERAL_STRAIN, all(&|c| padded(&c.lateral, c.axial.len()))));
         }
         let mut modes: Vec<&String> = Vec::new();
         for (mode, _) in self.curves.iter().flat_map(|c| &c.cracks) {

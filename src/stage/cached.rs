@@ -4,8 +4,9 @@
 //! unchanged, the runner knows the key and the result of an old row without making its task, and a [`RunSummary`]: all
 //! that the gathered table needs of a run. Summaries only save work: the table is the same with them and without them.
 
+use super::StageError;
 use crate::artifact::run::{Outcome, Run};
-use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
+use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table, Values};
 use std::borrow::Cow;
 
 /// A run of an earlier campaign.
@@ -120,6 +121,21 @@ impl RunSummaries {
         let indices = Table::default().ints_column("index", "", indices);
         let summaries = Node::Bytes(self.to_bytes());
         Artifact::new("cached", 1, Group::new().with("indices", Node::Table(indices)).with("summaries", summaries))
+    }
+
+    /// Reads what [`RunSummaries::artifact`] wrote: indices among the inputs, and the summaries.
+    ///
+    /// # Errors
+    /// The artifact is another one.
+    pub fn of_artifact(cached: &Artifact) -> Result<(&[i64], Self), StageError> {
+        let indices = cached.table("indices").and_then(|table| table.column("index")).map(|column| &column.values);
+        match (indices, cached.root.get("summaries")) {
+            (Some(Values::Ints(indices)), Some(Node::Bytes(bytes))) => {
+                let summaries = Self::from_bytes(bytes).filter(|summaries| summaries.len() == indices.len());
+                Ok((indices, summaries.ok_or_else(|| StageError::new("the cached runs cannot be read"))?))
+            }
+            _ => Err(StageError::new("the cached runs hold no indices or no summaries")),
+        }
     }
 
     /// Length, texts as JSON, three numbers for each run, values; little-endian.

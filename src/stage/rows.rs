@@ -15,7 +15,7 @@ use super::{
 use crate::artifact::design::Design;
 use crate::artifact::results::{Results, Verdicts};
 use crate::artifact::run::{Outcome, Run};
-use crate::artifact::{Artifact, Column, Node, Table, Values};
+use crate::artifact::{Artifact, Column, Table};
 use crate::expression::Measure;
 use crate::unit::{Conversion, Dimension, Unit};
 use serde::{Deserialize, Serialize};
@@ -166,8 +166,12 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     let params: GatherParams = job.params()?;
     let design = job.input("design")?;
     let design = Design::table(design).map_err(StageError::from)?;
-    let cached =
-        job.inputs.iter().find(|(name, _)| name == "cached").map(|(_, cached)| cached_runs(cached)).transpose()?;
+    let cached = job
+        .inputs
+        .iter()
+        .find(|(name, _)| name == "cached")
+        .map(|(_, cached)| RunSummaries::of_artifact(cached))
+        .transpose()?;
     let results = all_responses(job, cached.as_ref())?;
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() };
     for name in &params.factors {
@@ -190,18 +194,6 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     });
     let verdicts = Verdicts { failures: each(|found| found.failure.to_owned()), checked };
     Ok(Results::of(table, verdicts).to_artifact())
-}
-
-/// Indices among the inputs of the task, and summaries, of the runs of earlier campaigns.
-fn cached_runs(cached: &Artifact) -> Result<(&[i64], RunSummaries), StageError> {
-    let indices = cached.table("indices").and_then(|table| table.column("index")).map(|column| &column.values);
-    match (indices, cached.root.get("summaries")) {
-        (Some(Values::Ints(indices)), Some(Node::Bytes(bytes))) => {
-            let summaries = RunSummaries::from_bytes(bytes).filter(|summaries| summaries.len() == indices.len());
-            Ok((indices, summaries.ok_or_else(|| StageError::new("the cached runs cannot be read"))?))
-        }
-        _ => Err(StageError::new("the cached runs hold no indices or no summaries")),
-    }
 }
 
 /// The summary of every run, loaded or cached, in the order of the rows.

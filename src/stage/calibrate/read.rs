@@ -222,7 +222,7 @@ pub(super) fn evaluation(
         let wanted = |stage: &str| from.get(&target.response).is_none_or(|own| own == stage);
         let mut givers = found.iter().filter(|(part, _)| wanted(part.stage));
         let value = match target.strain {
-            Some(strain) => match givers.find(|(part, _)| part.run.table("curve").is_some()) {
+            Some(strain) => match givers.find(|(part, _)| Run::curve_of(part.run).is_some()) {
                 Some((part, _)) => stress_at(part.run, strain)?.map(|stress| (stress, "Pa")),
                 None => return Err(StageError::new("no simulator stores a stress–strain curve")),
             },

@@ -6,6 +6,7 @@ use super::super::{Failure, Job, StageError, data};
 use super::plot::{Bars, Direction, Fit, Labels, Plot};
 use super::source::{Source, Sources};
 use super::{Label, Params};
+use crate::artifact::run::Run;
 use crate::artifact::{Column, Table, Values};
 use crate::unit::Conversion;
 use figure::Quantity;
@@ -295,7 +296,7 @@ pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bu
     let mut quantities: Option<[Quantity; 2]> = None;
     for (k, source) in sources.of.iter().enumerate() {
         // a run whose specimen failed has no curve
-        let Some(table) = source.0.table("curve") else { continue };
+        let Some(table) = Run::curve_of(source.0) else { continue };
         let every: Vec<usize> = (0..table.rows()).collect();
         // all curves in the units of the first
         let fixed = |key: &str, i: usize| -> Result<Label, StageError> {
