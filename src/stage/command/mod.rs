@@ -22,6 +22,7 @@
 //! the model alone.
 
 mod folder;
+mod json;
 pub mod leftover;
 mod number;
 mod read;

@@ -1,6 +1,7 @@
 //! How the texts on the validity of a run are read from the files of a program.
 
 use super::folder::{Folder, shown};
+use super::json;
 use super::read::{Source, from_csv};
 use crate::stage::Complaint;
 use regex_lite::Regex;
@@ -55,7 +56,7 @@ impl ReadText {
 
 /// The text, or the texts of the list, at the pointer.
 fn reasons_from_json(text: &str, pointer: &str) -> Result<Vec<String>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+    let value = json::parse(text)?;
     let word = |value: &Value| value.as_str().map(str::to_owned);
     let found = value.pointer(pointer).ok_or_else(|| format!("nothing at `{pointer}`"))?;
     let reasons = match found {
@@ -84,6 +85,7 @@ mod tests {
         assert_eq!(json(r#"{"v": null}"#), words(&[]));
         assert_eq!(json(r#"{"v": "rotation"}"#), words(&["rotation"]));
         assert_eq!(json(r#"{"v": ["rotation", ""]}"#), words(&["rotation", ""]));
+        assert_eq!(json(r#"{"E": NaN, "v": "rotation"}"#), words(&["rotation"]));
         for (text, told) in [(r#"{"v": false}"#, "`false`"), (r#"{"v": [1]}"#, "`[1]`"), ("{}", "nothing at")] {
             assert!(json(text).unwrap_err().contains(told), "{text}");
         }

@@ -45,7 +45,7 @@ fn responses<S: Space>(record: &TestRecord<S>, kind: TestKind) -> Vec<(&'static 
 
 /// Sentences on the rate of loading, and on why the run is not valid.
 fn warnings<S: Space>(record: &TestRecord<S>) -> Vec<String> {
-    let rate = record.judgement.warnings().into_iter().map(|warning| warning.to_string());
+    let rate = record.judgement.warning().into_iter().map(|warning| warning.to_string());
     rate.chain(record.invalid().map(|check| format!("{}{check}", Run::NOT_VALID))).collect()
 }
 
