@@ -203,6 +203,6 @@ impl Kind for Calibrate {
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
     const CLASS: Class = Class::Calibration;
-    // 5: proportional corrections go on after a run without the response
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 5, run: solve::solve }];
+    // 6: beyond its end a curve falls; a run without a peak has the ordinates that its curve reaches. 5: proportional corrections go on after a run without the response
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 6, run: solve::solve }];
 }
