@@ -14,7 +14,7 @@ const ALLOWED: f64 = 0.499;
 /// Way over the margin from which a ball is looked up anew together with those that must be.
 const DUE: f64 = 0.2;
 /// Share of the balls above which all are looked up anew.
-const MANY: f64 = 0.1;
+const MANY: f64 = 0.3;
 
 /// The list, and where the balls were when it was made.
 pub(super) struct Vicinity<S: Space> {
