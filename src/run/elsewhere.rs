@@ -75,7 +75,7 @@ mod tests {
         for met in 0..20 {
             let elsewhere = Elsewhere { met, ..Elsewhere::default() };
             let mut ready = Queue::default();
-            [3, 4, 9, 11].into_iter().for_each(|node| ready.put(node, 0.0));
+            [3, 4, 9, 11].into_iter().for_each(|node| ready.put(node));
             let mut taken: Vec<NodeId> = std::iter::from_fn(|| elsewhere.next(&mut ready)).collect();
             if met == 0 {
                 assert_eq!(taken, [3, 4, 9, 11]);

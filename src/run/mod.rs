@@ -264,7 +264,7 @@ impl Loop<'_, '_> {
         }
         self.listen();
         // What they have finished is found when it is started.
-        self.elsewhere.over().into_iter().for_each(|node| self.ready.put_back(node));
+        self.elsewhere.over().into_iter().for_each(|node| self.ready.put(node));
         if let Some((node, holder)) = self.elsewhere.first().filter(|_| self.running == 0) {
             let (stage, row) = (&self.workflow.stages[self.board.stage(node)].name, self.board.row(node));
             let progress = Progress::note(format!("waits for {holder}"));
@@ -346,12 +346,12 @@ impl Loop<'_, '_> {
                 continue;
             }
             if ended.is_none() && self.forced(node) {
-                self.make_ready(node);
+                self.ready.put(node);
                 continue;
             }
             match self.store.find(&key) {
                 Ok(Some(record)) => open.extend(self.board.done(node, record.content, ended.is_none())),
-                Ok(None) => self.make_ready(node),
+                Ok(None) => self.ready.put(node),
                 Err(error) => {
                     self.fatal.get_or_insert(error);
                 }
@@ -365,30 +365,12 @@ impl Loop<'_, '_> {
         self.settings.again.contains(stage)
     }
 
-    /// Puts a node into the queue, with the time that its row took in earlier runs.
-    fn make_ready(&mut self, node: NodeId) {
-        if self.settings.dry {
-            return self.ready.put(node, 0.0);
-        }
-        let (stage, row) = (self.board.stage(node), self.board.row(node));
-        if !self.row_seconds.contains_key(&stage) {
-            let read = self.past().and_then(|past| past.row_seconds(&self.workflow.stages[stage].name));
-            self.row_seconds.insert(stage, read);
-        }
-        let seconds = self.row_seconds[&stage].as_ref().map_or(0.0, |rows| rows.of(row));
-        self.ready.put(node, seconds);
-    }
-
-    /// Earlier runs of the workflow.
-    fn past(&self) -> Option<&Past<'_>> {
-        self.past.get_or_init(|| Past::of(self.workflow, self.store).ok()).as_ref()
-    }
-
     fn start(&mut self) {
         if self.again || self.ends() {
             return;
         }
         self.hand_over();
+        self.rank();
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
             if !self.licences.admits(node, self.board.task(node).at_once.as_ref()) {
@@ -452,7 +434,7 @@ impl Loop<'_, '_> {
             self.running -= 1;
         }
         let free = self.licences.release(node, self.board.task(node).at_once.as_ref());
-        free.into_iter().for_each(|node| self.ready.put_back(node));
+        free.into_iter().for_each(|node| self.ready.put(node));
         let failure = match answer.result {
             Ok(task::Outcome::Elsewhere(waiting)) => {
                 self.board.stopped(node);

@@ -6,6 +6,7 @@
 //! never what it is.
 
 use super::board::NodeId;
+use super::{Loop, Past};
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, HashMap};
 
@@ -14,21 +15,39 @@ use std::collections::{BTreeSet, HashMap};
 pub(super) struct Queue {
     nodes: BTreeSet<NodeId>,
     longest: BTreeSet<(Reverse<u64>, NodeId)>,
-    /// Milliseconds that each node was expected to take, also after it was taken: it may come back.
+    /// Milliseconds that each node is expected to take, also after it was taken: it may come back.
     expected: HashMap<NodeId, u64>,
+    /// Those of which nobody has said yet how long they take.
+    unknown: Vec<NodeId>,
 }
 
 impl Queue {
-    /// Adds a node that is expected to take this long, in seconds.
-    pub(super) fn put(&mut self, node: NodeId, seconds: f64) {
-        self.expected.insert(node, (1e3 * seconds) as u64);
-        self.put_back(node);
-    }
-
-    /// Adds a node that was here before.
-    pub(super) fn put_back(&mut self, node: NodeId) {
+    /// Adds a node.
+    pub(super) fn put(&mut self, node: NodeId) {
         self.nodes.insert(node);
         self.longest.insert(self.entry(node));
+        if !self.expected.contains_key(&node) {
+            self.unknown.push(node);
+        }
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The nodes of which nobody has said yet how long they take; each is given out once.
+    pub(super) fn unknown(&mut self) -> Vec<NodeId> {
+        std::mem::take(&mut self.unknown)
+    }
+
+    /// Says how long a node is expected to take, in seconds.
+    pub(super) fn expect(&mut self, node: NodeId, seconds: f64) {
+        let waits = self.longest.remove(&self.entry(node));
+        self.expected.insert(node, (1e3 * seconds) as u64);
+        if waits {
+            self.longest.insert(self.entry(node));
+        }
     }
 
     /// Takes a node out.
@@ -62,6 +81,30 @@ impl Queue {
     }
 }
 
+impl Loop<'_, '_> {
+    /// Tells the queue how long its nodes take, where there is a choice among them.
+    pub(super) fn rank(&mut self) {
+        if self.ready.len() <= self.pool.count() {
+            return;
+        }
+        for node in self.ready.unknown() {
+            let (stage, row) = (self.board.stage(node), self.board.row(node));
+            if !self.row_seconds.contains_key(&stage) {
+                let read = self.past().and_then(|past| past.row_seconds(&self.workflow.stages[stage].name));
+                self.row_seconds.insert(stage, read);
+            }
+            if let Some(rows) = &self.row_seconds[&stage] {
+                self.ready.expect(node, rows.of(row));
+            }
+        }
+    }
+
+    /// Earlier runs of the workflow.
+    pub(super) fn past(&self) -> Option<&Past<'_>> {
+        self.past.get_or_init(|| Past::of(self.workflow, self.store).ok()).as_ref()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,11 +113,12 @@ mod tests {
     fn the_longest_is_taken_first_and_equals_in_the_order_of_the_board() {
         let mut queue = Queue::default();
         for (node, seconds) in [(0, 0.0), (1, 2.5), (2, 60.0), (3, 2.5), (4, 0.0), (5, 61.0)] {
-            queue.put(node, seconds);
+            queue.put(node);
+            queue.expect(node, seconds);
         }
         queue.remove(5);
         let first = queue.take_longest();
-        queue.put_back(2);
+        queue.put(2);
         assert_eq!((first, queue.take_longest()), (Some(2), Some(2)));
         assert_eq!(queue.iter().collect::<Vec<_>>(), [0, 1, 3, 4]);
         let rest: Vec<NodeId> = std::iter::from_fn(|| queue.take_longest()).collect();
@@ -88,7 +132,8 @@ mod tests {
         let seconds = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 40.0];
         let end = |expected: &dyn Fn(usize) -> f64| {
             let mut queue = Queue::default();
-            (0..seconds.len()).for_each(|node| queue.put(node, expected(node)));
+            (0..seconds.len()).for_each(|node| queue.put(node));
+            queue.unknown().into_iter().for_each(|node| queue.expect(node, expected(node)));
             let mut free = [0.0_f64; 2];
             while let Some(node) = queue.take_longest() {
                 free.sort_by(f64::total_cmp);

@@ -233,7 +233,7 @@ impl PackingError {
 pub const MOST_BALLS: f64 = 5e6;
 /// Mean unbalanced force over the mean contact force that counts as rest at a fixed porosity.
 pub(super) const REST: f64 = 1e-3;
-pub(super) const AT_REST: Until = Until { unbalanced: REST, slack: 0.0, iterations: 40_000, margin: 0.25 };
+pub(super) const AT_REST: Until = Until { unbalanced: REST, slack: 0.0, iterations: 40_000, margin: 0.5 };
 const MOST_ROUNDS: usize = 30;
 /// Factor on a floater's radius in one round.
 const GROWTH: f64 = 1.02;
