@@ -14,10 +14,9 @@
 //! lets [`LEAST_TRANSITS`] waves run through the height within the reference strain. Speed grows twofold in a transit at
 //! most, so that the lateral motion follows, and falls at once.
 //!
-//! At f times the slow speed the local damping is α/f, α what the test sets. Local damping opposes the mean motion wherever the
-//! forces on a particle fluctuate; this drag grows with the speed, and a drag that changes within the window of the tangent
-//! modulus (40 to 60 % of the peak) is read as stiffness. With α/f it is that of the slow speed all the time.
-//!
+//! Above [`CALM`] times the slow speed the local damping is [`FAST_DAMPING`] instead of what the test sets. Local damping
+//! opposes the mean motion wherever the forces on a particle fluctuate; this drag grows with the speed, lags the lateral
+//! strain by 1 % and raises the tangent modulus by 2 % at ten times 0.02 m/s. With a tenth of damping neither is seen.
 //! Behind the peak, where the stress has fallen below [`PAST`] of the largest, the speed is at least [`AFTER`] times the slow
 //! one where damage is spread: strength, moduli and cracks at the peak are known by then.
 //!
@@ -27,6 +26,18 @@
 //! The weakest, which a wave crosses least often before they break, save least. The shift of the tangent modulus comes with
 //! cracks between 40 and 60 % of the peak, and the record after the peak holds some 15 % more cracks. Published campaigns
 //! therefore stay at their fixed speed.
+//!
+//! Small rocks (2,700 spheres, 3,900 discs, strengths of 15 and 30 MPa that scatter by a fifth, eight pairs each):
+//!
+//! | test | steps | strength | tangent E | secant E | ν | cracks at the peak |
+//! |---|---|---|---|---|---|---|
+//! | compression, space | 0.33 | 0.997 ± 0.002 | 1.0001 ± 0.0004 | 0.9997 ± 0.0004 | 0.9985 ± 0.0011 | 1.05 ± 0.06 |
+//! | compression, plane | 0.25 | 0.988 ± 0.006 | 1.0030 ± 0.0009 | 1.0013 ± 0.0011 | 0.9993 ± 0.0012 | 0.93 ± 0.10 |
+//! | tension, space | 0.47 | 1.001 ± 0.001 | 0.9936 ± 0.0017 | 0.9995 ± 0.0003 | 1.008 ± 0.001 | 1.00 ± 0.02 |
+//! | tension, plane | 0.39 | 0.999 ± 0.001 | 0.991 ± 0.001 | 1.0015 ± 0.0008 | 0.994 ± 0.002 | 0.99 ± 0.05 |
+//!
+//! So in tension the strength is right and the secant modulus, but not the tangent: less than two waves cross the piece
+//! between 40 and 60 % of the peak. Take `E_secant` there, or a fixed speed. `benches/pace.rs` makes such pairs.
 //!
 //! A change of speed multiplies every velocity, of platens and particles alike ([`Engine::scale_motion`]): at a quasi-static
 //! pace the field of velocities is proportional to the speed of the platens, so no shock runs through the piece. Everything
@@ -43,9 +54,7 @@ pub enum Pace {
     /// One speed from start to end.
     #[default]
     Fixed,
-    /// The speed is the slow one; the piece is loaded faster while nothing breaks. The number counts the changes of the rule,
-    /// so that results of different rules have different task texts.
-    #[serde(rename = "adaptive-2")]
+    /// The speed is the slow one; the piece is loaded faster while nothing breaks.
     Adaptive,
 }
 
@@ -55,6 +64,10 @@ const SLOW_DAMAGE: f64 = 0.12;
 const MEMORY: f64 = 0.02;
 /// Wave transits of the height within the reference strain at the fast speed.
 const LEAST_TRANSITS: f64 = 8.0;
+/// Factor on the slow speed above which the damping is that of fast loading.
+const CALM: f64 = 3.0;
+/// Local damping of fast loading, unless the test asks for less.
+const FAST_DAMPING: f64 = 0.1;
 /// Share of the largest stress below which the peak is past.
 const PAST: f64 = 0.9;
 /// Least factor on the slow speed behind the peak.
@@ -111,8 +124,11 @@ impl Governor {
     pub(super) fn look<S: Space>(&mut self, engine: &mut Engine<S>, strain: f64, share: f64) -> Result<(), Faults> {
         let next = self.next(strain, engine.time(), engine.cracks().len());
         let wanted = if share < PAST { next.max(self.after) } else { next };
+        let damping = if wanted > CALM { self.damping.min(FAST_DAMPING) } else { self.damping };
+        if damping != engine.settings().damping {
+            engine.set_damping(damping)?;
+        }
         if wanted != self.factor {
-            engine.set_damping(self.damping / wanted)?;
             engine.scale_motion(wanted / self.factor)?;
             self.factor = wanted;
         }
