@@ -235,7 +235,7 @@ mod tests {
         let mut vicinity = Vicinity::new(&heap, margin, 1.0);
         let (mut partly, mut wholly) = (0, 0);
         for round in 0..400 {
-            let pace = if round % 50 == 49 { 0.1 } else { 0.002 } * radius;
+            let pace = if round % 50 == 49 { 0.5 } else { 0.002 } * radius;
             let mut way = 0.0_f64;
             for (i, x) in heap.centres.iter_mut().enumerate().skip(still) {
                 let step = if i % 40 == 0 { 0.1 * radius } else { pace };
