@@ -22,6 +22,7 @@
 //! * **Nothing of the site is in a key.** A result does not depend on where its task ran.
 
 pub mod line;
+pub mod lists;
 pub mod message;
 pub mod post;
 pub mod scheduler;

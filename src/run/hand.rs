@@ -67,8 +67,9 @@ impl Loop<'_, '_> {
         let read = || past.and_then(|past| past.most_seconds(stage));
         let seconds = *self.most_seconds.entry(stage.clone()).or_insert_with(read);
         let line = Line::new(self.board.task(node), &key, stage, &inputs, seconds);
-        if let Some(far) = &mut self.far {
-            far.put(stage, key, line);
+        let put = self.far.as_mut().map(|far| far.put(stage, key, &line));
+        if let Some(Err(error)) = put {
+            self.refused.get_or_insert(error.to_string());
         }
         Ok(())
     }

@@ -48,7 +48,7 @@ use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
 use crate::store::{ObjectId, Store, StoreError};
-use board::{Board, NodeId};
+use board::{Board, ByKey, NodeId};
 use elsewhere::Elsewhere;
 use far::Far;
 use licences::Licences;
@@ -126,7 +126,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &d
             elsewhere: Elsewhere::default(),
             licences: Licences::default(),
             far,
-            far_nodes: HashMap::new(),
+            far_nodes: ByKey::default(),
             past: cluster.and_then(|_| Past::of(workflow, store).ok()),
             most_seconds: HashMap::new(),
             refused,
@@ -196,7 +196,7 @@ struct Loop<'pool, 'env> {
     licences: Licences,
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
-    far_nodes: HashMap<Key, NodeId>,
+    far_nodes: ByKey,
     /// Earlier runs, where tasks go to workers: a worker learns how long a task may take.
     past: Option<Past<'env>>,
     /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.

@@ -176,6 +176,11 @@ impl Queue {
         self.sealed(list_name(number))
     }
 
+    /// The error that a list which was there is not, or has lost a line.
+    pub fn lacks(&self, number: usize) -> StoreError {
+        self.fail("read", &list_name(number), ErrorKind::NotFound.into())
+    }
+
     /// The note on submission number `number`; none when there is none.
     ///
     /// # Errors
