@@ -143,6 +143,11 @@ impl<'a> Far<'a> {
         self.site.sends(stage, far)
     }
 
+    /// Whether workers were never asked for.
+    pub(super) fn is_unused(&self) -> bool {
+        self.posts.is_empty()
+    }
+
     /// Whether a task was handed over already.
     pub(super) fn has(&self, key: &Key) -> bool {
         self.handed.contains_key(key)

@@ -82,6 +82,12 @@ pub enum StoreError {
         /// What it is.
         why: String,
     },
+    /// The attached remote cannot be read.
+    #[error("{why}; `flow store detach` goes on without this remote")]
+    Far {
+        /// Which one, and why.
+        why: String,
+    },
     /// Any other fault of the operating system.
     #[error("could not {doing} {}: {source}", path.display())]
     Io {
@@ -119,17 +125,35 @@ pub enum StoreError {
 
 /// A file of the store that is not what was written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{} is damaged: {why}; {}; the next run computes it again", path.display(),
-    aside.as_ref().map_or("it could not be set aside".to_owned(), |p| format!("it was set aside as {}", p.display()))
-)]
+#[error("{} is damaged: {why}; {aside}; the next run computes it again", path.display())]
 pub struct Damage {
     /// The object.
     pub path: PathBuf,
     /// How it differs from what was written.
     pub why: String,
-    /// Where it was moved; nothing when the store cannot be written.
-    pub aside: Option<PathBuf>,
+    /// Where it is now.
+    pub aside: Aside,
+}
+
+/// What became of a damaged file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Aside {
+    /// It was moved to this path.
+    Moved(PathBuf),
+    /// It is where it was: the store cannot be written.
+    Stays,
+    /// It is in a remote, and was not taken from there.
+    NotTaken,
+}
+
+impl std::fmt::Display for Aside {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Moved(path) => write!(f, "it was set aside as {}", path.display()),
+            Self::Stays => write!(f, "it could not be set aside"),
+            Self::NotTaken => write!(f, "it was not taken"),
+        }
+    }
 }
 
 impl StoreError {

@@ -9,6 +9,7 @@
 //!   runs/N.json                 what a campaign did                                     campaign.rs
 //!   locks/*.lock                tasks being computed now                                lock.rs
 //!   queue/ID/…                  tasks for the workers of a cluster, and their reports    queue.rs
+//!   remote/                     segments of far remotes, and which remote is attached    remote.rs, attached.rs
 //!   aside/                      damaged files that were found and replaced
 //!   listing-…                   names of the objects, so that the folders need not be listed    presence.rs
 //! ```
@@ -23,6 +24,7 @@
 //! of one task none is believed: it is computed again, and the other goes aside. So whatever is lost, damaged or forged is
 //! found, computed again or refused, and no clock decides anything.
 
+mod attached;
 mod cache;
 mod campaign;
 mod claim;
@@ -43,15 +45,17 @@ mod origin;
 mod presence;
 mod prove;
 mod queue;
+mod read;
 mod record;
 mod remote;
 mod root;
 mod verify;
 
+pub use attached::Attachment;
 pub use campaign::{Campaign, StageRun};
 pub use claim::Claim;
 pub use clean::{Amount, Swept, Usage};
-pub use error::{Damage, StoreError};
+pub use error::{Aside, Damage, StoreError};
 pub use hdf5::Hdf5Error;
 pub use located::Located;
 pub use lock::{Guard, Holder, Waiting};
@@ -61,21 +65,20 @@ pub use object::ObjectId;
 pub use origin::Origin;
 pub use queue::{LookedAfter, Queue, ReportFile};
 pub use record::{Record, Timing};
-pub use remote::{Mirrored, Pulled, Pushed, RemoteError, Signing, Trust, mirror};
+pub use remote::{Address, Mirrored, Pulled, Pushed, RemoteError, Signing, Trust, mirror};
 pub use verify::Verdict;
 
-use crate::artifact::{Artifact, ContentHash, Key};
+use crate::artifact::Key;
+use attached::Attached;
 use cache::Cache;
 use disk::Disk;
 use journal::{Index, Segments};
-use object::Seal;
 use presence::Presence;
-use prove::Proven;
-use record::{milliseconds, moment};
+use record::milliseconds;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::SystemTime;
 
 /// An open store. All methods take `&self` and may be called from many threads.
 pub struct Store {
@@ -90,6 +93,7 @@ pub struct Store {
     damages: Mutex<Vec<Damage>>,
     /// Tasks with two different results, each said once.
     contradictions: Mutex<HashSet<Key>>,
+    attached: OnceLock<Option<Mutex<Attached>>>,
     in_use: Option<lock::Held>,
 }
 
@@ -121,6 +125,7 @@ impl Store {
             presence: Mutex::default(),
             damages: Mutex::default(),
             contradictions: Mutex::default(),
+            attached: OnceLock::new(),
             in_use,
         })
     }
@@ -148,105 +153,6 @@ impl Store {
     /// The folder of the store.
     pub fn root(&self) -> &Path {
         &self.disk.root
-    }
-
-    /// The record of a finished task whose object is in the store: one that this user's own flow wrote, or one that the
-    /// object proves. None of a task with two different results, which is to be computed again.
-    ///
-    /// # Errors
-    /// The store cannot be read.
-    pub fn find(&self, key: &Key) -> Result<Option<Record>, StoreError> {
-        let records = locked(self.index()?).of_task(key);
-        let (own, others): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|record| record.own);
-        let mut sound = Vec::new();
-        for record in own {
-            sound.extend(self.has(&record.object())?.then_some(record));
-        }
-        if sound.is_empty() {
-            for record in others {
-                if self.has(&record.object())? {
-                    sound.extend(self.proven(&record)?);
-                }
-            }
-        }
-        if sound.is_empty() {
-            // Its record may be lost.
-            let names = locked(&self.presence).names_of_task(&self.disk, &self.mark, key)?;
-            for name in names {
-                let proven = self.if_sound(prove::named(&self.disk, &name))?.filter(|proven| proven.id.key == *key);
-                sound.extend(proven.map(|proven| self.record_again(&proven.id, proven.seal)));
-            }
-        }
-        match sound.len() {
-            0 | 1 => Ok(sound.pop()),
-            _ => {
-                locked(&self.contradictions).insert(*key);
-                Ok(None)
-            }
-        }
-    }
-
-    /// How long a task took, as its record says: for estimates, so nothing is proven.
-    ///
-    /// # Errors
-    /// The journals cannot be read.
-    pub fn seconds(&self, key: &Key) -> Result<Option<f64>, StoreError> {
-        let records = locked(self.index()?).of_task(key);
-        Ok(records.iter().max_by_key(|record| record.own).map(|record| record.seconds))
-    }
-
-    /// Whether all these objects are in the store; that they are sound is seen when they are read.
-    ///
-    /// # Errors
-    /// The folders cannot be listed.
-    pub fn has_all(&self, objects: &[ObjectId]) -> Result<bool, StoreError> {
-        let mut presence = locked(&self.presence);
-        presence.expect(&self.disk, &self.mark, objects.len())?;
-        Ok(objects.iter().all(|object| presence.contains(&self.disk, object)))
-    }
-
-    fn has(&self, object: &ObjectId) -> Result<bool, StoreError> {
-        self.has_all(&[*object])
-    }
-
-    /// The artifact with this content.
-    ///
-    /// # Errors
-    /// [`StoreError::Missing`] or [`StoreError::Damaged`] (see [`StoreError::is_missing`]): compute it again. Any
-    /// other: the store cannot be read.
-    pub fn get(&self, content: &ContentHash) -> Result<Arc<Artifact>, StoreError> {
-        if let Some(artifact) = locked(&self.cache).get(content) {
-            return Ok(artifact);
-        }
-        let mut failure = StoreError::Missing { content: *content };
-        for record in locked(self.index()?).with_content(content) {
-            match self.read(&record) {
-                Ok(proven) => return Ok(self.cached(*content, proven.artifact)),
-                Err(error) => failure = error,
-            }
-        }
-        // Its record may be lost, or not be read yet: its name says what it is.
-        for name in object::with_content(&self.disk, content) {
-            if let Some(proven) = self.if_sound(prove::named(&self.disk, &name))? {
-                self.record_again(&proven.id, proven.seal);
-                return Ok(self.cached(*content, proven.artifact));
-            }
-        }
-        Err(failure)
-    }
-
-    fn cached(&self, content: ContentHash, artifact: Artifact) -> Arc<Artifact> {
-        let artifact = Arc::new(artifact);
-        locked(&self.cache).put(content, artifact.clone());
-        artifact
-    }
-
-    /// The text of a finished task, from its object.
-    ///
-    /// # Errors
-    /// As [`Store::get`].
-    pub fn task_text(&self, record: &Record) -> Result<String, StoreError> {
-        Ok(self.read(record)?.text)
     }
 
     /// The memo of a stage that this user's own flow made. Its objects may be gone: ask [`Store::has_all`].
@@ -305,61 +211,6 @@ impl Store {
     /// The damaged files found since the last call, for the report of a run.
     pub fn take_damages(&self) -> Vec<Damage> {
         std::mem::take(&mut locked(&self.damages))
-    }
-
-    /// The object of a record, proven.
-    fn read(&self, record: &Record) -> Result<Proven, StoreError> {
-        let id = record.object();
-        let seal = record.own.then_some(&record.seal);
-        self.noted(&id, prove::object(&self.disk, &id, seal))
-    }
-
-    /// The record of somebody else, as one's own when its object proves it.
-    fn proven(&self, record: &Record) -> Result<Option<Record>, StoreError> {
-        Ok(self.if_sound(self.read(record))?.map(|proven| self.own(record, proven.seal)))
-    }
-
-    /// The record of somebody else, whose object was proven just now, as one's own.
-    fn own(&self, record: &Record, seal: Seal) -> Record {
-        let timing = Timing { started: moment(record.started), seconds: record.seconds };
-        self.remember(self.marked(&record.object(), seal, &timing, record.origin.clone()))
-    }
-
-    /// A record of an object that had none.
-    fn record_again(&self, id: &ObjectId, seal: Seal) -> Record {
-        let timing = Timing { started: UNIX_EPOCH, seconds: 0.0 };
-        self.remember(self.marked(id, seal, &timing, Arc::default()))
-    }
-
-    /// Records what was proven, so that it need not be proven again. Where the store cannot be written, it is known to
-    /// this process alone.
-    fn remember(&self, record: Record) -> Record {
-        let _ = locked(&self.segments).append(&self.disk, &record, false);
-        if let Some(index) = self.index.get() {
-            locked(index).add(&record);
-        }
-        locked(&self.presence).add(&record.object());
-        record
-    }
-
-    /// Notes the damage that reading an object has met.
-    fn noted<T>(&self, id: &ObjectId, result: Result<T, StoreError>) -> Result<T, StoreError> {
-        if let Err(error) = &result {
-            if let StoreError::Damaged { fault } = error {
-                locked(&self.damages).push(fault.clone());
-            }
-            locked(&self.presence).remove(id);
-        }
-        result
-    }
-
-    /// What is missing or was damaged is nothing; any other error stays.
-    fn if_sound<T>(&self, result: Result<T, StoreError>) -> Result<Option<T>, StoreError> {
-        match result {
-            Ok(sound) => Ok(Some(sound)),
-            Err(StoreError::Missing { .. } | StoreError::Damaged { .. }) => Ok(None),
-            Err(error) => Err(error),
-        }
     }
 
     /// The journals, read when they are first asked for.

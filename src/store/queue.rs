@@ -18,14 +18,16 @@
 //! inside the job script, and that the next submitter of the same user derives again. Whoever else can write to a shared
 //! store cannot make a worker run a program. Reports carry no results, so a forged one costs time only.
 
+mod report;
+
+pub use report::ReportFile;
+
 use super::disk::Disk;
-use super::folder::{self, Folder, Strange};
+use super::folder::{self, Folder};
 use super::lock::Held;
 use super::{Store, StoreError};
-use std::fs::File;
-use std::io::{ErrorKind, Read, Seek, SeekFrom};
+use std::io::ErrorKind;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Folder of the queues.
 pub(super) const FOLDER: &str = "queue";
@@ -34,10 +36,6 @@ const CLOSED: &str = "closed";
 const SUBMITTER: &str = "submitter.lock";
 /// The largest list that is read.
 const MOST_LIST: u64 = 1 << 32;
-/// Bytes of a report that are read at once.
-const MOST_NEWS: u64 = 1 << 22;
-/// Room that a report has from the start, so that it can say that the disk is full.
-const ROOM: u64 = 1 << 14;
 
 /// Whether flow makes a folder of this name in this folder of a store.
 pub(super) fn is_folder(folder: &str, name: &str) -> bool {
@@ -275,69 +273,6 @@ impl Queue {
             Ok(()) | Err(std::fs::TryLockError::Error(_)) => Some(LookedAfter(Held(file))),
         }
     }
-
-    /// A new report, locked while this process lives.
-    ///
-    /// # Errors
-    /// The store cannot be written.
-    pub fn report(&self, name: &str) -> Result<ReportFile, StoreError> {
-        let name = format!("worker-{name}.jsonl");
-        let file = self.folder()?.create(&name, 0o644).map_err(|error| self.fail("create", &name, error))?;
-        // Readers hold it for a moment only. An error: a file system without locks.
-        let _ = file.lock();
-        // A file system that cannot sets nothing aside.
-        let _ = rustix::fs::fallocate(&file, rustix::fs::FallocateFlags::KEEP_SIZE, 0, ROOM);
-        Ok(ReportFile {
-            file: Held(file),
-            path: self.disk.path(&self.inside, &name),
-            disk: Arc::new(self.disk.clone()),
-        })
-    }
-
-    /// Names of the workers' reports.
-    ///
-    /// # Errors
-    /// The store cannot be read.
-    pub fn reports(&self) -> Result<Vec<String>, StoreError> {
-        let mut names = Vec::new();
-        let is_report = |name: &str| name.starts_with("worker-") && name.ends_with(".jsonl");
-        let listed = self.folder()?.list(|name, _| names.extend(is_report(name).then(|| name.to_owned())));
-        listed.map_err(|error| self.fail("list", "", error))?;
-        names.sort_unstable();
-        Ok(names)
-    }
-
-    /// The whole lines that a report has from byte `from` on, their length, and whether its worker holds its lock.
-    ///
-    /// # Errors
-    /// The store cannot be read.
-    pub fn news(&self, report: &str, from: u64) -> Result<(String, u64, bool), StoreError> {
-        let read = |file: &mut File| -> std::io::Result<(String, u64, bool)> {
-            folder::ask_anew(&*file);
-            // Asked before reading: what a dead worker has written is all there is.
-            let held = matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock));
-            if !held {
-                let _ = file.unlock();
-            }
-            file.seek(SeekFrom::Start(from))?;
-            let mut bytes = Vec::new();
-            file.take(MOST_NEWS).read_to_end(&mut bytes)?;
-            let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-            bytes.truncate(whole);
-            Ok((String::from_utf8_lossy(&bytes).into_owned(), whole as u64, held))
-        };
-        match self.folder()?.open(report, false).and_then(|mut file| read(&mut file)) {
-            Err(error) if Strange::is(&error) => Ok((String::new(), 0, false)),
-            other => other.map_err(|error| self.fail("read", report, error)),
-        }
-    }
-
-    /// The last line of what a job has printed, for the reader of an error.
-    pub fn last_words(&self, log: &str) -> Option<String> {
-        let text = self.folder().ok()?.read(log, MOST_NEWS).ok()?;
-        let text = String::from_utf8_lossy(&text);
-        text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(|line| line.chars().take(300).collect())
-    }
 }
 
 fn list_name(number: usize) -> String {
@@ -348,89 +283,5 @@ fn round_name(number: usize) -> String {
     format!("round-{number:04}.json")
 }
 
-/// The report of a worker.
-pub struct ReportFile {
-    file: Held,
-    path: PathBuf,
-    disk: Arc<Disk>,
-}
-
-impl ReportFile {
-    /// Appends one line.
-    ///
-    /// # Errors
-    /// The store cannot be written.
-    pub fn say(&mut self, line: &str) -> Result<(), StoreError> {
-        let written = folder::write(&self.file.0, format!("{line}\n").as_bytes());
-        written.map_err(|error| self.disk.fail("write", &self.path, error))
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::store::Mark;
-
-    fn store(folder: &std::path::Path) -> Store {
-        Store::open_as(&folder.join("store"), Mark::of(&[1; 32])).unwrap()
-    }
-
-    #[test]
-    fn a_task_is_begun_once() {
-        let folder = tempfile::tempdir().unwrap();
-        let queue = store(folder.path()).make_queue("q-1").unwrap();
-        assert!(queue.begin(3).unwrap());
-        assert!(!queue.begin(3).unwrap());
-        assert_eq!(queue.begun().unwrap(), [3]);
-    }
-
-    #[test]
-    fn a_list_of_anybody_else_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = store(folder.path());
-        let queue = store.make_queue("q-1").unwrap();
-        assert_eq!(queue.list(1).unwrap(), None);
-        queue.put_list(1, "a\nb\n").unwrap();
-        assert_eq!(queue.list(1).unwrap().as_deref(), Some("a\nb\n"));
-        assert!(queue.put_list(1, "c\n").is_err(), "a list is written once");
-        let other = store.queue("q-1", Some([7; 32])).list(1).unwrap_err().to_string();
-        assert!(other.contains("not the list that was submitted"), "{other}");
-        // The list of one number does not stand in for that of another.
-        std::fs::copy(queue.path().join("tasks-0001.jsonl"), queue.path().join("tasks-0002.jsonl")).unwrap();
-        assert!(queue.list(2).is_err());
-    }
-
-    #[test]
-    fn reports_are_read_line_by_line_and_tell_whether_their_worker_lives() {
-        let folder = tempfile::tempdir().unwrap();
-        let queue = store(folder.path()).make_queue("q-1").unwrap();
-        let mut report = queue.report("a").unwrap();
-        report.say("one").unwrap();
-        let names = queue.reports().unwrap();
-        assert_eq!(queue.news(&names[0], 0).unwrap(), ("one\n".to_owned(), 4, true));
-        assert_eq!(queue.news(&names[0], 4).unwrap(), (String::new(), 0, true));
-        folder::write(&report.file.0, b"torn").unwrap();
-        drop(report);
-        assert_eq!(queue.news(&names[0], 4).unwrap(), (String::new(), 0, false));
-    }
-
-    #[test]
-    fn what_lies_in_a_queue_is_known_and_goes_with_gc() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = store(folder.path());
-        let queue = store.make_queue("q-1").unwrap();
-        queue.put_list(1, "a\n").unwrap();
-        queue.begin(0).unwrap();
-        queue.put_script(1, "x").unwrap();
-        queue.close().unwrap();
-        drop(queue.report("w").unwrap());
-        assert!(store.verify().unwrap().strangers.is_empty());
-        std::fs::write(queue.path().join("mine.txt"), "x").unwrap();
-        assert_eq!(store.verify().unwrap().strangers.len(), 1);
-        store.sweep(&Default::default(), true).unwrap();
-        assert!(queue.path().join("mine.txt").is_file());
-        std::fs::remove_file(queue.path().join("mine.txt")).unwrap();
-        store.sweep(&Default::default(), true).unwrap();
-        assert!(!queue.path().exists() && queue.is_closed());
-    }
-}
+mod tests;

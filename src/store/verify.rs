@@ -147,6 +147,7 @@ pub(super) fn is_ours(place: &clean::Place<'_>) -> bool {
         (campaign::FOLDER, "") => campaign::is_ours(at, name),
         (super::lock::FOLDER, "") => super::lock::is_name(name),
         (object::ASIDE, "") => object::is_aside(name),
+        (super::remote::FOLDER, "") => super::attached::is_ours(name),
         (super::queue::FOLDER, inside) => super::queue::is_ours(inside, name),
         _ => false,
     }

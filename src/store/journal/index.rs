@@ -1,16 +1,18 @@
 //! The journals as read so far.
 
-use super::record::{CONTENT, KEY, RECORD, from_version_1, pack, unpack, word};
+mod numbers;
+
+use super::record::{CONTENT, KEY, RECORD, from_version_1, pack, unpack};
 use super::{FOLDER, HEAD, MOST, Segments, is_name, read_head, writer_of};
-use crate::artifact::{ContentHash, FirstBytes, Key};
+use crate::artifact::{ContentHash, Key};
 use crate::store::disk::Disk;
 use crate::store::folder::{self, Folder, Strange};
 use crate::store::lock::is_alive;
 use crate::store::mark::Mark;
 use crate::store::{Origin, Record, StoreError};
+use numbers::Numbers;
 use std::collections::HashMap;
 use std::fs::File;
-use std::hash::BuildHasherDefault;
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -65,36 +67,6 @@ enum Writer {
     Near,
     /// Its lock is free, which says nothing where locks do not reach all nodes: its writer may be alive.
     Far,
-}
-
-/// Numbers of records by the first bytes of a hash in them.
-#[derive(Default)]
-struct Numbers {
-    last: HashMap<u64, u32, BuildHasherDefault<FirstBytes>>,
-    /// The record before each one that begins alike; itself when there is none.
-    before: Vec<u32>,
-}
-
-impl Numbers {
-    /// Takes in the records that are new; their hashes begin at byte `place`.
-    fn update(&mut self, records: &[[u8; RECORD]], place: usize) {
-        self.last.reserve(records.len() - self.before.len());
-        for number in self.before.len()..records.len() {
-            let number = number as u32;
-            let before = self.last.insert(word(&records[number as usize], place), number);
-            self.before.push(before.unwrap_or(number));
-        }
-    }
-
-    /// Numbers of the records whose hash begins so, the last one first.
-    fn of(&self, hash: &[u8; 32]) -> impl Iterator<Item = usize> {
-        let mut next = self.last.get(&word(hash, 0)).copied();
-        std::iter::from_fn(move || {
-            let number = next?;
-            next = Some(self.before[number as usize]).filter(|&before| before != number);
-            Some(number as usize)
-        })
-    }
 }
 
 impl Index {
