@@ -206,5 +206,6 @@ impl Kind for Calibrate {
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
     const CLASS: Class = Class::Calibration;
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 4, run: solve::solve }];
+    // 5: proportional corrections go on after a run without the response
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 5, run: solve::solve }];
 }

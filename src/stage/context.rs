@@ -8,6 +8,7 @@ use super::{Memory, StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
 use crate::expression::Measure;
 use crate::unit::{Dimension, Unit};
+use dem::genesis::region::Region;
 use math::scale::Scale;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -43,6 +44,8 @@ impl Context {
 pub struct Sketch {
     /// Names of the groups of particles in the specimen that it makes, by their number; empty for other kinds.
     pub groups: Vec<String>,
+    /// The outline of the specimen that it makes.
+    pub region: Option<Region>,
     /// The factors that its rows vary; none for a kind that is no design.
     pub factors: Option<Vec<String>>,
     /// The name under its key `material`: a `[material.NAME]`, or a stage that gives one.

@@ -121,8 +121,8 @@ impl Kind for Data {
     const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    // 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
-    const WORKS: &'static [Work] = &[Work { name: "data", version: 2, run: read }];
+    // 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    const WORKS: &'static [Work] = &[Work { name: "data", version: 3, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {

@@ -142,8 +142,8 @@ impl Kind for Design {
         "the runs of an experiment: factorial, orthogonal, screening, surface or sampled designs";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::DESIGN];
     const CLASS: Class = Class::Design;
-    // 2: tables of 12, 20, 24, 40 and 48 runs more, among which the smallest is looked for
-    const WORKS: &'static [Work] = &[Work { name: "design", version: 2, run }];
+    // 3: the left sides of broken rules have units. 2: tables of 12, 20, 24, 40 and 48 runs more, among which the smallest is looked for
+    const WORKS: &'static [Work] = &[Work { name: "design", version: 3, run }];
 }
 
 /// A fault of the design, at the key it concerns.

@@ -131,6 +131,7 @@ fn notes<'a>(found: &[(&Fitting, Regression)], points: Option<&Predict>, not_val
     for (fitting, regression) in found {
         let response = fitting.response.as_str();
         notes.fit(&regression.fit);
+        notes.one_level(response, "", &regression.model.axes);
         for (factor, reference) in fitting.columns.categories() {
             let text = format!(
                 "`{factor}` has names for levels and enters by dummy coding: `{factor}[…]` is the difference from `{reference}`"

@@ -6,6 +6,7 @@ use crate::artifact::statistics::NoteTable;
 use crate::artifact::validity::NotValid;
 use stats::diagnostics::Residual;
 use stats::fit::Fit;
+use stats::model::Axis;
 use stats::regression::Coefficient;
 
 /// Notes with the responses they are about, in order.
@@ -46,6 +47,20 @@ impl<'a> Notes<'a> {
         if without > 0 {
             let have = if without == 1 { "has" } else { "have" };
             self.add(response, format!("{without} of {all} runs {have} no value; the analysis is of {used}"));
+        }
+    }
+
+    /// Factors with a single value, from which only a fit through the origin takes a slope; `whose` names the group.
+    pub(super) fn one_level(&mut self, response: &str, whose: &str, axes: &[Axis]) {
+        for axis in axes.iter().filter(|axis| axis.low == axis.high) {
+            let (name, value) = (&axis.name, short(axis.low));
+            self.add(
+                response,
+                format!(
+                    "{whose}`{name}` is {value} in every run: the slope takes the response as proportional to it, which \
+                     one level cannot show"
+                ),
+            );
         }
     }
 

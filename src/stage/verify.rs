@@ -172,7 +172,10 @@ impl Demands for Verify {
         let table = result.table("summary")?;
         let (responses, inside) = (table.texts("response").ok()?, table.texts("target_inside").ok()?);
         let (sets, means) = (table.ints("set").ok()?, table.numbers("mean", "").ok()?);
-        let missed = |i: usize| format!("set {}: the mean of `{}` is {}", sets[i], responses[i], short(means[i]));
+        let missed = |i: usize| match means[i].is_nan() {
+            true => format!("set {}: no run gave a value of `{}`", sets[i], responses[i]),
+            false => format!("set {}: the mean of `{}` is {}", sets[i], responses[i], short(means[i])),
+        };
         let missed: Vec<String> = (0..inside.len()).filter(|&i| inside[i] != "yes").map(missed).collect();
         (!missed.is_empty()).then(|| format!("{}, and the target is not in its interval", missed.join("; ")))
     }
@@ -183,8 +186,8 @@ impl Kind for Verify {
     const ABOUT: &'static str = "calibrated parameters on fresh specimens";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::VERIFICATION];
     const CLASS: Class = Class::Calibration;
-    // 2: runs that are not valid are left out
-    const WORKS: &'static [Work] = &[Work { name: "verify", version: 2, run: verify }];
+    // 3: no deviation without two values. 2: runs that are not valid are left out
+    const WORKS: &'static [Work] = &[Work { name: "verify", version: 3, run: verify }];
 }
 
 /// One target and what its runs gave; NaN where a run failed.
@@ -297,9 +300,11 @@ fn moments(values: &[f64]) -> (f64, f64, f64, usize) {
     let there: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let n = there.len() as f64;
     let mean = there.iter().sum::<f64>() / n;
+    if there.len() < 2 {
+        return (mean, f64::NAN, f64::NAN, there.len());
+    }
     let deviation = (there.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)).sqrt();
-    let half = if there.len() > 1 { t_for_coverage(0.95, n - 1.0) * deviation / n.sqrt() } else { f64::NAN };
-    (mean, deviation, half, there.len())
+    (mean, deviation, t_for_coverage(0.95, n - 1.0) * deviation / n.sqrt(), there.len())
 }
 
 fn summary(verified: &[Verified]) -> Table {
@@ -376,5 +381,14 @@ mod tests {
         assert!((mean - 30.0).abs() < 1e-12);
         assert!((deviation - 0.815_475_321_515_004_8).abs() < 1e-12, "{deviation}");
         assert!((half - 1.012_546_348_148_820_8).abs() < 1e-9, "{half}");
+    }
+
+    /// What is not known is no zero.
+    #[test]
+    fn fewer_than_two_values_have_no_deviation() {
+        for values in [&[][..], &[f64::NAN], &[3.0], &[3.0, f64::NAN]] {
+            let (_, deviation, half, n) = moments(values);
+            assert!(deviation.is_nan() && half.is_nan() && n < 2, "{values:?}");
+        }
     }
 }

@@ -51,8 +51,10 @@ pub struct Usage {
 pub struct Swept {
     /// Results that are reachable.
     pub kept: Amount,
-    /// Results that are not, and old memos.
+    /// Results that are not.
     pub removed: Amount,
+    /// Memos that rest on results that are not.
+    pub memos: Amount,
     /// Damaged files, and leftovers of processes that were killed.
     pub rubbish: Amount,
     /// Journal segments before.
@@ -154,7 +156,7 @@ impl Store {
                     _ => return swept.kept.add(place.bytes()),
                 },
                 object::ASIDE | lock::FOLDER | queue::FOLDER => &mut swept.rubbish,
-                memo::FOLDER if !self.memo_is_reachable(&place, reachable) => &mut swept.removed,
+                memo::FOLDER if !self.memo_is_reachable(&place, reachable) => &mut swept.memos,
                 journal::FOLDER => {
                     swept.segments += 1;
                     return;

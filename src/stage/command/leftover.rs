@@ -53,8 +53,17 @@ impl Drop for Record {
 
 /// Ends the processes of runs whose campaign is gone and removes their folders; a line on each.
 pub fn sweep() -> Vec<String> {
+    all_abandoned().into_iter().map(Abandoned::clear).collect()
+}
+
+/// How many runs [`sweep`] would clear.
+pub fn count() -> usize {
+    all_abandoned().len()
+}
+
+fn all_abandoned() -> Vec<Abandoned> {
     let Some(records) = registry(false).and_then(|folder| fs::read_dir(folder).ok()) else { return Vec::new() };
-    records.flatten().filter_map(|entry| abandoned(&entry.path())).map(|run| run.clear()).collect()
+    records.flatten().filter_map(|entry| abandoned(&entry.path())).collect()
 }
 
 /// Ends the programs of this campaign, which itself is about to end, and removes their folders.

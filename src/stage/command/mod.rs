@@ -22,6 +22,7 @@
 //! Running out of time or being stopped is never recorded, because it says nothing about the model.
 
 mod folder;
+mod json;
 pub mod leftover;
 mod number;
 mod read;

@@ -1,6 +1,7 @@
 //! How the words on the validity of a run are read from what a program left.
 
 use super::folder::{Folder, is_plain, shown};
+use super::json;
 use super::read::from_csv;
 use crate::stage::Complaint;
 use regex::Regex;
@@ -74,7 +75,7 @@ impl ReadText {
 
 /// The text, or the texts of the list, that the pointer leads to.
 fn reasons_from_json(text: &str, pointer: &str) -> Result<Vec<String>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+    let value = json::parse(text)?;
     let word = |value: &Value| value.as_str().map(str::to_owned);
     let found = value.pointer(pointer).ok_or_else(|| format!("nothing at `{pointer}`"))?;
     let reasons = match found {
@@ -103,6 +104,7 @@ mod tests {
         assert_eq!(json(r#"{"v": null}"#), words(&[]));
         assert_eq!(json(r#"{"v": "rotation"}"#), words(&["rotation"]));
         assert_eq!(json(r#"{"v": ["rotation", ""]}"#), words(&["rotation", ""]));
+        assert_eq!(json(r#"{"E": NaN, "v": "rotation"}"#), words(&["rotation"]));
         for (text, told) in [(r#"{"v": false}"#, "`false`"), (r#"{"v": [1]}"#, "`[1]`"), ("{}", "nothing at")] {
             assert!(json(text).unwrap_err().contains(told), "{text}");
         }

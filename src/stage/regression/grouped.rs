@@ -212,6 +212,9 @@ fn notes<'a>(found: &[Found], by: &[By], not_valid: &'a NotValid) -> Notes<'a> {
         notes.add(found.response, format!("{}: no fit: {why}", key_texts(by, &found.group).join(", ")));
     }
     for found in found {
+        if let Ok((fit, _)) = &found.fit {
+            notes.one_level(found.response, &format!("{}: ", key_texts(by, &found.group).join(", ")), &fit.model.axes);
+        }
         let missing = found.missing;
         if missing > 0 {
             let group = key_texts(by, &found.group).join(", ");

@@ -7,6 +7,7 @@ use super::fissures::FissureConfig;
 use super::speed::PlatenSpeed;
 use crate::expression::Measure;
 use crate::unit::{Angle, Length, Pressure};
+use dem::genesis::region::Region;
 use dem::loading::kind::TestKind;
 use dem::loading::material::{BondKind, Material};
 use dem::loading::rig::Machine;
@@ -212,6 +213,9 @@ impl Simulate {
         let mut faults = self.setting_faults();
         faults.extend(self.bond.faults());
         faults.extend(self.fissures.iter().flat_map(FissureConfig::faults));
+        let region = context.sketches.get(&self.specimen).and_then(|sketch| sketch.region);
+        let suits = |region: Region| self.test.suits(&region.into(), region.dimension());
+        faults.extend(region.and_then(|region| suits(region).err()).map(|e| Complaint::new("test", e.to_string())));
         let named = context.materials.get(&self.material);
         if self.set.is_some() && named.is_some() {
             let message = format!("`set` has no effect: [material.{}] is no calibrated one", self.material);

@@ -43,9 +43,9 @@ fn responses<S: Space>(record: &TestRecord<S>, kind: TestKind) -> Vec<(&'static 
     kind.responses().iter().map(|response| (response.name, (response.read)(&record.values), response.unit)).collect()
 }
 
-/// Warnings on the rate of loading, and why the run is not valid.
+/// The warning on the rate of loading, and why the run is not valid.
 fn warnings<S: Space>(record: &TestRecord<S>) -> Vec<String> {
-    let rate = record.judgement.warnings().into_iter().map(|warning| warning.to_string());
+    let rate = record.judgement.warning().into_iter().map(|warning| warning.to_string());
     rate.chain(record.invalid().map(|check| format!("{}{check}", Run::NOT_VALID))).collect()
 }
 

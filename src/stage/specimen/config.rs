@@ -153,7 +153,7 @@ fn misfits(because: &str, settings: &[(&str, bool, bool, bool)]) -> Vec<Complain
 }
 
 impl Specimen {
-    fn region(&self) -> Result<Region, Complaint> {
+    pub(super) fn region(&self) -> Result<Region, Complaint> {
         let [width, height, depth, diameter] =
             [self.width, self.height, self.depth, self.diameter].map(|length| length.map(|length| length.get()));
         match (width, height, depth, diameter) {

@@ -76,7 +76,7 @@ impl Stage for Specimen {
         let aggregate = self.aggregate.iter().map(|aggregate| aggregate.group.clone());
         let stones = self.stones.iter().map(|stones| stones.group.clone());
         let groups = self.shares().into_iter().map(|share| share.name).chain(aggregate).chain(stones).collect();
-        Sketch { groups, varies: true, ..Sketch::default() }
+        Sketch { groups, region: self.region().ok(), varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
