@@ -74,17 +74,25 @@ impl Store {
         self.has_all(&[*object])
     }
 
-    /// The artifact with this content.
+    /// The artifact with this content; it is fetched from the attached remote when only that has it.
     ///
     /// # Errors
     /// [`StoreError::Missing`] or [`StoreError::Damaged`] (see [`StoreError::is_missing`]): compute it again. Any
-    /// other: the store cannot be read.
+    /// other: the store, or the remote, cannot be read.
     pub fn get(&self, content: &ContentHash) -> Result<Arc<Artifact>, StoreError> {
+        match self.get_here(content) {
+            Err(error) if error.is_missing() && self.fetch(content)? => self.get_here(content),
+            got => got,
+        }
+    }
+
+    fn get_here(&self, content: &ContentHash) -> Result<Arc<Artifact>, StoreError> {
         if let Some(artifact) = locked(&self.cache).get(content) {
             return Ok(artifact);
         }
         let mut failure = StoreError::Missing { content: *content };
-        for record in locked(self.index()?).with_content(content) {
+        let records = locked(self.index()?).with_content(content);
+        for record in records {
             match self.read(&record) {
                 Ok(proven) => return Ok(self.cached(*content, proven.artifact)),
                 Err(error) => failure = error,
@@ -97,10 +105,7 @@ impl Store {
                 return Ok(self.cached(*content, proven.artifact));
             }
         }
-        match self.fetch(content)? {
-            true => self.get(content),
-            false => Err(failure),
-        }
+        Err(failure)
     }
 
     pub(super) fn cached(&self, content: ContentHash, artifact: Artifact) -> Arc<Artifact> {
@@ -114,18 +119,17 @@ impl Store {
     /// # Errors
     /// As [`Store::get`].
     pub fn task_text(&self, record: &Record) -> Result<String, StoreError> {
-        Ok(self.read(record)?.text)
+        match self.read(record) {
+            Err(error) if error.is_missing() && self.fetch(&record.content)? => Ok(self.read(record)?.text),
+            read => Ok(read?.text),
+        }
     }
 
     /// The object of a record, proven.
     pub(super) fn read(&self, record: &Record) -> Result<Proven, StoreError> {
         let id = record.object();
         let seal = record.own.then_some(&record.seal);
-        let read = || self.noted(&id, prove::object(&self.disk, &id, seal));
-        match read() {
-            Err(StoreError::Missing { .. }) if self.is_listed(&id)? && self.fetch(&id.content)? => read(),
-            read => read,
-        }
+        self.noted(&id, prove::object(&self.disk, &id, seal))
     }
 
     /// The record of somebody else, as one's own when its object proves it.
