@@ -97,7 +97,8 @@ fn a_list_is_read_page_by_page() {
         };
         format!(
             "<ListBucketResult xmlns=\"http://s3.amazonaws.com/doc/2006-03-01/\"><Name>lab</Name><Prefix></Prefix>\
-             <KeyCount>1</KeyCount><MaxKeys>1000</MaxKeys><IsTruncated>true</IsTruncated>{}{next}</ListBucketResult>",
+             <KeyCount>1</KeyCount><MaxKeys>1000</MaxKeys><IsTruncated>{}</IsTruncated>{}{next}</ListBucketResult>",
+            !next.is_empty(),
             keys.iter().map(file).collect::<String>()
         )
     };
