@@ -88,7 +88,7 @@ impl Bucket {
                     | ureq::Error::Rustls(_) => {
                         return Err(self.fail(error.to_string()));
                     }
-                    error => error.to_string(),
+                    error => format!("the server cannot be reached ({error})"),
                 },
             };
             let Some(pause) = pauses.next() else {
