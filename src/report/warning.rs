@@ -2,10 +2,11 @@
 //! of the field.
 
 use super::paper::Part;
-use crate::artifact::calibration::{Prediction, Solution, Summary, Verification};
+use crate::artifact::calibration::{Answer, Prediction, Solution, Summary, Verification};
 use crate::artifact::groups::{GroupResiduals, Groups};
 use crate::artifact::run::Run;
-use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
+use crate::artifact::statistics::{Anova, Fits, Residuals, Screening};
+use crate::artifact::surfaces::{Coefficients, Surfaces};
 use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Node, Wanted};
 
@@ -105,14 +106,17 @@ fn inflation(coefficients: &Coefficients) -> Vec<String> {
 }
 
 fn reach(prediction: &Prediction) -> Vec<String> {
-    let rows = prediction.set.iter().zip(&prediction.response).zip(&prediction.reach);
-    let out = rows.filter(|(_, reach)| reach.starts_with("out of reach"));
-    out.map(|((set, response), reach)| format!("set {set}: the target of {response} is {reach}")).collect()
+    let out = (0..prediction.set.len()).filter(|&row| prediction.out_of_reach(row));
+    let words = |row: usize| {
+        let (set, response, reach) = (prediction.set[row], &prediction.response[row], &prediction.reach[row]);
+        format!("set {set}: the target of {response} is {reach}")
+    };
+    out.map(words).collect()
 }
 
 fn outside(summary: &Summary) -> Vec<String> {
     let rows = summary.set.iter().zip(&summary.response).zip(&summary.target_inside);
-    let out = rows.filter(|(_, inside)| *inside == "no");
+    let out = rows.filter(|(_, inside)| **inside == Answer::No);
     let words: Vec<String> = out.map(|((set, response), _)| format!("{response} of set {set}")).collect();
     if words.is_empty() {
         Vec::new()
@@ -151,7 +155,7 @@ mod tests {
         let (response, row, flag) = (words(&["E", "E"]), vec![4, 26], words(&["", "outlier"]));
         let residuals = Residuals { response, row, flag, ..Residuals::default() };
         assert_eq!(flags(&residuals), ["suspicious runs, kept in the fit: E, row 26 (outlier)"]);
-        let (response, target_inside) = (words(&["E", "nu"]), words(&["no", "yes"]));
+        let (response, target_inside) = (words(&["E", "nu"]), vec![Answer::No, Answer::Yes]);
         let summary = Summary { set: vec![1, 2], response, target_inside, ..Summary::default() };
         assert_eq!(outside(&summary), ["targets outside the 95 % interval of the mean: E of set 1"]);
     }

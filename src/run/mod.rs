@@ -25,6 +25,7 @@ mod licences;
 mod memo;
 #[cfg(test)]
 mod pins;
+mod report;
 mod run_memo;
 mod settings;
 mod stages;
@@ -33,12 +34,13 @@ mod task;
 mod worker;
 
 pub use audit::{Audited, audit};
-pub use board::{TaskCount, TaskState};
+pub use board::{TaskCount, TaskReport, TaskState};
 pub use campaigns::{Past, record};
 pub use commit::commit;
 pub use event::{Event, Silent, Watch};
 pub use forecast::{forecasts, forecasts_of};
 pub use memo::remembered;
+pub use report::Report;
 pub use settings::{Cluster, RunSettings};
 pub use stages::{StageReport, StageStatus};
 pub use worker::{Worked, Worker, program};
@@ -47,7 +49,7 @@ use crate::artifact::{ContentHash, Key};
 use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
-use crate::store::{ObjectId, Store, StoreError};
+use crate::store::{Store, StoreError};
 use board::{Board, ByKey, NodeId};
 use elsewhere::Elsewhere;
 use far::Far;
@@ -59,50 +61,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use streamed::Streamed;
-
-/// The outcome of a campaign.
-pub struct Report {
-    /// Every wanted stage, in the order of the workflow.
-    pub stages: Vec<StageReport>,
-    /// Whether it was interrupted.
-    pub interrupted: bool,
-    /// The store could not be read; what was wrong.
-    pub broken: Option<String>,
-    board: Board,
-    states: Stages,
-}
-
-/// One task, for people and programs.
-#[derive(Clone, Debug)]
-pub struct TaskReport {
-    /// Index of its stage in the workflow.
-    pub stage: usize,
-    /// Its design row.
-    pub row: Option<usize>,
-    /// Where it stands.
-    pub state: TaskState,
-    /// Its text, when its inputs are known and it is not done.
-    pub text: Option<String>,
-    /// The object that holds its result.
-    pub object: Option<ObjectId>,
-}
-
-impl Report {
-    /// The tasks that are known, in the order they became known; none of stages that were remembered.
-    pub fn tasks(&self) -> impl DoubleEndedIterator<Item = TaskReport> {
-        self.board.reports()
-    }
-
-    /// Every object that the campaign rests on.
-    pub fn objects(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
-        self.board.objects().chain(self.states.remembered())
-    }
-
-    /// Counts over all stages.
-    pub fn count(&self) -> TaskCount {
-        self.stages.iter().fold(TaskCount::default(), |sum, stage| sum + stage.tasks)
-    }
-}
 
 /// Runs what is missing of `workflow`, or only decides when the settings say so.
 pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &dyn Watch, stop: &AtomicBool) -> Report {

@@ -44,7 +44,7 @@ pub enum StoreError {
     },
     /// The user may not do that here.
     #[error(
-        "no permission to {doing} {}; have its owner give it, or name another store with `--store`", path.display()
+        "no permission to {doing} {}; ask its owner for it, or name another store with `--store`", path.display()
     )]
     Denied {
         /// What was being done.

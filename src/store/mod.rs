@@ -29,6 +29,7 @@ mod cache;
 mod campaign;
 mod claim;
 mod clean;
+mod contents;
 mod disk;
 mod error;
 mod fault;

@@ -15,6 +15,8 @@
 //! content hash and key. So an object proves what it is; that its values are what the task gives is the word of the signer,
 //! and `flow store audit` computes some of them again, which equal bits make a proof.
 
+mod access;
+mod address;
 mod bucket;
 mod credentials;
 mod folder;
@@ -23,14 +25,15 @@ mod place;
 mod segment;
 mod sign;
 
+pub use address::Address;
 pub use mirror::{Mirrored, mirror};
-pub use place::Address;
+
 pub use sign::{Signing, Trust};
 
 use super::object::{self, Seal};
-use super::prove;
 use super::record::moment;
 use super::{ObjectId, Record, Store, StoreError, Timing, locked};
+use super::{finish, prove};
 use crate::artifact::Key;
 pub(super) use place::Place;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -237,7 +240,7 @@ impl Store {
         }
         prove::bytes(&id, image.clone()).map_err(refused)?;
         let own = |error: StoreError| Untaken::Remote(error.into());
-        let seal = object::write(&self.disk, &id, &image, false, None).map_err(own)?;
+        let seal = finish::write(&self.disk, &id, &image, false, None).map_err(own)?;
         let timing = Timing { started: moment(record.started), seconds: record.seconds };
         let record = self.marked(&id, seal, &timing, Arc::clone(&record.origin));
         locked(&self.segments).append(&self.disk, &record, false).map_err(own)?;

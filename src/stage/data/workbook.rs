@@ -65,8 +65,8 @@ fn chosen(names: &[String], sheet: Option<&str>) -> Result<String, StageError> {
 fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<(), StageError> {
     let mut book = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(broken)?;
     let name = chosen(&book.sheet_names(), sheet)?;
-    // Cell by cell where the format allows it: a sheet is as large as the place of its last cell says, and one cell far out
-    // would ask for more memory than there is.
+    // Cell by cell where the format allows it: the size of a sheet is the position of its last cell, so one cell far away
+    // would need more memory than there is.
     match &mut book {
         Sheets::Xlsx(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
@@ -119,7 +119,7 @@ const MOST_COLUMNS: u32 = 1 << 14;
 /// Most cells of the lines of a sheet, the empty ones between others included.
 const MOST_CELLS: usize = 1 << 24;
 
-/// The cells of a sheet that hold something, by row and column.
+/// The cells of a sheet that are not empty, by row and column.
 #[derive(Default)]
 struct Cells {
     rows: BTreeMap<u32, Vec<(u32, String)>>,
@@ -146,7 +146,7 @@ impl Cells {
         let (first, last) = (first.min(column), last.max(column));
         self.columns = Some([first, last]);
         let cells = self.rows.len().saturating_mul((last - first) as usize + 1);
-        // The line of names is one more.
+        // The line of names is not a row.
         if self.rows.len() > MOST_RUNS + 1 || cells > MOST_CELLS {
             let message = format!("the sheet has more than {MOST_RUNS} rows, or {MOST_CELLS} cells");
             return Err(StageError::new(message).hint("name a part of it, or delete what lies far from the table"));

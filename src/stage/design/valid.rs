@@ -1,7 +1,7 @@
 //! Rules that the rows of a design must obey: `valid = ["Ec/sigma_c <= 830", "ratio < 6.2", "Ec/scn in 0.14..1.36 GPa/MPa"]`.
 //!
-//! A rule compares two sides, or holds one within bounds. Sides are formulas of the design's factors and quantities; factors
-//! count with their units, and both sides must be of one kind. Equality is taken up to rounding (10⁻¹² of the larger side).
+//! A rule compares two sides, or one side with bounds. Sides are formulas of the design's factors and quantities; factors
+//! have their units, and both sides must be of one kind. Equality allows for rounding (10⁻¹² of the larger side).
 
 use crate::expression::{Expression, Measure};
 use crate::unit::{Dimension, Unit, parse_any, split_any};
@@ -9,18 +9,18 @@ use design::{DesignTable, Factor};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of rows that break a rule.
+/// What to do with rows that break a rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum InvalidRows {
-    /// The design is refused, and the rows are named.
+    /// Refuse the design, and list the rows.
     #[default]
     Refuse,
-    /// They are left out and listed in the table `left_out`.
+    /// Leave them out, and list them in the table `left_out`.
     LeaveOut,
 }
 
-/// Share of the larger side by which rounding may differ.
+/// Largest rounding difference, as a fraction of the larger side.
 const ROUNDING: f64 = 1e-12;
 
 /// A rule that was read.
@@ -50,7 +50,7 @@ pub(super) struct Broken {
     pub(super) row: usize,
     /// The rule's text.
     pub(super) rule: String,
-    /// The left side in the row, in `unit`.
+    /// Value of the left side in the row, in `unit`.
     pub(super) value: f64,
     /// The unit that the rule is written in; the SI unit where it compares two formulas. Empty for a pure number.
     pub(super) unit: String,
@@ -171,7 +171,7 @@ fn side(text: &str) -> Result<Side, String> {
     }
 }
 
-/// `0.14..1.36 GPa/MPa`: the unit behind counts for both unless the first has its own.
+/// Bounds such as `0.14..1.36 GPa/MPa`: the unit at the end holds for both unless the first has its own.
 fn bounds_of(text: &str) -> Result<[Measure; 2], String> {
     let Some((low, high)) = text.split_once("..") else {
         return Err(format!("`{text}` are no bounds; write for example 0.2..1 or 10..30 MPa"));

@@ -5,8 +5,9 @@
 //! falters, and each is signed by the clock of this machine, which nothing else depends on.
 
 use super::RemoteError;
+use super::access::{Remote, SEGMENTS};
+use super::address::Address;
 use super::credentials::Settings;
-use super::place::{Address, Remote, SEGMENTS};
 use rusty_s3::actions::ListObjectsV2;
 use rusty_s3::{Credentials, S3Action, UrlStyle};
 use std::time::Duration;

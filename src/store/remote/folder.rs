@@ -4,7 +4,7 @@
 //! back, and renamed.
 
 use super::RemoteError;
-use super::place::{MARKER, Remote, SEGMENTS, TEXT};
+use super::access::{MARKER, Remote, SEGMENTS, TEXT};
 use crate::store::disk::Disk;
 use crate::store::{StoreError, root};
 use std::io::ErrorKind;

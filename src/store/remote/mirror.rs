@@ -1,6 +1,7 @@
 //! A copy of a remote, with its signatures: the signers stay who they were.
 
-use super::place::{Address, Place};
+use super::address::Address;
+use super::place::Place;
 use super::{RemoteError, segment};
 use crate::store::Record;
 use crate::store::object::Seal;
