@@ -31,9 +31,9 @@ impl Loop<'_, '_> {
             // Workers do not know of one another, so they could not keep a bound on a program's runs.
             task.at_once.is_none() && far.takes(stage, is_far(task.work))
         };
-        let nodes: Vec<NodeId> = self.ready.iter().copied().filter(goes).collect();
+        let nodes: Vec<NodeId> = self.ready.iter().filter(goes).collect();
         for node in nodes {
-            self.ready.remove(&node);
+            self.ready.remove(node);
             let Some(key) = self.board.key_of(node) else {
                 panic!("BUG: a task was ready before its inputs were known")
             };
@@ -63,9 +63,11 @@ impl Loop<'_, '_> {
             self.store.locate(content).map_err(|error| Box::new(task::Lost { content: *content, error }))
         };
         let inputs = contents.iter().map(locate).collect::<Result<Vec<_>, _>>()?;
-        let past = self.past.as_ref();
-        let read = || past.and_then(|past| past.most_seconds(stage));
-        let seconds = *self.most_seconds.entry(stage.clone()).or_insert_with(read);
+        if !self.most_seconds.contains_key(stage) {
+            let read = self.past().and_then(|past| past.most_seconds(stage));
+            self.most_seconds.insert(stage.clone(), read);
+        }
+        let seconds = self.most_seconds[stage];
         let line = Line::new(self.board.task(node), &key, stage, &inputs, seconds);
         let put = self.far.as_mut().map(|far| far.put(stage, key, &line));
         if let Some(Err(error)) = put {
