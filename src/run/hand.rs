@@ -69,8 +69,9 @@ impl Loop<'_, '_> {
         }
         let seconds = self.most_seconds[stage];
         let line = Line::new(self.board.task(node), &key, stage, &inputs, seconds);
-        if let Some(far) = &mut self.far {
-            far.put(stage, key, line);
+        let put = self.far.as_mut().map(|far| far.put(stage, key, &line));
+        if let Some(Err(error)) = put {
+            self.refused.get_or_insert(error.to_string());
         }
         Ok(())
     }
@@ -166,6 +167,12 @@ impl Loop<'_, '_> {
         let working = self.stop.load(Ordering::Relaxed)
             && self.settings.cluster.as_ref().is_some_and(|cluster| cluster.leave.load(Ordering::Relaxed));
         let Some(far) = &mut self.far else { return };
+        let computed = (0..self.workflow.stages.len()).any(|stage| self.board.count(stage).ran > 0);
+        if far.is_unused() && computed && !working {
+            let text = "no workers were asked for: what was computed took moments, here (`here = false` below \
+                        `[stage.NAME]` of the site file sends a stage all the same)";
+            self.watch.event(Event::Word { text });
+        }
         let words = far.end(if working { Leave::Working } else { Leave::Cancel });
         words.iter().for_each(|text| self.watch.event(Event::Word { text }));
     }

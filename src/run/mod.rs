@@ -51,7 +51,7 @@ use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
 use crate::store::{Store, StoreError};
-use board::{Board, NodeId};
+use board::{Board, ByKey, NodeId};
 use campaigns::RowSeconds;
 use elsewhere::Elsewhere;
 use far::Far;
@@ -88,7 +88,7 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &d
             elsewhere: Elsewhere::default(),
             licences: Licences::default(),
             far,
-            far_nodes: HashMap::new(),
+            far_nodes: ByKey::default(),
             past: OnceCell::new(),
             row_seconds: HashMap::new(),
             most_seconds: HashMap::new(),
@@ -159,7 +159,7 @@ struct Loop<'pool, 'env> {
     licences: Licences,
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
-    far_nodes: HashMap<Key, NodeId>,
+    far_nodes: ByKey,
     /// Earlier runs, read when something is to be started: long tasks go first, a worker learns how long one may take.
     past: OnceCell<Option<Past<'env>>>,
     /// By stage: seconds that the tasks of each row took in earlier runs.
