@@ -60,7 +60,7 @@ pub use words::parameters_in_words;
 
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::invalid::Invalid;
-use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Context, Demands, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use course::Course;
 use params::Params;
@@ -159,6 +159,12 @@ impl Stage for Calibrate {
         Ok(Step::Finish(task))
     }
 
+    fn demands(&self) -> Option<&dyn Demands> {
+        Some(self)
+    }
+}
+
+impl Demands for Calibrate {
     fn unmet(&self, result: &Artifact) -> Option<String> {
         (self.unmet == Unmet::Fail).then(|| record::unmet(result)).flatten()
     }

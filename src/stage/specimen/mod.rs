@@ -29,8 +29,8 @@ pub use stones::{FullerConfig, StoneClassConfig, StonesConfig};
 pub use stored::{Loaded, load, stored};
 
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
-    shapes,
+    Class, Complaint, Context, Demands, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step,
+    Task, Work, shapes,
 };
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -86,12 +86,18 @@ impl Stage for Specimen {
         Ok(Step::Finish(self.task(known, 1).map_err(faults)?))
     }
 
-    fn unmet(&self, result: &Artifact) -> Option<String> {
-        Stored::from_artifact(result).ok()?.failure
+    fn demands(&self) -> Option<&dyn Demands> {
+        Some(self)
     }
 
     fn replicate(&self, known: &Known, number: u64) -> Option<Task> {
         self.task(known, number).ok()
+    }
+}
+
+impl Demands for Specimen {
+    fn unmet(&self, result: &Artifact) -> Option<String> {
+        Stored::from_artifact(result).ok()?.failure
     }
 }
 
