@@ -259,7 +259,6 @@ fn data_that_cannot_be_analysed() {
             "anova",
             "response `y` has 3 usable rows (1 missing) for 4 coefficients",
         ),
-        ("a,b,y\n1,1,1\n2,2,inf\n3,1,4\n", "range", "row 2: `y` is `inf`, which is not a finite number"),
         ("a,b,y\n1,1,1\n2,2,2\n4,1,4\n", "range", "row 3: `a` is 4, which is none of its levels 1, 2, 3"),
         ("a,b,y\n1,1,1\n2,,2\n3,1,4\n", "range", "row 2: `b` is NaN; mark the row as missing or give a finite number"),
         (
@@ -273,7 +272,7 @@ fn data_that_cannot_be_analysed() {
             "factor `a` has 3 levels; a screening analysis needs exactly two",
         ),
     ];
-    for (data, kind, wanted) in cases {
+    let run = |data: &str, kind: &str| {
         fs::write(folder.path().join("bad.csv"), data).unwrap();
         let kind = match kind.strip_suffix('#') {
             Some(kind) => format!("kind = \"{kind}\n"),
@@ -281,8 +280,15 @@ fn data_that_cannot_be_analysed() {
         };
         fs::write(&workflow, format!("{head}{kind}")).unwrap();
         let ran = Ran::of(&workflow);
-        let told = String::from_utf8_lossy(&ran.output.stderr).into_owned();
-        assert_eq!(ran.output.status.code(), Some(1), "{kind}{data}{told}");
+        (ran.output.status.code(), String::from_utf8_lossy(&ran.output.stderr).into_owned())
+    };
+    for (data, kind, wanted) in cases {
+        let (code, told) = run(data, kind);
+        assert_eq!(code, Some(1), "{kind}{data}{told}");
         assert!(told.contains(wanted), "wanted: {wanted}\ntold: {told}");
     }
+    // What no analysis could use is found before the run.
+    let (code, told) = run("a,b,y\n1,1,1\n2,2,inf\n3,1,4\n", "range");
+    assert_eq!(code, Some(2), "{told}");
+    assert!(told.contains("row 2: `y` is `inf`, which is no number here"), "{told}");
 }
