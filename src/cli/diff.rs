@@ -41,7 +41,7 @@ impl Diff {
     }
 
     fn print(&self) -> Result<Exit, Exit> {
-        let store = self.common.open()?;
+        let store = self.common.read()?;
         let (a, b) = (self.side(&self.a, &store)?, self.side(&self.b, &store)?);
         let mut names: Vec<&String> = a.keys().chain(b.keys()).collect();
         names.sort_unstable();

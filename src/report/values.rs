@@ -8,6 +8,8 @@
 //!   through three of them along each side, which is exact for second-order surfaces;
 //! * `points`: per panel points with their words.
 
+mod own;
+
 use crate::artifact::{Table, Values};
 use crate::stage::Context;
 use figure::text::Line;
@@ -21,7 +23,7 @@ const MOST: usize = 4000;
 
 /// The values of a figure that shows `show`; nothing when the script cannot show them.
 pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
-    if show != "contour" && show != "surface" && data.rows() > MOST {
+    if !matches!(show, "contour" | "surface" | "curves") && data.rows() > MOST {
         return None;
     }
     match show {
@@ -32,6 +34,9 @@ pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
         "residuals" => residuals(data),
         "convergence" => convergence(data),
         "half-normal" | "normal" => effect_plot(data),
+        "xy" | "curves" => own::series(data, context),
+        "histogram" => own::bins(data, context),
+        "box" => own::boxes(data),
         _ => None,
     }
 }

@@ -4,16 +4,17 @@
 use super::paper::Part;
 use crate::artifact::calibration::{Prediction, Solution, Summary, Verification};
 use crate::artifact::groups::{GroupResiduals, Groups};
-use crate::artifact::run::Run;
 use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
 use crate::artifact::validity::sentences;
-use crate::artifact::{Artifact, Node, Wanted};
+use crate::artifact::{Artifact, Wanted};
 
 /// Adjusted and predicted R² of a sound model differ by less than this (a rule of thumb of designed experiments).
 const GAP: f64 = 0.2;
 /// Coefficients with a larger variance inflation factor share most of what they say (Marquardt 1970,
 /// doi:10.2307/1267205).
 const INFLATION: f64 = 10.0;
+/// How a calibration calls a target that its ranges cannot give.
+const OUT_OF_REACH: &str = "out of reach";
 /// Level of significance of the lack of fit.
 const LEVEL: f64 = 0.05;
 
@@ -21,16 +22,27 @@ const LEVEL: f64 = 0.05;
 pub(super) fn warnings(part: &Part) -> Vec<String> {
     let Some(artifact) = part.artifact() else { return Vec::new() };
     let mut found = sentences(artifact);
-    found.extend(own(artifact));
+    found.extend(part.outcome.warnings.iter().map(counted));
     // A result of another version gives no warnings here; the section that shows its tables reports it.
     found.extend(judged(artifact).unwrap_or_default());
     found
 }
 
-/// Warnings in the artifact, and why a run is not valid.
-fn own(artifact: &Artifact) -> Vec<String> {
-    let all = artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default();
-    all.iter().filter(|text| !text.starts_with(Run::NOT_VALID)).cloned().collect()
+/// A warning of tasks, with the number of those that have it.
+fn counted((text, count): &(String, usize)) -> String {
+    if *count == 1 { text.clone() } else { format!("{text} ({count} tasks)") }
+}
+
+/// Targets of a stage that are not met: out of reach of a calibration, or outside the interval of a verification.
+pub(super) fn unmet(part: &Part) -> [usize; 2] {
+    let Some(artifact) = part.artifact() else { return [0, 0] };
+    let reach = Solution::from_artifact(artifact).map(|found| found.prediction.reach);
+    let inside = Verification::from_artifact(artifact).map(|found| found.summary.target_inside);
+    let out = |words: &&String| words.starts_with(OUT_OF_REACH);
+    [
+        reach.unwrap_or_default().iter().filter(out).count(),
+        inside.unwrap_or_default().iter().filter(|word| *word == "no").count(),
+    ]
 }
 
 /// Warnings from the numbers of a result.
@@ -106,7 +118,7 @@ fn inflation(coefficients: &Coefficients) -> Vec<String> {
 
 fn reach(prediction: &Prediction) -> Vec<String> {
     let rows = prediction.set.iter().zip(&prediction.response).zip(&prediction.reach);
-    let out = rows.filter(|(_, reach)| reach.starts_with("out of reach"));
+    let out = rows.filter(|(_, reach)| reach.starts_with(OUT_OF_REACH));
     out.map(|((set, response), reach)| format!("set {set}: the target of {response} is {reach}")).collect()
 }
 

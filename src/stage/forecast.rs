@@ -1,9 +1,10 @@
 //! What a stage is expected to ask for, as far as the workflow and its files tell before anything runs: for `flow plan`.
 
 use super::Context;
+use super::cost::Bulk;
 
 /// Tasks and rows of a stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// Rows of its result, for stages that go through them; none where only the run tells.
     pub rows: Option<usize>,
@@ -13,6 +14,12 @@ pub struct Forecast {
     pub per_run: usize,
     /// Tasks that it asks for; none where only the run tells.
     pub tasks: Option<TaskForecast>,
+    /// Seconds that all its tasks take on one core, roughly; none where nothing tells, as of a program.
+    pub seconds: Option<f64>,
+    /// Seconds of one more run of it on a specimen of its own.
+    pub run_seconds: Option<f64>,
+    /// The specimen that it makes.
+    pub bulk: Option<Bulk>,
 }
 
 /// How many tasks a stage asks for.
@@ -58,10 +65,23 @@ impl TaskForecast {
 
 impl Forecast {
     /// One task.
-    pub const ONE: Self = Self { rows: None, replicates: 1, per_run: 1, tasks: Some(TaskForecast::Exactly(1)) };
+    pub const ONE: Self = Self {
+        rows: None,
+        replicates: 1,
+        per_run: 1,
+        tasks: Some(TaskForecast::Exactly(1)),
+        seconds: Some(0.0),
+        run_seconds: Some(0.0),
+        bulk: None,
+    };
 
     /// Nothing is known.
-    pub const UNKNOWN: Self = Self { tasks: None, ..Self::ONE };
+    pub const UNKNOWN: Self = Self { tasks: None, seconds: None, run_seconds: None, ..Self::ONE };
+
+    /// Seconds of so many runs of each of these simulators.
+    pub fn seconds_of(simulators: impl Iterator<Item = Self>, runs: usize) -> Option<f64> {
+        simulators.map(|simulator| simulator.run_seconds).sum::<Option<f64>>().map(|each| each * runs as f64)
+    }
 
     /// A run for each row of the design behind the port `design`, on specimens that `specimens` counts from the design's
     /// forecast, and the task that gathers them; one run without a design.

@@ -107,7 +107,19 @@ impl Store {
     /// # Errors
     /// As [`Store::open`].
     pub fn open_as(root: &Path, mark: Mark) -> Result<Self, StoreError> {
-        let disk = Disk { root: root.to_owned() };
+        Self::at(Disk { root: root.to_owned(), read_only: false }, mark)
+    }
+
+    /// Opens the store in the folder `root` to read it: nothing is written or moved, and a folder that is not there is an
+    /// empty store.
+    ///
+    /// # Errors
+    /// The path is no folder, or one that flow has not made; it cannot be read.
+    pub fn open_to_read(root: &Path) -> Result<Self, StoreError> {
+        Self::at(Disk { root: root.to_owned(), read_only: true }, Mark::of_user())
+    }
+
+    fn at(disk: Disk, mark: Mark) -> Result<Self, StoreError> {
         root::open(&disk)?;
         let in_use = lock::share(&disk);
         Ok(Self {
@@ -130,7 +142,7 @@ impl Store {
     /// # Errors
     /// It holds what flow does not make, or nothing that flow made; it cannot be written.
     pub fn adopt(root: &Path) -> Result<(), StoreError> {
-        root::adopt(&Disk { root: root.to_owned() })
+        root::adopt(&Disk { root: root.to_owned(), read_only: false })
     }
 
     /// Says where and by what results are computed, asked when the first is; without it [`Origin::here`] is taken.

@@ -46,6 +46,9 @@ pub(super) fn open(disk: &Disk) -> Result<(), StoreError> {
 fn opened(disk: &Disk) -> Result<bool, StoreError> {
     let root = &disk.root;
     if !root.is_dir() {
+        if disk.read_only && !root.exists() {
+            return Ok(true);
+        }
         create(disk)?;
     }
     let folder = Folder::at(root).map_err(|error| disk.fail("open the folder", root, error))?;
@@ -60,6 +63,7 @@ fn opened(disk: &Disk) -> Result<bool, StoreError> {
         Err(error) => return Err(disk.fail("read", &root.join(MARKER), error)),
     }
     match other_names(disk, &folder)?.as_slice() {
+        [] if disk.read_only => Ok(true),
         [] => mark(disk).map(|()| true),
         // Another process has made it in the meantime.
         names if names.iter().any(|name| name == MARKER) => Ok(false),
