@@ -5,11 +5,13 @@
 //! eye meets first are drawn: a cube of 67,000 balls shows some thousand of them, and its file stays small.
 //! A cut plane takes away all that lies before it along one axis; balls that it passes through show a flat section.
 
+mod frame;
+
 use super::Figure;
 use super::Style;
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
-use super::palette::{self, INK, PAPER, SOFT};
+use super::palette::{self, INK, PAPER};
 use super::scene::{Anchor, Fill, Item, Path, Point, Rect, Scene, Stroke};
 use super::specimen::{group_color, thousands};
 use super::text::Line;
@@ -59,6 +61,8 @@ pub struct Solid {
     pub modes: Vec<String>,
     /// Where the specimen is cut open.
     pub cut: Option<Cut>,
+    /// The axis of a cylinder or thick disc, which has a round frame; none of a box. An open cut is shown in a box.
+    pub round: Option<usize>,
     /// Whether the vertical of the picture is the y of the numbers, as of specimens that are loaded along y; the axis
     /// into the depth of the picture is then their −z. Otherwise the vertical is z.
     pub y_up: bool,
@@ -301,35 +305,6 @@ impl Solid {
             let color = palette::mode(crack.mode).mix(PAPER, away);
             let points: Vec<Point> = circle(crack.at, crack.normal, crack.radius, 12).map(page.place).collect();
             scene.shape(Path::polygon(&points), Fill { color, opacity: 0.85 }, Stroke::new(color.mix(INK, 0.3), 0.08));
-        }
-    }
-
-    /// The edges of the domain: those behind before the content, those in front after it.
-    fn draw_frame(&self, scene: &mut Scene, page: &Page, front: bool) {
-        let back = page.view.back();
-        let place = |signs: [f64; 3]| {
-            let at = |k: usize| if signs[k] > 0.0 { self.high[k] } else { self.low[k] };
-            (page.place)([at(0), at(1), at(2)])
-        };
-        let mut path = Path::default();
-        for corner in (0..8).map(|k| [0, 1, 2].map(|b| if k >> b & 1 == 1 { 1.0 } else { -1.0 })) {
-            for axis in (0..3).filter(|&axis| corner[axis] < 0.0) {
-                let mut other = corner;
-                other[axis] = 1.0;
-                let hidden = (0..3).filter(|&k| k != axis).all(|k| corner[k] == back[k]);
-                let cut_away = self.cut.is_some_and(|c| {
-                    front && {
-                        let k = c.axis.min(2);
-                        k == axis || corner[k] != back[k]
-                    }
-                });
-                if hidden != front && !cut_away {
-                    path.add_polyline(&[place(corner), place(other)]);
-                }
-            }
-        }
-        if !path.0.is_empty() {
-            scene.stroke(path, if front { Stroke::new(INK, 0.2) } else { Stroke::new(SOFT, 0.15).dashed(&[1.2, 1.0]) });
         }
     }
 

@@ -159,7 +159,7 @@ command 2
 data 2
 design 2
 effort 1
-figure 14
+figure 15
 fit 3
 formula 2
 gather 2
@@ -170,7 +170,7 @@ screening 4
 shapes 1
 simulate 3
 specimen 2
-table 6
+table 7
 verify 2
 ";
 

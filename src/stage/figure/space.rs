@@ -19,7 +19,13 @@ fn upright([x, y, z]: [f64; 3]) -> [f64; 3] {
 /// A specimen in space, without its balls, in mm.
 fn frame(stored: &StoredSpecimen) -> Solid {
     let half = [stored.width, stored.depth, stored.height].map(|edge| 0.5 * edge * MM);
-    Solid { low: half.map(|edge| -edge), high: half, y_up: true, ..Solid::default() }
+    // On the page the second axis is the depth, the third the height.
+    let round = match stored.outline.as_str() {
+        "thick-disc" => Some(1),
+        "cylinder" => Some(2),
+        _ => None,
+    };
+    Solid { low: half.map(|edge| -edge), high: half, y_up: true, round, ..Solid::default() }
 }
 
 /// A specimen in space: cut open through its middle, where rigid clumps would be hidden by the mortar around them.
