@@ -25,11 +25,11 @@
 //! | [`plan`] | TOML text → checked workflow; tasks → texts and keys; reasons of reruns |
 //! | [`store`] | the folder of results: HDF5, journals, locks |
 //! | [`stage`] | one file per kind of stage: where domains meet workflows and artifacts |
-//! | [`artifact`] | what can be stored, as plain data with a content hash |
+//! | [`mod@artifact`] | what can be stored, as plain data with a content hash |
 //! | [`dem`] | the discrete-element engine, specimens and tests |
 //! | [`shape`] | solids of stones, and the clumps of balls that stand for them |
 //! | [`design`], [`stats`], [`optim`], [`figure`] | designs of experiments, statistics, optimisers, pictures |
-//! | [`math`], [`unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
+//! | [`math`], [`mod@unit`], [`expression`] | random streams, elementary functions, distributions; quantities with units, formulas of them |
 //!
 //! The domains (`dem`, `design`, `stats`, `optim`, `shape`, `figure`) are pure and know nothing of one another, of files or of TOML.
 //!
@@ -43,7 +43,7 @@
 //! # What is written down, and what it is called
 //! | word | what it is | where |
 //! |---|---|---|
-//! | artifact | the result of one task: tables, arrays, texts | [`artifact`] |
+//! | artifact | the result of one task: tables, arrays, texts | [`mod@artifact`] |
 //! | object | an artifact as a file of the store, named by its content | [`store`] |
 //! | record | one line of a journal: task → object, digest, size, time, machine | [`store`] |
 //! | journal | a file of records, one per process that writes; lines are only added | [`store`] |
@@ -51,7 +51,7 @@
 //! | summary | of a run: failure, validity and responses, all that a table of runs needs | [`stage::cached`] |
 //! | campaign record | what one `flow run` did: stages, times, settings, versions; `flow diff` reads it as `#N` | [`store::Campaign`] |
 //! | report | of a worker: its messages, one line each; of a campaign: the HTML page | [`cluster`], [`report`] |
-//! | note | a sentence on an analysis that a reader must not miss; the table `notes` of statistics | [`artifact`] |
+//! | note | a sentence on an analysis that a reader must not miss; the table `notes` of statistics | [`mod@artifact`] |
 //! | warning | of `flow check` or of a running task: no fault, but to be known before a result is trusted | [`plan`], [`cli`] |
 //!
 //! Types named `Params` are the parameters of the tasks of one kind, in SI units, private to the file of the kind. Types

@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "layers/circles.rs"]
+mod circles;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -47,7 +50,7 @@ const KEEPERS: &[(&str, &[&str])] = &[
     ("signal_hook", &["cli"]),
     ("csv", &["stage", "export"]),
     ("maud", &["report"]),
-    ("regex", &["stage", "cluster"]),
+    ("regex_lite", &["stage", "cluster"]),
 ];
 
 /// The layer that a file of `src` belongs to; none for `lib.rs` and `main.rs`.

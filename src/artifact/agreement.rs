@@ -1,7 +1,7 @@
 //! Computed results beside values from elsewhere, as they are stored.
 
 use super::ArtifactKind;
-use super::statistics::NoteTable;
+use super::notes::NoteTable;
 use super::validity::NotValid;
 
 crate::artifact! {

@@ -1,6 +1,7 @@
 //! Columns of typed tables: one [`Cells`] per type of column.
 
 use super::{Table, Unread};
+use math::scale::Scale;
 use ndarray::Array2;
 
 /// A type whose values fill one column of a table, or several.
@@ -13,6 +14,9 @@ pub trait Cells: Sized {
     /// # Errors
     /// The column that is missing or has another type or unit.
     fn take(table: &Table, name: &str, unit: &str) -> Result<Self, Unread>;
+
+    /// Reads the columns that no field of the declaration names; `declared` are the names of its fields.
+    fn take_undeclared(&mut self, _table: &Table, _declared: &[&str]) {}
 }
 
 /// Adds a column through the methods that build tables.
@@ -66,6 +70,20 @@ impl Cells for Vec<String> {
     }
     fn take(table: &Table, name: &str, _unit: &str) -> Result<Self, Unread> {
         Ok(table.texts(name)?.to_vec())
+    }
+}
+
+/// The columns of a table that its declaration does not name, such as those of factors and responses.
+impl Cells for Table {
+    fn put(&self, table: &mut Table, _name: &str, _unit: &str, _about: &str) {
+        table.columns.extend(self.columns.iter().cloned());
+    }
+    fn take(_table: &Table, _name: &str, _unit: &str) -> Result<Self, Unread> {
+        Ok(Self::default())
+    }
+    fn take_undeclared(&mut self, table: &Table, declared: &[&str]) {
+        let undeclared = table.columns.iter().filter(|column| !declared.contains(&column.name.as_str()));
+        self.columns = undeclared.cloned().collect();
     }
 }
 
@@ -130,6 +148,42 @@ impl<C: Cells> Cells for Option<C> {
     }
 }
 
+/// A word of a fixed list: a list of such words fills a column of texts.
+pub trait Word: Copy + 'static {
+    /// All of them.
+    const ALL: &'static [Self];
+
+    /// The word in files.
+    fn word(self) -> &'static str;
+}
+
+impl<W: Word> Cells for Vec<W> {
+    fn put(&self, table: &mut Table, name: &str, unit: &str, about: &str) {
+        let words: Vec<String> = self.iter().map(|own| own.word().to_owned()).collect();
+        words.put(table, name, unit, about);
+    }
+    fn take(table: &Table, name: &str, _unit: &str) -> Result<Self, Unread> {
+        let known = || W::ALL.iter().map(|own| own.word()).collect::<Vec<_>>().join(", ");
+        let own = |(row, word): (usize, &String)| {
+            let found = W::ALL.iter().copied().find(|own| own.word() == word);
+            found.ok_or_else(|| Unread::Word { name: name.to_owned(), row, text: word.clone(), known: known() })
+        };
+        (1..).zip(table.texts(name)?).map(own).collect()
+    }
+}
+
+/// The scale of a factor in a model, as files have it.
+impl Word for Scale {
+    const ALL: &'static [Self] = &[Self::Linear, Self::Log];
+
+    fn word(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Log => "log",
+        }
+    }
+}
+
 /// Declares words that stand in a column: an enum that is a column of texts.
 ///
 /// ```text
@@ -163,23 +217,11 @@ macro_rules! words {
             }
         }
 
-        impl $crate::artifact::Cells for Vec<$name> {
-            fn put(&self, table: &mut $crate::artifact::Table, name: &str, unit: &str, about: &str) {
-                let words: Vec<String> = self.iter().map(|own| own.word().to_owned()).collect();
-                $crate::artifact::Cells::put(&words, table, name, unit, about);
-            }
-            fn take(
-                table: &$crate::artifact::Table,
-                name: &str,
-                _unit: &str,
-            ) -> Result<Self, $crate::artifact::Unread> {
-                let own = |word: &String| $name::ALL.into_iter().find(|own| own.word() == word);
-                let all: Option<Vec<$name>> = table.texts(name)?.iter().map(own).collect();
-                all.ok_or_else(|| $crate::artifact::Unread::Type {
-                    name: name.to_owned(),
-                    found: "other texts",
-                    wanted: concat!("one of" $(, " ", $word)*),
-                })
+        impl $crate::artifact::Word for $name {
+            const ALL: &'static [Self] = &Self::ALL;
+
+            fn word(self) -> &'static str {
+                self.word()
             }
         }
     };
@@ -211,6 +253,38 @@ mod tests {
         for sample in [plane, space] {
             assert_eq!(Sample::from_table(&sample.to_table()), Ok(sample));
         }
+    }
+
+    crate::table! {
+        /// columns that the workflow names among declared ones
+        struct Runs {
+            /// which
+            index: Vec<usize>, "";
+            /// factors and responses
+            point: Table, "";
+            /// why
+            failure: Vec<String>, "";
+        }
+    }
+
+    #[test]
+    fn undeclared_columns_stand_where_the_declaration_has_them_and_come_back() {
+        let point =
+            Table::default().reals_column("Ec", "GPa", "", vec![35.0]).reals_column("UCS", "MPa", "", vec![30.0]);
+        let runs = Runs { index: vec![1], point, failure: vec![String::new()] };
+        let table = runs.to_table();
+        assert_eq!(
+            table.columns.iter().map(|column| &*column.name).collect::<Vec<_>>(),
+            ["index", "Ec", "UCS", "failure"]
+        );
+        assert_eq!(Runs::from_table(&table), Ok(runs));
+    }
+
+    #[test]
+    fn a_word_that_is_not_in_the_list_is_named_with_its_row() {
+        let table = Table::default().texts_column("scale", "", vec!["log".to_owned(), "wide".to_owned()]);
+        let error = <Vec<Scale> as Cells>::take(&table, "scale", "").unwrap_err();
+        assert_eq!(error.to_string(), "row 2: `scale` is `wide`; known are linear, log");
     }
 
     #[test]

@@ -76,7 +76,8 @@ macro_rules! artifact {
 /// assert_eq!(Curve::from_table(&table), Ok(curve));
 /// ```
 ///
-/// The doc comments are the descriptions in the file. A column is a [`Cells`](super::Cells) type.
+/// The doc comments are the descriptions in the file. A column is a [`Cells`](super::Cells) type; a field of type
+/// [`Table`](super::Table) holds the columns that the declaration does not name, where it stands.
 #[macro_export]
 macro_rules! table {
     ($(#[doc = $about:literal])* $visible:vis struct $name:ident {
@@ -101,7 +102,10 @@ macro_rules! table {
             /// # Errors
             /// The column that is missing or has another type or unit.
             $visible fn from_table(table: &$crate::artifact::Table) -> Result<Self, $crate::artifact::Unread> {
-                Ok(Self { $($field: $crate::artifact::Cells::take(table, stringify!($field), $unit)?,)* })
+                let mut read = Self { $($field: $crate::artifact::Cells::take(table, stringify!($field), $unit)?,)* };
+                let declared = [$(stringify!($field)),*];
+                $($crate::artifact::Cells::take_undeclared(&mut read.$field, table, &declared);)*
+                Ok(read)
             }
         }
 

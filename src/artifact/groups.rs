@@ -1,7 +1,7 @@
 //! Fits by groups of rows as they are stored.
 
 use super::field::table_of;
-use super::statistics::NoteTable;
+use super::notes::NoteTable;
 use super::validity::NotValid;
 use super::{Artifact, ArtifactKind, Field, Table, Wanted};
 

@@ -93,17 +93,6 @@ impl Table {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// Puts all columns of another table behind the column `name`, which must be there.
-    #[must_use]
-    pub fn with_after(mut self, name: &str, other: Self) -> Self {
-        let at = self.columns.iter().position(|column| column.name == name).map_or(self.columns.len(), |at| at + 1);
-        for column in &other.columns {
-            assert!(self.column(&column.name).is_none(), "BUG: two columns named `{}`", column.name);
-        }
-        self.columns.splice(at..at, other.columns);
-        self
-    }
-
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |column| column.values.len())

@@ -1,6 +1,6 @@
 //! A range analysis as it is stored.
 
-use super::statistics::NoteTable;
+use super::notes::NoteTable;
 use super::validity::NotValid;
 use super::{ArtifactKind, Cells, Numbered, Table, Unread, Values};
 

@@ -26,6 +26,18 @@ pub enum Unread {
         /// What stands there.
         text: String,
     },
+    /// A text that is none of the words of a column.
+    #[error("row {row}: `{name}` is `{text}`; known are {known}")]
+    Word {
+        /// The column.
+        name: String,
+        /// The first such row, from 1.
+        row: usize,
+        /// The text.
+        text: String,
+        /// The words of the column.
+        known: String,
+    },
     /// A column of another type.
     #[error("column `{name}` holds {found}, wanted {wanted}")]
     Type {

@@ -1,7 +1,7 @@
 //! Runs or measurements as they are stored: what simulators, external programs, formulas and data files give alike.
 
 use super::field::table_of;
-use super::statistics::NoteTable;
+use super::notes::NoteTable;
 use super::{Artifact, ArtifactKind, Table, Values, Wanted};
 
 crate::artifact! {

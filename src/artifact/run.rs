@@ -1,6 +1,6 @@
 //! One run of a simulator as it is stored.
 
-use super::{Artifact, ArtifactKind, Group, Node, Unread, Values, Wanted, results};
+use super::{Artifact, ArtifactKind, Group, Node, Table, Unread, Values, Wanted, results};
 use ndarray::{Array2, Array3};
 use std::borrow::Cow;
 
@@ -183,6 +183,11 @@ crate::table! {
 impl Run {
     /// How a warning begins that repeats [`Run::validity`].
     pub const NOT_VALID: &'static str = "not valid: ";
+
+    /// The stress–strain curve of an artifact, without a copy; `None` where it holds none.
+    pub fn curve_of(artifact: &Artifact) -> Option<&Table> {
+        artifact.table("curve")
+    }
 
     /// A run that holds responses only.
     pub fn plain(failure: &str, responses: Responses) -> Self {

@@ -10,13 +10,14 @@ mod page;
 
 use super::common::{Campaign, system, workers};
 use super::progress::Progress;
-use super::run::{expected, interruption};
-use super::whole::Whole;
+use super::run::{ahead, interruption};
 use super::{Exit, complete};
-use crate::artifact::Artifact;
+use crate::artifact::calibration::{Solution, Verification};
+use crate::artifact::{self, Artifact};
 use crate::exec::cores;
+use crate::export::csv_text;
 use crate::plan::{Workflow, nearest};
-use crate::run::{Report, RunSettings, Silent, StageStatus, Watch, decide, forecasts_of, run};
+use crate::run::{Report, RunSettings, Silent, StageStatus, Watch, decide, run};
 use crate::stage::Kind;
 use crate::stage::calibrate::{Calibrate as Calibration, Wanted};
 use crate::stage::verify::Verify;
@@ -78,17 +79,18 @@ impl Calibrate {
         let stop = Arc::new(AtomicBool::new(false));
         let report = asked.run(std::slice::from_ref(&asked.stage), 1, &Silent, &stop);
         let solution = asked.result(&report, &asked.stage)?;
+        let solution = typed(Solution::from_artifact(&solution))?;
         if !(self.json || self.csv && self.verify) {
-            let text = if self.csv { answer::csv(&solution, "solution") } else { answer::text(&asked, &solution) };
-            super::output::write(&text);
+            let csv = || csv_text(&solution.solution.to_table());
+            super::output::write(&if self.csv { csv() } else { answer::text(&asked, &solution) });
         }
         let (verified, exit) = if self.verify { self.verified(&asked) } else { (Vec::new(), Exit::Done) };
         if self.json {
             out!("{}", answer::document(&asked, &solution, &verified));
         } else {
             for verification in &verified {
-                let csv = || answer::csv(verification, "summary");
-                super::output::write(&if self.csv { csv() } else { answer::verified(verification) });
+                let summary = verification.summary.to_table();
+                super::output::write(&if self.csv { csv_text(&summary) } else { answer::verified(&summary) });
             }
         }
         Ok(exit)
@@ -196,15 +198,11 @@ impl Calibrate {
     }
 
     /// The results of the verifications, and how their runs ended.
-    fn verified(&self, asked: &Asked) -> (Vec<Arc<Artifact>>, Exit) {
+    fn verified(&self, asked: &Asked) -> (Vec<Verification>, Exit) {
         let jobs = self.jobs.unwrap_or_else(cores);
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
-            false => Box::new(Progress::new(
-                Whole::of(forecasts_of(&asked.workflow, &asked.checks)),
-                || expected(&asked.workflow, &asked.store),
-                jobs,
-            )),
+            false => Box::new(Progress::new(|| ahead(&asked.workflow, &asked.checks, &asked.store), jobs)),
         };
         let report = asked.run(&asked.checks, jobs, &*watch, &interruption(None));
         if report.interrupted {
@@ -213,7 +211,7 @@ impl Calibrate {
         let mut found = Vec::new();
         let mut exit = Exit::Done;
         for check in &asked.checks {
-            match asked.result(&report, check) {
+            match asked.result(&report, check).and_then(|found| typed(Verification::from_artifact(&found))) {
                 Ok(artifact) => found.push(artifact),
                 Err(other) => exit = other,
             }
@@ -253,6 +251,14 @@ impl Asked {
             }
         }
     }
+}
+
+/// A result in its type, or the fault of an artifact that another version wrote.
+fn typed<T>(read: Result<T, artifact::Wanted>) -> Result<T, Exit> {
+    read.map_err(|wanted| {
+        err!("error: the result cannot be read: {wanted}");
+        Exit::System
+    })
 }
 
 /// The targets as a TOML table, or what is wrong with them.

@@ -1,12 +1,12 @@
 //! Options that mean the same on every command that takes a workflow, and the two things each begins with.
 
+use super::color::Color;
 use super::{Exit, complete, message};
 use crate::plan::{self, Overrides, Workflow};
 use crate::report::{duration, moment, quoted};
 use crate::run::commit;
 use crate::store::{Origin, Store};
-use clap::{Args, ValueEnum};
-use std::io::IsTerminal;
+use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// Which campaign.
@@ -37,29 +37,6 @@ pub(super) struct Common {
     /// Print results and errors only: no progress, no summary, no notes.
     #[arg(long, global = true)]
     pub(super) quiet: bool,
-}
-
-/// When to use colours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Color {
-    /// On a terminal, unless NO_COLOR is set.
-    Auto,
-    /// Always.
-    Always,
-    /// Never.
-    Never,
-}
-
-impl Color {
-    /// Whether messages on standard error are coloured.
-    pub(super) fn on(self) -> bool {
-        let wanted = || std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-        match self {
-            Self::Auto => std::io::stderr().is_terminal() && wanted(),
-            Self::Always => true,
-            Self::Never => false,
-        }
-    }
 }
 
 impl Campaign {

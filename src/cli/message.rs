@@ -1,6 +1,6 @@
 //! Faults as a person reads them: the line, a caret under the location, what is known, what to do.
 
-use super::common::Color;
+use super::color::Color;
 use crate::plan::{Fault, Location};
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;

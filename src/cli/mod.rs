@@ -7,6 +7,7 @@
 mod output;
 mod calibrate;
 mod check;
+mod color;
 mod common;
 mod complete;
 mod completions;

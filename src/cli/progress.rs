@@ -3,6 +3,7 @@
 use super::whole::Whole;
 use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, TaskCount, Watch};
+use crate::stage::forecast::Forecast;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::IsTerminal;
@@ -19,10 +20,18 @@ pub(super) struct Progress<'a> {
     /// How far all stages together are, and its line on a terminal.
     whole: Mutex<Whole>,
     line: Option<ProgressBar>,
-    /// Mean seconds of a task by stage, from earlier runs; looked up when the first task starts.
-    expected: OnceLock<HashMap<String, f64>>,
-    look_up: Box<dyn Fn() -> HashMap<String, f64> + Sync + 'a>,
+    /// Computed when the first task starts, as neither is needed where all results are cached.
+    ahead: OnceLock<Ahead<'a>>,
+    look_ahead: Box<dyn Fn() -> Ahead<'a> + Sync + 'a>,
     workers: usize,
+}
+
+/// What is expected of a campaign.
+pub(super) struct Ahead<'a> {
+    /// The forecasts of its stages.
+    pub forecasts: Vec<(&'a str, Forecast)>,
+    /// Mean seconds of a task by stage, from earlier runs.
+    pub seconds: HashMap<String, f64>,
 }
 
 /// A stage at work.
@@ -41,8 +50,8 @@ struct Live {
 }
 
 impl<'a> Progress<'a> {
-    /// `look_up` gives the mean seconds of a task by stage.
-    pub(super) fn new(whole: Whole, look_up: impl Fn() -> HashMap<String, f64> + Sync + 'a, workers: usize) -> Self {
+    /// The progress of a campaign that `workers` tasks at a time compute.
+    pub(super) fn new(look_ahead: impl Fn() -> Ahead<'a> + Sync + 'a, workers: usize) -> Self {
         let screen = std::io::stderr().is_terminal().then(|| {
             let target = ProgressDrawTarget::stderr_with_hz(8);
             MultiProgress::with_draw_target(target)
@@ -52,8 +61,16 @@ impl<'a> Progress<'a> {
             line.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
             line
         });
-        let (stages, whole) = (Mutex::default(), Mutex::new(whole));
-        Self { screen, stages, whole, line, expected: OnceLock::new(), look_up: Box::new(look_up), workers }
+        let (stages, whole) = (Mutex::default(), Mutex::default());
+        Self { screen, stages, whole, line, ahead: OnceLock::new(), look_ahead: Box::new(look_ahead), workers }
+    }
+
+    fn ahead(&self) -> &Ahead<'a> {
+        self.ahead.get_or_init(|| {
+            let ahead = (self.look_ahead)();
+            self.whole(|whole| whole.look_ahead(ahead.forecasts.iter().copied()));
+            ahead
+        })
     }
 
     fn stages(&self) -> MutexGuard<'_, HashMap<String, Live>> {
@@ -135,7 +152,7 @@ impl<'a> Progress<'a> {
         live.failed = count.failed;
         let elapsed = live.started.elapsed().as_secs_f64();
         let left = count.total - count.ended();
-        let earlier = self.expected.get_or_init(&self.look_up);
+        let earlier = &self.ahead().seconds;
         let expected = earlier.get(stage).map(|s| s / self.workers as f64);
         let measured = elapsed / live.ended as f64 * self.workers as f64;
         let words = self.whole(|whole| {
@@ -191,7 +208,10 @@ impl<'a> Progress<'a> {
 impl Watch for Progress<'_> {
     fn event(&self, event: Event<'_>) {
         match event {
-            Event::Started { stage, .. } => self.started(stage),
+            Event::Started { stage, .. } => {
+                self.ahead();
+                self.started(stage);
+            }
             Event::Progress { stage, row, progress } if progress.warning => self.warn(stage, row, &progress.note),
             Event::Progress { stage, row, progress } => {
                 if let Some(bar) = self.stages().get(stage).and_then(|live| live.bar.as_ref()) {

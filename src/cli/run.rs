@@ -2,9 +2,8 @@
 
 use super::common::{Campaign, system, workers};
 use super::notes::notes;
-use super::progress::{Progress, task_name};
+use super::progress::{Ahead, Progress, task_name};
 use super::site;
-use super::whole::Whole;
 use super::{Exit, complete};
 use crate::cluster::Site;
 use crate::exec::cores;
@@ -19,7 +18,6 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
-use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
@@ -94,11 +92,7 @@ impl Run {
         };
         let watch: Box<dyn Watch> = match self.campaign.common.quiet {
             true => Box::new(Silent),
-            false => Box::new(Progress::new(
-                Whole::of(forecasts_of(&workflow, &self.stages)),
-                || expected(&workflow, &store),
-                jobs,
-            )),
+            false => Box::new(Progress::new(|| ahead(&workflow, &self.stages, &store), jobs)),
         };
         let report = run(&workflow, &store, &settings, &*watch, &stop);
         drop(watch);
@@ -220,10 +214,12 @@ fn hangup_is_ignored() -> bool {
     mask & (1 << (SIGHUP - 1)) != 0
 }
 
-pub(super) fn expected(workflow: &Workflow, store: &Store) -> HashMap<String, f64> {
-    let Ok(past) = Past::of(workflow, store) else { return HashMap::new() };
-    let seconds = |name: &String| Some((name.clone(), past.seconds(name)?));
-    workflow.stages.iter().filter_map(|stage| seconds(&stage.name)).collect()
+/// What is expected of a campaign of these stages, or of all when none is named.
+pub(super) fn ahead<'a>(workflow: &'a Workflow, stages: &[String], store: &Store) -> Ahead<'a> {
+    let past = Past::of(workflow, store).ok();
+    let seconds = |name: &String| Some((name.clone(), past.as_ref()?.seconds(name)?));
+    let seconds = workflow.stages.iter().filter_map(|stage| seconds(&stage.name)).collect();
+    Ahead { forecasts: forecasts_of(workflow, stages), seconds }
 }
 
 fn summary(report: &Report, seconds: f64, number: Option<u64>) -> String {

@@ -7,6 +7,7 @@ use super::common::{Campaign, Common, system};
 use crate::artifact::Key;
 use crate::report::duration;
 use crate::run::decide;
+use crate::stage::command::leftover;
 use crate::store::{Amount, Store};
 use clap::{Args, Subcommand};
 use std::collections::HashSet;
@@ -165,12 +166,15 @@ impl StoreCommand {
             reach(path, &self.common, &store, &mut reachable)?;
         }
         if gc.yes {
-            crate::stage::command::leftover::sweep().iter().for_each(|line| err!("{line}"));
+            leftover::sweep().iter().for_each(|line| err!("{line}"));
+        } else if let found @ 1.. = leftover::count() {
+            err!("would end what {found} runs of programs left whose campaign was killed, and remove their folders");
         }
         let swept = store.sweep(&reachable, gc.yes).map_err(|e| system(&e))?;
         let verb = if gc.yes { "removed" } else { "would remove" };
-        let (removed, rubbish) = (swept.removed, swept.rubbish);
+        let (removed, memos, rubbish) = (swept.removed, swept.memos, swept.rubbish);
         out!("{verb} {} results ({}) that no named workflow reaches", removed.files, bytes(removed.bytes));
+        out!("{verb} {} memos ({}) that rest on other results", memos.files, bytes(memos.bytes));
         out!("{verb} {} damaged or left-over files ({})", rubbish.files, bytes(rubbish.bytes));
         out!("{} results remain ({})", swept.kept.files, bytes(swept.kept.bytes));
         if !gc.yes {

@@ -12,6 +12,7 @@ pub(super) struct Whole {
 }
 
 /// One stage.
+#[derive(Default)]
 struct Part {
     /// Tasks that it is expected to ask for.
     expected: usize,
@@ -35,29 +36,28 @@ impl Part {
 }
 
 impl Whole {
-    /// The campaign of these stages.
-    pub(super) fn of<'a>(forecasts: impl IntoIterator<Item = (&'a str, Forecast)>) -> Self {
-        let part = |(name, forecast): (&str, Forecast)| {
-            let expected = forecast.tasks.map_or(0, TaskForecast::count);
-            (name.to_owned(), Part { expected, total: 0, ended: 0, closed: false, seconds: None })
-        };
-        Self { stages: forecasts.into_iter().map(part).collect() }
+    /// Adds the stages that are ahead with the tasks that they are expected to ask for.
+    pub(super) fn look_ahead<'a>(&mut self, forecasts: impl IntoIterator<Item = (&'a str, Forecast)>) {
+        for (name, forecast) in forecasts {
+            self.part(name).expected = forecast.tasks.map_or(0, TaskForecast::count);
+        }
     }
 
-    /// Takes in how far a stage is; `seconds`: of one of its tasks.
+    fn part(&mut self, stage: &str) -> &mut Part {
+        self.stages.entry(stage.to_owned()).or_default()
+    }
+
+    /// Records the progress of a stage; `seconds`: of one of its tasks.
     pub(super) fn note(&mut self, stage: &str, count: TaskCount, seconds: Option<f64>) {
-        if let Some(part) = self.stages.get_mut(stage) {
-            (part.total, part.ended) = (count.total, count.ended());
-            part.seconds = seconds.or(part.seconds);
-        }
+        let part = self.part(stage);
+        (part.total, part.ended) = (count.total, count.ended());
+        part.seconds = seconds.or(part.seconds);
     }
 
     /// A stage has ended.
     pub(super) fn close(&mut self, stage: &str, count: TaskCount) {
         self.note(stage, count, None);
-        if let Some(part) = self.stages.get_mut(stage) {
-            part.closed = true;
-        }
+        self.part(stage).closed = true;
     }
 
     /// Fills in the durations of earlier runs where this one has measured none.
@@ -101,8 +101,11 @@ mod tests {
 
     #[test]
     fn the_rest_counts_stages_that_have_not_begun() {
-        let mut whole = Whole::of([("runs", runs(10)), ("more", runs(5)), ("table", Forecast::ONE)]);
-        assert_eq!(whole.in_words(2).unwrap(), "campaign 0/16");
+        let mut whole = Whole::default();
+        whole.note("runs", count(10, 3), None);
+        assert_eq!(whole.in_words(2), None, "nothing is known of other stages");
+        whole.look_ahead([("runs", runs(10)), ("more", runs(5)), ("table", Forecast::ONE)]);
+        assert_eq!(whole.in_words(2).unwrap(), "campaign 3/16");
         whole.note("runs", count(10, 4), Some(3.0));
         assert_eq!(whole.in_words(2).unwrap(), "campaign 4/16, more than 9.0 s left");
         whole.expect(|_| Some(2.0));
@@ -112,6 +115,8 @@ mod tests {
         whole.close("more", count(3, 3));
         whole.close("table", count(1, 1));
         assert_eq!(whole.in_words(2).unwrap(), "campaign 14/14");
-        assert_eq!(Whole::of([("one", Forecast::ONE)]).in_words(1), None);
+        let mut alone = Whole::default();
+        alone.look_ahead([("one", Forecast::ONE)]);
+        assert_eq!(alone.in_words(1), None);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! # How a campaign runs on a cluster
 //! `flow run … --executor slurm` is the submitter. It decides what is to be computed as every run does, writes the tasks whose
-//! inputs are known into a list in the store ([`line`], [`Queue`](crate::store::Queue)), and asks the scheduler for an array of
+//! inputs are known into a list in the store ([`mod@line`], [`Queue`](crate::store::Queue)), and asks the scheduler for an array of
 //! equal jobs ([`script`], [`scheduler`]), each of which is a worker: `flow work`. A worker takes tasks until none is
 //! left ([`slices`]), stores each result as any other flow does, and reports what it does ([`message`]). There is no
 //! server and no port: the store is all that submitter and workers share.

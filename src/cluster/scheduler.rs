@@ -170,7 +170,7 @@ impl Scheduler for Generic {
     fn submit(&self, order: &Order) -> Result<String, String> {
         let command: Vec<String> = self.0.submit.iter().map(|word| script::filled(word, order)).collect();
         let answer = run(&command)?;
-        let pattern = regex::Regex::new(&self.0.job).map_err(|error| error.to_string())?;
+        let pattern = regex_lite::Regex::new(&self.0.job).map_err(|error| error.to_string())?;
         let found = pattern.find(&answer).map(|found| found.as_str().to_owned());
         found.ok_or_else(|| format!("`{}` says no job that `commands.job` finds: {answer}", command[0]))
     }

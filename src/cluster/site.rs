@@ -301,7 +301,7 @@ impl Site {
                         faults.push(format!("`commands.{key}` has no program"));
                     }
                 }
-                if let Err(error) = regex::Regex::new(&commands.job) {
+                if let Err(error) = regex_lite::Regex::new(&commands.job) {
                     faults.push(format!("`commands.job`: {error}"));
                 }
             }

@@ -1,12 +1,12 @@
 //! Report on a table of runs, from its rows alone: balance, orthogonality, aliases, models, power, spread.
 //!
-//! * [`balance`]: how often each level occurs; proportional frequencies (n_ab N = n_a n_b for every pair of levels of
+//! * [`mod@balance`]: how often each level occurs; proportional frequencies (n_ab N = n_a n_b for every pair of levels of
 //!   two factors, which makes their main effects uncorrelated: Addelman 1962, doi:10.1080/00401706.1962.10489985);
 //!   strength
 //! * [`model`]: rank of the models one may want, the aliased terms, variance inflation
 //! * [`alias`]: what each main effect would pick up from interactions and squares that are left out of the model
 //! * [`power`]: the chance to see an effect of a given size
-//! * [`spread`]: distances and discrepancy of a sample
+//! * [`mod@spread`]: distances and discrepancy of a sample
 //!
 //! Coded units throughout ([`super::coding`]).
 

@@ -11,6 +11,15 @@ use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style};
 
+/// Column of the data: key of the response.
+pub const RESPONSE: &str = "response";
+/// Column of the data: unit of both values.
+pub const UNIT: &str = "unit";
+/// Column of the data: name of the group.
+pub const ORIGIN: &str = "origin";
+/// Column of the data: name of the point.
+pub const ROW: &str = "row";
+
 /// Points of one origin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cloud {
@@ -44,7 +53,7 @@ pub struct Agreement {
     pub y_word: String,
     /// Responses.
     pub pairs: Vec<Pair>,
-    /// Half width of the band as a share of the horizontal value: 0.1 for ±10 %.
+    /// Half width of the band as a fraction of the horizontal value: 0.1 for ±10 %.
     pub band: Option<f64>,
 }
 
@@ -86,10 +95,10 @@ impl Figure for Agreement {
                 .collect::<Vec<_>>()
         };
         vec![
-            Column::words("response", words(&|p, _, _| p.quantity.id().to_string())),
-            Column::words("unit", words(&|p, _, _| p.quantity.unit.clone())),
-            Column::words("origin", words(&|_, c, _| c.name.clone())),
-            Column::words("row", words(&|_, c, i| c.rows.get(i).cloned().unwrap_or_default())),
+            Column::words(RESPONSE, words(&|p, _, _| p.quantity.id().to_string())),
+            Column::words(UNIT, words(&|p, _, _| p.quantity.unit.clone())),
+            Column::words(ORIGIN, words(&|_, c, _| c.name.clone())),
+            Column::words(ROW, words(&|_, c, i| c.rows.get(i).cloned().unwrap_or_default())),
             Column::reals(&self.x_word.to_lowercase(), all().flat_map(|(_, c)| c.x.iter().copied()).collect()),
             Column::reals(&self.y_word.to_lowercase(), all().flat_map(|(_, c)| c.y.iter().copied()).collect()),
         ]

@@ -2,15 +2,15 @@
 //!
 //! Linear ticks are 1, 2, 2.5 or 5 times a power of ten; logarithmic ones are powers of ten with 2 … 9 as minor
 //! ticks (labelled too when the axis holds less than two powers). Large and small numbers have a power of ten, `4×10⁶`.
-//! Where labels would be longer than [`LONGEST`] signs, what they have in common goes into the title: a power of ten, or
-//! a number that all of them lie above, `σ / MPa (+100000)`.
+//! Where labels would be longer than [`LONGEST`] characters, their common part goes into the title: a power of ten, or an
+//! offset, `σ / MPa (+100000)`.
 
 use math::elementary::{log10, pow};
 
-/// Most signs of a label before what it has in common with the others goes into the title.
+/// Most characters of a label before the part that all labels share goes into the title.
 const LONGEST: usize = 7;
 
-/// Labels of which the span is less than this part of the largest have leading digits in common.
+/// Labels whose span is less than this fraction of the largest share leading digits.
 const SHARED: f64 = 0.02;
 
 /// How values are spread along an axis.
@@ -38,7 +38,7 @@ pub struct Tick {
 pub struct Axis {
     /// Title with its unit, in the markup of [`super::text`].
     pub label: String,
-    /// What all labels of ticks have in common, in the same markup; it belongs behind the title. Mostly empty.
+    /// The part that all labels of ticks share, in the same markup; it is appended to the title. Mostly empty.
     pub common: String,
     /// Spread of the values.
     pub scale: Scale,
@@ -65,7 +65,7 @@ impl Axis {
         Self { label: label.into(), common: String::new(), scale, low, high, ticks, minor, grid: true }.shortened()
     }
 
-    /// The title with what all labels have in common.
+    /// The title with the part that all labels share.
     pub fn title(&self) -> String {
         if self.label.is_empty() || self.common.is_empty() {
             self.label.clone()
@@ -74,7 +74,7 @@ impl Axis {
         }
     }
 
-    /// Takes a common number or power out of long labels, where the title can state it.
+    /// Moves a common offset or power of ten from long labels into the title.
     fn shortened(mut self) -> Self {
         self.common.clear();
         let long = self.ticks.iter().any(|tick| signs(&tick.label) > LONGEST);
@@ -143,7 +143,7 @@ impl Axis {
         Self { label: label.into(), common, scale, low: -0.5, high, ticks, minor: Vec::new(), grid: false }
     }
 
-    /// The same without lines across.
+    /// The same axis without lines across.
     pub fn without_grid(mut self) -> Self {
         self.grid = false;
         self
@@ -214,7 +214,7 @@ fn nice_step(length: f64, want: usize) -> f64 {
     best.1
 }
 
-/// Exact for the powers that a double holds exactly, correctly rounded for their inverses.
+/// A power of ten: exact where a double holds it exactly, correctly rounded for its inverse.
 fn power_of_ten(exponent: i32) -> f64 {
     if exponent >= 0 { pow(10.0, f64::from(exponent)) } else { 1.0 / pow(10.0, f64::from(-exponent)) }
 }
@@ -287,7 +287,7 @@ fn tick_label(at: f64, step: f64, largest: f64) -> String {
     fixed(at, decimals(step))
 }
 
-/// Decimals that tell multiples of `step` apart.
+/// Number of decimals that distinguish multiples of `step`.
 fn decimals(step: f64) -> usize {
     (0..12)
         .find(|&d| {
@@ -302,7 +302,7 @@ fn shortest(value: f64, step: f64) -> String {
     fixed(value, digits)
 }
 
-/// Signs of a label that are seen.
+/// Number of visible characters of a label.
 fn signs(label: &str) -> usize {
     label.chars().filter(|c| !"${}^".contains(*c)).count()
 }

@@ -13,9 +13,9 @@ use math::elementary::log10;
 /// One bar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bar {
-    /// What it stands for.
+    /// The factor or effect that it shows.
     pub factor: Quantity,
-    /// What it belongs to; gives the colour. May be empty.
+    /// Group that gives the colour; may be empty.
     pub group: String,
     /// Length, not negative.
     pub value: f64,
@@ -28,7 +28,7 @@ pub struct Bar {
 pub struct RankedBars {
     /// Title of the picture.
     pub title: String,
-    /// What the length means.
+    /// The quantity that the length shows.
     pub quantity: Quantity,
     /// Bars in any order; they are drawn from the longest to the shortest.
     pub bars: Vec<Bar>,
@@ -120,7 +120,7 @@ impl RankedBars {
     fn describe(&self, order: &[usize]) -> String {
         let top = order.iter().take(4).map(|&i| {
             let bar = &self.bars[i];
-            // A factor without a key goes by its symbol, which a description tells in plain letters.
+            // A factor without a key is called by its symbol, in plain letters here.
             let name =
                 if bar.factor.key.is_empty() { &Line::new(&bar.factor.name, 1.0).plain } else { &bar.factor.key };
             format!("{name} {}", self.quantity.in_words(bar.value))

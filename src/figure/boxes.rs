@@ -27,7 +27,7 @@ pub struct Group {
 /// Groups side by side.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoxPlot {
-    /// What the groups differ in; may be empty.
+    /// The quantity that defines the groups; may be empty.
     pub by: Quantity,
     /// The quantity.
     pub y: Quantity,

@@ -1,7 +1,8 @@
-//! Curves of many runs in one plot: each thin, the mean of a group thick with its band, measured curves over them.
+//! Curves of many runs in one plot: each run as a thin line, the mean of a group as a thick line with its band, measured
+//! curves on top.
 //!
-//! A group of one curve has no mean; up to three curves a group keep the colour of the group, more are drawn grey when
-//! there is only one group, so that mean and measured curves stand out.
+//! A group of one curve has no mean. Curves have the colour of their group; those of a single group of more than three are
+//! drawn grey, so that mean and measured curves stand out.
 
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};

@@ -1,4 +1,4 @@
-//! A named column of numbers or words: the form in which figures and tables hand out their data.
+//! A named column of numbers or words: the form in which figures and tables return their data.
 
 /// Values of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,11 +20,11 @@ pub enum Digits {
     Fixed(usize),
     /// This many significant digits.
     Significant(usize),
-    /// This many significant digits, whole numbers as they are: for quantities of many kinds below one another.
+    /// This many significant digits, but whole numbers with all digits: for columns of quantities of several kinds.
     Unlike(usize),
 }
 
-/// A column with what its head needs.
+/// A column with the parts of its head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// Plain name, used as head in CSV.
@@ -59,19 +59,19 @@ impl Column {
         Self { key: key.into(), symbol: String::new(), unit: String::new(), values, digits: Digits::Shortest }
     }
 
-    /// The same with a unit.
+    /// Sets the unit.
     pub fn with_unit(mut self, unit: &str) -> Self {
         self.unit = unit.into();
         self
     }
 
-    /// The same with a symbol.
+    /// Sets the symbol.
     pub fn with_symbol(mut self, symbol: &str) -> Self {
         self.symbol = symbol.into();
         self
     }
 
-    /// The same with a format.
+    /// Sets the format.
     pub fn with_digits(mut self, digits: Digits) -> Self {
         self.digits = digits;
         self

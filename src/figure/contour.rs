@@ -27,9 +27,9 @@ pub struct Contour {
     pub values: Vec<f64>,
     /// Design points to mark.
     pub points: Vec<[f64; 2]>,
-    /// What is held constant, in label markup; drawn above the plot. May be empty.
+    /// The factors that are held constant, in label markup; drawn above the plot. May be empty.
     pub note: String,
-    /// How the axes of the two factors are divided; their nodes are even on them.
+    /// Scales of the axes of the two factors; the grid nodes are equally spaced on them.
     pub scales: [Scale; 2],
 }
 
@@ -198,14 +198,14 @@ impl Contour {
 
 fn label_of(level: f64, bands: &Bands, size: f64) -> Line {
     let step = bands.levels.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-    // In the words of the bar: what all numbers have in common stands in its title, and not on every line.
+    // As on the colour bar: the part that all numbers share stands in its title, and not on every line.
     let fine = Axis::between(bands.axis.label.as_str(), Scale::Linear, bands.low, bands.high, 11);
     let axis = if fine.common == bands.axis.common { &fine } else { &bands.axis };
     let known = axis.ticks.iter().find(|t| (t.at - level).abs() < 1e-6 * step);
     Line::new(known.map_or("", |t| &t.label), size)
 }
 
-/// Draws a contour line, interrupted by its label where that finds room. Returns whether the label was set.
+/// Draws a contour line, interrupted by its label where there is room. Returns true if the label was drawn.
 fn draw_line(
     scene: &mut Scene,
     line: &[Point],

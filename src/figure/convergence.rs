@@ -8,6 +8,11 @@ use super::panel::{Panel, draw_marker};
 use super::scene::{Fill, Path, Rect, Scene, Stroke};
 use super::{Figure, Style};
 
+/// Column of the data: name of the run.
+pub const RUN: &str = "run";
+/// Column of the data: best misfit so far.
+pub const BEST: &str = "best";
+
 /// One optimiser run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Descent {
@@ -68,9 +73,9 @@ impl Figure for Convergence {
         };
         let names = self.runs.iter().flat_map(|r| vec![r.name.clone(); r.effort.len()]).collect();
         let mut columns = vec![
-            Column::words("run", names),
+            Column::words(RUN, names),
             Column::reals(&self.effort.to_lowercase(), all(|r| &r.effort)),
-            Column::reals("best", all(|r| &r.best)),
+            Column::reals(BEST, all(|r| &r.best)),
         ];
         if self.runs.iter().any(|r| !r.median.is_empty()) {
             columns.push(Column::reals("median", all(|r| &r.median)));
@@ -95,7 +100,7 @@ impl Convergence {
         Axis::between(self.effort.clone(), Scale::Linear, low.min(0.0), high + 0.03 * (high - low), 5)
     }
 
-    /// Logarithmic; what has reached zero is drawn at the lower end.
+    /// A logarithmic axis; a misfit of zero is drawn at its lower end.
     fn y_axis(&self) -> Axis {
         let values = self.runs.iter().flat_map(|r| r.best.iter().chain(&r.median).copied());
         let (low, high) = extent(values.filter(|v| *v > 0.0));
@@ -123,7 +128,7 @@ fn floored(values: &[f64], low: f64) -> Vec<f64> {
     values.iter().map(|v| v.max(low)).collect()
 }
 
-/// The best so far holds until it is beaten.
+/// A step line: the best misfit so far holds until the next improvement.
 fn steps(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::with_capacity(2 * points.len());
     for &[x, y] in points {

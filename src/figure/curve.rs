@@ -1,7 +1,7 @@
 //! Stress–strain curves, with the growth of cracks by mode below on the same strain axis.
 //!
-//! Axial strain runs to the right; lateral strain, when given, to the left of zero, as is usual for rock and
-//! concrete. The peak is marked; a secant through the origin shows the modulus.
+//! Axial strain is positive to the right; lateral strain, if there is any, lies to the left of zero, as is usual for rock
+//! and concrete. The peak is marked; a secant through the origin shows the modulus.
 
 use super::axis::{Axis, Scale, extent, significant};
 use super::column::Column;
@@ -11,6 +11,15 @@ use super::panel::{Margins, Panel, draw_marker};
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Style};
+
+/// Column of the data: number of the curve, from 1.
+pub const CURVE: &str = "curve";
+/// Column of the data: axial strain.
+pub const AXIAL_STRAIN: &str = "axial_strain";
+/// Column of the data: axial stress.
+pub const AXIAL_STRESS: &str = "axial_stress";
+/// Column of the data: lateral strain.
+pub const LATERAL_STRAIN: &str = "lateral_strain";
 
 /// One test.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,12 +89,12 @@ impl Figure for StressStrain {
             |values: &[f64], rows: usize| (0..rows).map(|i| values.get(i).copied().unwrap_or(f64::NAN)).collect();
         let number = |(i, c): (usize, &Curve)| vec![i as i64 + 1; c.axial.len()];
         let mut columns = vec![
-            Column::whole("curve", self.curves.iter().enumerate().flat_map(number).collect()),
-            Column::reals("axial_strain", all(&|c| c.axial.clone())),
-            Column::reals("axial_stress", all(&|c| padded(&c.stress, c.axial.len()))).with_unit("MPa"),
+            Column::whole(CURVE, self.curves.iter().enumerate().flat_map(number).collect()),
+            Column::reals(AXIAL_STRAIN, all(&|c| c.axial.clone())),
+            Column::reals(AXIAL_STRESS, all(&|c| padded(&c.stress, c.axial.len()))).with_unit("MPa"),
         ];
         if self.has_lateral() {
-            columns.push(Column::reals("lateral_strain", all(&|c| padded(&c.lateral, c.axial.len()))));
+            columns.push(Column::reals(LATERAL_STRAIN, all(&|c| padded(&c.lateral, c.axial.len()))));
         }
         let mut modes: Vec<&String> = Vec::new();
         for (mode, _) in self.curves.iter().flat_map(|c| &c.cracks) {
@@ -93,7 +102,7 @@ impl Figure for StressStrain {
                 modes.push(mode);
             }
         }
-        // A column of counts is named after its mode.
+        // A column of counts has the name of its mode.
         for mode in modes {
             let counts = |c: &Curve| {
                 let own = c.cracks.iter().find(|(own, _)| own == mode).map_or(&[][..], |(_, counts)| counts);
@@ -157,7 +166,7 @@ impl StressStrain {
         self.curves.iter().filter_map(tell).collect::<Vec<_>>().join(" ")
     }
 
-    /// With one test its name is the caption's business.
+    /// Only several tests have their names in the legend; with one test the caption names it.
     fn names(&self) -> Vec<Entry> {
         let several = self.curves.len() > 1;
         let named = self.curves.iter().enumerate().filter(|_| several);

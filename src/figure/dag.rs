@@ -20,7 +20,7 @@ pub struct Stage {
     pub class: usize,
 }
 
-/// Stages and what they take from one another.
+/// Stages and the results that they take from one another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dag {
     /// Stages in the order of the workflow.
@@ -47,7 +47,7 @@ impl Figure for Dag {
         let entries: Vec<Entry> =
             self.classes.iter().enumerate().map(|(i, c)| Entry::new(c.clone(), Swatch::Box(tint(i)))).collect();
         let top = legend::height(&entries, width - 1.6, style) + 1.2;
-        // Blank places need half a box only.
+        // Blank nodes need half a box only.
         let reach = |(p, h): (usize, &f64)| h + if p < layout.nodes { box_height } else { 0.6 * box_height };
         let tallest = layout.height.iter().enumerate().map(reach).fold(0.0, f64::max);
         let mut scene = Scene::new(width, top + tallest + 1.6);
@@ -155,7 +155,7 @@ fn draw_arrow(scene: &mut Scene, route: &[usize], boxes: &[Rect], layout: &Layer
         if steps.is_empty() {
             steps.push(Step::Move(from));
         } else {
-            // Straight across the layer it passes.
+            // Straight across the layer that it passes.
             steps.push(Step::Line(from));
         }
         let bend = 0.5 * (to[0] - from[0]);

@@ -12,6 +12,11 @@ use super::scene::{Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style, scatter};
 
+/// Column of the data: name of the effect in label markup.
+pub const EFFECT: &str = "effect";
+/// Column of the data: quantile of its rank.
+pub const QUANTILE: &str = "quantile";
+
 /// What the effects are plotted against.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Coordinates {
@@ -48,7 +53,7 @@ pub struct EffectPlot {
     pub effects: Vec<Effect>,
     /// Standard error that the line shows: Lenth's pseudo standard error, or that of the model.
     pub error: f64,
-    /// Whether the effects are over their standard errors: pure numbers.
+    /// Whether the effects are divided by their standard errors, and so are pure numbers.
     pub standardized: bool,
     /// Margin of error to mark, and its name; `None` to leave out.
     pub margin: Option<(String, f64)>,
@@ -90,9 +95,9 @@ impl Figure for EffectPlot {
 
     fn data(&self) -> Vec<Column> {
         vec![
-            Column::words("effect", self.effects.iter().map(|e| e.name.clone()).collect()),
+            Column::words(EFFECT, self.effects.iter().map(|e| e.name.clone()).collect()),
             self.response.column("size", self.effects.iter().map(|e| e.size).collect()),
-            Column::reals("quantile", self.effects.iter().map(|e| e.quantile).collect()),
+            Column::reals(QUANTILE, self.effects.iter().map(|e| e.quantile).collect()),
             Column::whole("active", self.effects.iter().map(|e| i64::from(e.active)).collect()),
         ]
     }

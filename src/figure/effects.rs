@@ -8,12 +8,21 @@ use super::panel::{Margins, Panel, draw_marker, marker, within};
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::{Figure, Quantity, Style};
 
+/// Column of the data: key of the factor.
+pub const FACTOR: &str = "factor";
+/// Column of the data: level in natural units.
+pub const LEVEL: &str = "level";
+/// Column of the data: unit of the level.
+pub const LEVEL_UNIT: &str = "level_unit";
+/// Column of the data: mean response at the level.
+pub const MEAN: &str = "mean";
+
 /// Means of one factor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FactorMeans {
     /// The factor.
     pub factor: Quantity,
-    /// What it belongs to ("mortar"); gives the colour. May be empty.
+    /// Group that gives the colour, such as "mortar"; may be empty.
     pub group: String,
     /// Levels in natural units, ascending.
     pub levels: Vec<f64>,
@@ -82,11 +91,11 @@ impl Figure for MainEffects {
             rows().map(|(f, i)| values(f).get(i).copied().unwrap_or(f64::NAN)).collect::<Vec<_>>()
         };
         let mut columns = vec![
-            Column::words("factor", rows().map(|(f, _)| f.factor.id().to_string()).collect()),
+            Column::words(FACTOR, rows().map(|(f, _)| f.factor.id().to_string()).collect()),
             Column::words("group", rows().map(|(f, _)| f.group.clone()).collect()),
-            Column::reals("level", pick(|f| &f.levels)),
-            Column::words("level_unit", rows().map(|(f, _)| f.factor.unit.clone()).collect()),
-            self.response.column("mean", pick(|f| &f.means)),
+            Column::reals(LEVEL, pick(|f| &f.levels)),
+            Column::words(LEVEL_UNIT, rows().map(|(f, _)| f.factor.unit.clone()).collect()),
+            self.response.column(MEAN, pick(|f| &f.means)),
         ];
         if self.factors.iter().any(|f| !f.half_width.is_empty()) {
             columns.push(self.response.column("half_width", pick(|f| &f.half_width)));

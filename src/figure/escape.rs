@@ -1,8 +1,8 @@
-//! Text that comes from a file, a log or a name, for each destination so that it stays text there: one function each.
+//! Escaping: one function per format, which makes text from a file, a log or a name stay text there.
 //!
 //! * [`xml`]: SVG, contents and attributes in double quotes
-//! * [`latex`]: LaTeX outside of mathematics; [`latex_markup`] lets mathematics between dollar signs pass that is known
-//!   to be harmless; [`latex_label`] for `\\label`
+//! * [`latex`]: LaTeX outside of mathematics; [`latex_markup`] passes mathematics between dollar signs if it is harmless;
+//!   [`latex_label`] for `\\label`
 //! * [`markdown`], [`markdown_markup`]: CommonMark with pipe tables
 //! * [`csv`]: RFC 4180
 //!

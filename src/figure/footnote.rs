@@ -1,13 +1,13 @@
-//! Sentences below a picture: what must be known before its numbers are believed.
+//! Footnotes: sentences below a picture that its reader must know, such as runs that were left out.
 
 use super::Style;
 use super::palette::SOFT;
 use super::scene::{Anchor, Scene};
 use super::text::{Line, plain_text};
 
-/// Size of the text, over that of labels.
+/// Size of the text relative to that of labels.
 const SHARE: f64 = 0.95;
-/// From one line to the next, over the size of the text.
+/// Line spacing relative to the size of the text.
 const LEADING: f64 = 1.25;
 /// White on both sides in mm.
 const MARGIN: f64 = 1.2;

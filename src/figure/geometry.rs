@@ -149,7 +149,7 @@ impl Rect {
         Self { left: self.left + left, top: self.top + top, right: self.right - right, bottom: self.bottom - bottom }
     }
 
-    /// Whether the insides of the two meet.
+    /// Whether the interiors of the two overlap.
     pub fn meets(&self, other: &Self) -> bool {
         self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
     }
@@ -160,7 +160,7 @@ impl Rect {
     }
 }
 
-/// Whether two rectangles, each given by its corners in turn, overlap: no side of either parts them.
+/// Whether two rectangles overlap, each by its corners in order: no side of either separates them.
 pub fn meet(a: &[Point; 4], b: &[Point; 4]) -> bool {
     let parts = |side: [f64; 2]| {
         let reach = |c: &[Point; 4]| {

@@ -1,7 +1,7 @@
-//! A matrix of values over two columns: the number in its cell, on the colour of its size.
+//! A matrix of values over two columns: each cell shows its number on the colour of its value.
 //!
-//! Cells have the order of their heads, not their distance. A cell without a value is struck out. Numbers are left out
-//! where they would be smaller than print allows, and then the colour bar is all there is.
+//! Cells follow the order of their heads, not the distances between them. A cell without a value is crossed out. Numbers
+//! that would be too small to print are left out; the colour bar remains.
 
 use super::axis::{Axis, extent, fixed, significant};
 use super::column::{Column, Values};
@@ -17,9 +17,9 @@ use math::elementary::log10;
 /// A matrix.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeatMap {
-    /// What the rows differ in.
+    /// The quantity of the rows.
     pub down: Quantity,
-    /// What the columns differ in.
+    /// The quantity of the columns.
     pub across: Quantity,
     /// The values in the cells.
     pub value: Quantity,
@@ -106,7 +106,7 @@ fn shorten(x: &mut Axis, y: &mut Axis, [width, height]: [f64; 2], style: &Style)
     }
 }
 
-/// Heads of columns that would meet: every second one, and so on.
+/// Thins heads of columns that would touch: every second one stays, and so on.
 fn thin_out(axis: &mut Axis, pitch: f64, size: f64) {
     let widest = axis.ticks.iter().map(|t| Line::new(&t.label, size).width).fold(0.0, f64::max) + 0.5 * size;
     let every = ((widest / pitch).ceil() as usize).max(1);
@@ -150,7 +150,7 @@ impl HeatMap {
     fn texts(&self, i: usize) -> (String, Option<String>) {
         let scatter = self.scatter.get(i).filter(|s| s.is_finite());
         let (low, high) = extent(self.cells.iter().map(|v| v.abs()).filter(|v| *v > 0.0));
-        // one number of decimals for all, so that a column is read at a glance, unless sizes are far apart
+        // all cells have the same number of decimals, unless their magnitudes are far apart
         let decimals = DIGITS as i32 - 1 - log10(high).floor() as i32;
         match usize::try_from(decimals) {
             Ok(d) if d <= 5 && high <= 100.0 * low => {

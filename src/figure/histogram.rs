@@ -78,7 +78,7 @@ fn mean_stroke() -> Stroke {
     Stroke::new(INK, 0.35)
 }
 
-/// Counts have whole ticks.
+/// The axis of counts has whole numbers at its ticks.
 fn whole(axis: &mut Axis) {
     axis.ticks.retain(|t| t.at.fract() == 0.0);
     axis.minor.clear();

@@ -1,7 +1,7 @@
 //! Marching squares: the region where a gridded field reaches a level, and the lines around it.
 //!
-//! The grid is thought to be surrounded by a ring of minus infinity, so every outline closes. A region is drawn by
-//! filling its outlines even–odd; regions of rising levels painted over one another leave no seams. Between two
+//! The grid is treated as surrounded by a ring of minus infinity, so every outline closes. A region is drawn by
+//! filling its outlines even–odd; regions of rising levels drawn over one another leave no seams. Between two
 //! nodes the field is linear; a saddle is joined when the mean of its four corners reaches the level.
 //! Lorensen and Cline (1987), doi:10.1145/37402.37422, in the plane.
 

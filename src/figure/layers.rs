@@ -1,7 +1,7 @@
 //! Layered placement of a directed acyclic graph (Sugiyama, Tagawa and Toda 1981, doi:10.1109/TSMC.1981.4308636).
 //!
-//! Longest-path layers; long edges pass through blank nodes; the order in each layer by barycentres, keeping the
-//! order with the fewest crossings; the heights by least squares towards the neighbours under a least distance.
+//! Layers follow the longest path; long edges pass through blank nodes; barycentres give the order in each layer, and the
+//! order with the fewest crossings is taken; heights minimise the squared distances to the neighbours under a least distance.
 
 /// A layout: layers of nodes, from the first to the last.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl Neighbours {
     }
 }
 
-/// Longest path from a source; then sources move up to their first reader.
+/// The layer of each node: the longest path from a source; then sources move up to their first reader.
 fn layers(nodes: usize, edges: &[(usize, usize)]) -> Vec<usize> {
     let mut layer = vec![0; nodes];
     for _ in 0..nodes {
@@ -136,7 +136,7 @@ fn sort(order: &mut Vec<Vec<usize>>, neighbours: &Neighbours, links: &[(usize, u
     *order = best.1;
 }
 
-/// Least squares towards the mean of the neighbours, swept to and fro.
+/// Moves heights towards the mean of the neighbours by least squares, in sweeps forwards and backwards.
 fn heights(order: &[Vec<usize>], neighbours: &Neighbours, nodes: usize, places: usize, distance: f64) -> Vec<f64> {
     let mut y = vec![0.0; places];
     for layer in order {
@@ -168,7 +168,7 @@ fn heights(order: &[Vec<usize>], neighbours: &Neighbours, nodes: usize, places: 
     y.iter().map(|v| v - lowest).collect()
 }
 
-/// The heights nearest to the wishes (least squares) that keep their order and gaps: pool adjacent violators.
+/// The heights nearest to the desired ones (least squares) that preserve order and gaps: pool adjacent violators.
 fn apart(wishes: &[f64], gaps: &[f64]) -> Vec<f64> {
     let mut offset = 0.0;
     let mut offsets = vec![0.0];

@@ -9,7 +9,7 @@ use super::text::Line;
 /// The symbol before a name.
 #[derive(Clone, Debug)]
 pub enum Swatch {
-    /// Nothing: the name says what the entries after it differ in.
+    /// None: the name is a heading for the entries after it.
     Nothing,
     /// A line, with a marker on it when given.
     Line(Stroke, Option<Marker>),

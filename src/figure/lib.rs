@@ -1,11 +1,11 @@
 //! Figures: plain series → [`scene::Scene`] → SVG, PNG or PDF. Nothing here knows stages, files or HDF5.
 //!
-//! A figure is a struct of its data with `impl Figure`; one file each. What it draws is also handed out as columns
-//! ([`Figure::data`]), so every figure has its CSV. Sizes are millimetres on paper, text is 8 pt when printed.
+//! A figure is a struct of its data with `impl Figure`; one file each. [`Figure::data`] returns what it draws as columns, so
+//! every figure has its CSV. Sizes are millimetres on paper, text is 8 pt when printed.
 //!
 //! * page: [`scene`] (what is drawn), [`text`] and [`font`] (labels), [`svg`], [`png`], [`pdf`] (writers)
 //! * plot: [`axis`], [`panel`], [`legend`], [`palette`], [`marks`]
-//! * words and numbers: [`column`], [`table`]
+//! * words and numbers: [`mod@column`], [`table`]
 //! * every other file is a figure
 
 pub mod agreement;
@@ -96,7 +96,7 @@ impl Style {
 /// Name, symbol and unit of something that has values; each may be empty.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Quantity {
-    /// Name in tables and programs: "UCS"; the plain name stands in when empty.
+    /// Name in tables and programs: "UCS"; when empty, the plain name is used.
     pub key: String,
     /// Plain words: "Peak strength".
     pub name: String,
@@ -112,7 +112,7 @@ impl Quantity {
         Self { key: String::new(), name: name.into(), symbol: symbol.into(), unit: unit.into() }
     }
 
-    /// The same with a key.
+    /// Sets the key.
     pub fn keyed(mut self, key: &str) -> Self {
         self.key = key.into();
         self
@@ -144,7 +144,7 @@ impl Quantity {
         if is_word { first.to_lowercase().chain(letters).collect() } else { self.name.clone() }
     }
 
-    /// The same with a word before the symbol, or before the name when there is no symbol: "Published σ_u".
+    /// The axis title with a word before the symbol, or before the name when there is no symbol: "Published σ_u".
     pub fn worded(&self, word: &str) -> Self {
         let name = if self.symbol.is_empty() { format!("{word} {}", self.words()) } else { word.to_string() };
         Self { name, ..self.clone() }

@@ -1,4 +1,4 @@
-//! What plots of a user's own columns share: colours of groups, bands, error bars, axes whose labels never meet.
+//! Parts of the plots of a user's own columns: colours of groups, bands, error bars, axes whose labels never touch.
 
 use super::axis::{Axis, Scale, extent};
 use super::palette::{self, Map, Marker};
@@ -7,7 +7,7 @@ use super::scene::{Color, Fill, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Quantity, Style};
 
-/// Categories that keep colours of their own; more of them take a colour map in their order.
+/// Most categories with colours of their own; more of them take colours from a map in their order.
 const MOST_CATEGORIES: usize = 6;
 
 /// Colour of group `i` of `n`.
@@ -45,14 +45,14 @@ impl Band {
         self.y.iter().chain(&self.low).chain(&self.high).copied()
     }
 
-    /// The ground of the band; to be drawn before points and lines.
+    /// Draws the area of the band; call it before points and lines are drawn.
     pub fn draw_ground(&self, scene: &mut Scene, panel: &Panel, color: Color) {
         let both = |i: usize| self.low.get(i).zip(self.high.get(i)).map(|(l, h)| [*l, *h]);
         let ends: Vec<(f64, [f64; 2])> = (0..self.x.len())
             .filter_map(|i| Some((self.x[i], both(i)?)))
             .filter(|(x, [l, h])| can_show(&panel.x, *x) && l.is_finite() && can_show(&panel.y, *h))
             .collect();
-        // On a logarithmic axis a band that reaches zero ends at the foot of the picture.
+        // On a logarithmic axis a band that reaches zero ends at the lower end of the axis.
         let foot = |l: f64| if can_show(&panel.y, l) { l } else { panel.y.low };
         let mut outline: Vec<_> = ends.iter().map(|(x, [_, h])| panel.place(*x, *h)).collect();
         outline.extend(ends.iter().rev().map(|(x, [l, _])| panel.place(*x, foot(*l))));
@@ -72,7 +72,7 @@ pub fn can_show(axis: &Axis, value: f64) -> bool {
     value.is_finite() && (axis.scale == Scale::Linear || value > 0.0)
 }
 
-/// A line through the values, parted where one cannot be shown.
+/// A line through the values, interrupted where a value cannot be shown.
 pub fn draw_series(scene: &mut Scene, panel: &Panel, x: &[f64], y: &[f64], stroke: &Stroke) {
     let clean = |axis: &Axis, v: &[f64]| -> Vec<f64> {
         v.iter().map(|&v| if can_show(axis, v) { v } else { f64::NAN }).collect()
@@ -110,10 +110,10 @@ pub fn draw_errors(scene: &mut Scene, panel: &Panel, bars: &[([f64; 2], [f64; 2]
     }
 }
 
-/// One axis of a plot before its length on the page is known.
+/// The data of one axis of a plot, before its length on the page is known.
 #[derive(Clone, Debug)]
 pub struct Span {
-    /// What it shows.
+    /// The quantity that it shows.
     pub quantity: Quantity,
     /// Spread of the values.
     pub scale: Scale,
@@ -133,7 +133,7 @@ impl Span {
 
     fn axis(&self, want: usize, long: bool) -> Axis {
         let title = if long { self.quantity.title() } else { self.quantity.short() };
-        // an axis that starts at zero has no room below it
+        // an axis that starts at zero has no margin below zero
         if self.scale == Scale::Linear && self.low == 0.0 && self.high > 0.0 {
             return Axis::from_zero(title, [self.high], want);
         }
@@ -191,7 +191,7 @@ fn stacked_apart(panel: &Panel, size: f64) -> bool {
     all.windows(2).all(|w| (w[0] - w[1]).abs() >= 1.2 * size)
 }
 
-/// Leaves out every other label, as often as it takes: for categories and powers of ten, whose number is given.
+/// Leaves out every other label until they do not touch: for categories and powers of ten, whose number is fixed.
 fn thin_out(panel: &mut Panel, size: f64) {
     let mut every = 1;
     while every < panel.x.ticks.len() && !stand_apart(panel, size) {

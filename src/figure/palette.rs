@@ -1,4 +1,4 @@
-//! Colours, line styles and markers that hold for the colour-blind and in grey.
+//! Colours, line styles and markers that can be told apart by the colour-blind and in grey.
 //!
 //! Categories: the palette of Okabe and Ito (2008), reordered so that neighbours differ in lightness; each series
 //! also has its own dash and marker. Sequences: viridis and cividis (matplotlib, CC0; Nuñez et al. 2018,
@@ -68,12 +68,12 @@ pub fn mode(i: usize) -> Color {
     [VERMILION, Color(0x0b, 0x3c, 0x6f), GREEN, PURPLE, ORANGE, SKY][i % 6]
 }
 
-/// Colour of category number `i` for areas: lighter neighbours than lines need, so that they differ in grey.
+/// Colour of category number `i` for areas: lightness differs more than between lines, so that areas differ in grey.
 pub fn area(i: usize) -> Color {
     [BLUE, ORANGE, Color(0xa6, 0xdb, 0xc4), PURPLE, SKY, VERMILION][i % 6]
 }
 
-/// Colour of group `i` for lines, of the hue that its areas have.
+/// Colour of group `i` for lines, in the hue of its areas.
 pub fn group(i: usize) -> Color {
     [BLUE, Color(0xc2, 0x77, 0x00), GREEN, PURPLE, VERMILION, INK][i % 6]
 }
@@ -95,7 +95,7 @@ pub enum Map {
     /// Dark blue to yellow.
     #[default]
     Viridis,
-    /// The same with one appearance for all kinds of colour vision.
+    /// Like viridis, but nearly the same for all kinds of colour vision.
     Cividis,
     /// White to black.
     Grey,

@@ -10,7 +10,7 @@ use super::text::{CAP_HEIGHT, Line, plain_text};
 const TICK: f64 = 0.8;
 const GAP: f64 = 0.9;
 const TITLE_GAP: f64 = 1.5;
-/// What a title that is as long as the page leaves of it, in mm.
+/// Margin on the page beside the longest title, mm.
 pub(super) const RIM: f64 = 1.0;
 
 /// A plot area with its axes.
@@ -42,7 +42,7 @@ pub struct Margins {
 }
 
 impl Margins {
-    /// What the two axes need.
+    /// The margins that the two axes need.
     pub fn of(x: &Axis, y: &Axis, style: &Style) -> Self {
         let size = style.size();
         let line = |label: &str| Line::new(label, size);
@@ -83,7 +83,7 @@ impl Panel {
         Self { area: outer.inset(m.left, m.top, m.right, m.bottom), x, y, left: m.left, boxed: false }
     }
 
-    /// The same with lines on all four sides.
+    /// Draws lines on all four sides.
     pub fn boxed(mut self) -> Self {
         self.boxed = true;
         self
@@ -104,7 +104,7 @@ impl Panel {
         self.area.bottom - self.y.fraction(y) * self.area.height()
     }
 
-    /// Points of a series; values that are not finite part it into several.
+    /// Points of a series on the page; a value that is not finite splits the series.
     pub fn places(&self, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
         let mut parts: Vec<Vec<Point>> = vec![Vec::new()];
         for (&x, &y) in x.iter().zip(y) {
@@ -120,7 +120,7 @@ impl Panel {
         parts
     }
 
-    /// Lines across at the ticks; to be drawn before the data.
+    /// Draws grid lines at the ticks; call it before the data are drawn.
     pub fn draw_grid(&self, scene: &mut Scene) {
         let mut path = Path::default();
         if self.x.grid {
@@ -140,7 +140,7 @@ impl Panel {
         }
     }
 
-    /// Axis lines, ticks, labels and titles; to be drawn after the data.
+    /// Draws axis lines, ticks, labels and titles; call it after the data are drawn.
     pub fn draw_axes(&self, scene: &mut Scene, style: &Style) {
         self.draw_lines(scene);
         let size = style.size();
@@ -204,7 +204,7 @@ impl Panel {
         }
     }
 
-    /// Facts from which a script reads values under a pointer: ends of both axes and the plot area.
+    /// Attributes from which a script computes values under a pointer: ends of both axes and the plot area.
     pub fn facts(&self) -> Vec<(&'static str, String)> {
         let scale = |a: &Axis| if a.scale == Scale::Log { "log" } else { "linear" };
         let r = self.area;
@@ -214,7 +214,7 @@ impl Panel {
     }
 }
 
-/// The middle of a text of a given length, moved as little as it must be to lie on a page of a given extent.
+/// The middle of a text of a given length, moved by the least distance that puts it on a page of a given extent.
 pub(super) fn on_page(middle: f64, length: f64, extent: f64) -> f64 {
     let half = (length + RIM / 2.0) / 2.0;
     if 2.0 * half < extent { middle.clamp(half, extent - half) } else { extent / 2.0 }
@@ -225,7 +225,7 @@ fn labelled(axis: &Axis) -> impl Iterator<Item = &Tick> {
 }
 
 /// The labels that do not touch: all of them, or every second, third, … from the first on. `labels` are positions, lengths
-/// along the axis and what is written.
+/// along the axis and texts.
 fn apart<T>(labels: Vec<(f64, f64, T)>) -> Vec<(f64, f64, T)> {
     let touch = |every: usize| {
         let shown: Vec<&(f64, f64, T)> = labels.iter().step_by(every).collect();

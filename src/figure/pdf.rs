@@ -107,9 +107,9 @@ fn embed(pdf: &mut Pdf, face: Face, id: Ref, used: &BTreeMap<u16, char>, ids: &m
 
 struct Page {
     content: Content,
-    /// Glyphs used of each face.
+    /// Glyphs that the page uses of each face.
     used: BTreeMap<Face, BTreeMap<u16, char>>,
-    /// Opacities used, in thousandths.
+    /// Opacities that the page uses, in thousandths.
     opacities: BTreeSet<i32>,
 }
 

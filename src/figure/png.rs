@@ -39,7 +39,7 @@ pub fn png(scene: &Scene, dpi: f64) -> Result<Vec<u8>, PngError> {
     Ok(encode(&canvas.map, dpi))
 }
 
-/// Eight-bit RGB. Rows are taken relative to the row above or as they are, whichever has the smaller sum; the
+/// Eight-bit RGB. Each row is stored as it is or as the difference to the row above, whichever has the smaller sum; the
 /// compressor is one portable implementation, so the bytes do not depend on the processor.
 fn encode(map: &Pixmap, dpi: f64) -> Vec<u8> {
     let (width, height) = (map.width(), map.height());
@@ -174,8 +174,8 @@ fn paint(Color(r, g, b): Color, opacity: f64) -> Paint<'static> {
     paint
 }
 
-/// Cubic arcs go as quadratic ones: the library's way with the pen along a cubic takes cosines from the system, which
-/// are not the same everywhere.
+/// Draws cubic arcs as quadratic ones: the library's stroke of a cubic calls the system's cosine, which differs between
+/// machines.
 fn outline(path: &Path) -> Option<tiny_skia::Path> {
     let mut out = PathBuilder::new();
     let f = |p: Point| (p[0] as f32, p[1] as f32);

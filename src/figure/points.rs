@@ -1,6 +1,6 @@
-//! Where a design tries the model: a square with its points for two factors, a cube for three.
+//! The points of a design: a square for two factors, a cube for three.
 //!
-//! Kinds of points (cube, edge, axial, centre) differ by colour and marker; points tried several times show how often.
+//! Kinds of points (cube, edge, axial, centre) differ by colour and marker; replicated points show their number of runs.
 
 use super::axis::{Axis, Scale, extent, fixed};
 use super::column::Column;
@@ -27,8 +27,8 @@ pub struct DesignPoints {
     pub kinds: Vec<String>,
 }
 
-/// A point that was tried: position, kind, how many kinds came before it there (in a projection several may meet), and
-/// how often all of them, shown by the first.
+/// A point of the design: position, kind, number of kinds that were drawn at this position before (several may coincide in
+/// a projection), and number of runs at this position, which the first kind shows.
 struct Spot {
     at: [f64; 3],
     kind: usize,
@@ -92,7 +92,7 @@ impl DesignPoints {
         names.iter().enumerate().map(entry).collect()
     }
 
-    /// Equal points together, in coded units (−1 and 1 are the sides).
+    /// Merges equal points, in coded units (−1 and 1 are the sides).
     fn spots(&self) -> Vec<Spot> {
         let names = self.kind_names();
         let mut spots: Vec<Spot> = Vec::new();
@@ -183,7 +183,7 @@ impl DesignPoints {
             let mid = [(ends[0].1[0] + ends[1].1[0]) / 2.0, (ends[0].1[1] + ends[1].1[1]) / 2.0];
             for (value, at) in ends {
                 let line = Line::new(&level(value), 0.9 * size);
-                // A little inwards, so that the numbers of two edges that meet do not.
+                // Moved a little inwards, so that the numbers at the common corner of two edges do not touch.
                 let at = [at[0] + 0.14 * (mid[0] - at[0]), at[1] + 0.14 * (mid[1] - at[1])];
                 let reach = 1.8 + line.width / 2.0 * away[0].abs() + 0.33 * size * away[1];
                 scene.text_centred(line, [at[0] + reach * away[0], at[1] + reach * away[1]], Anchor::Middle, SOFT);
@@ -248,7 +248,7 @@ fn draw_spot(scene: &mut Scene, spot: &Spot, at: Point, away: f64, style: &Style
     draw_marker(scene, palette::marker(spot.kind), at, size, color);
     if spot.count > 1 {
         let line = Line::new(&format!("×{}", spot.count), 0.9 * style.size());
-        // A ground of paper keeps the number clear of the edges behind it.
+        // A white background separates the number from the edges behind it.
         let ground = Rect::new(at[0] + 1.7, at[1] - 2.9, line.width + 0.6, 2.6);
         scene.fill(Path::rect(ground), PAPER);
         scene.text_centred(line, [at[0] + 2.0, at[1] - 1.6], Anchor::Start, INK);

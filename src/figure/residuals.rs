@@ -10,6 +10,17 @@ use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style, scatter};
 
+/// Column of the data: name of the run.
+pub const RUN: &str = "run";
+/// Column of the data: fitted value.
+pub const FITTED: &str = "fitted";
+/// Column of the data: externally studentized residual.
+pub const STUDENTIZED: &str = "studentized_residual";
+/// Column of the data: normal quantile of the rank.
+pub const QUANTILE: &str = "normal_quantile";
+/// Column of the data: diagonal of the hat matrix.
+pub const LEVERAGE: &str = "leverage";
+
 /// Residuals of one model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residuals {
@@ -21,7 +32,7 @@ pub struct Residuals {
     pub fitted: Vec<f64>,
     /// Externally studentized residuals.
     pub studentized: Vec<f64>,
-    /// Standard normal quantile that belongs to each residual's rank.
+    /// Standard normal quantile of each residual's rank.
     pub quantiles: Vec<f64>,
     /// Diagonal of the hat matrix.
     pub leverage: Vec<f64>,
@@ -55,11 +66,11 @@ impl Figure for Residuals {
 
     fn data(&self) -> Vec<Column> {
         vec![
-            Column::words("run", self.runs.clone()),
-            self.response.column("fitted", self.fitted.clone()),
-            Column::reals("studentized_residual", self.studentized.clone()),
-            Column::reals("normal_quantile", self.quantiles.clone()),
-            Column::reals("leverage", self.leverage.clone()),
+            Column::words(RUN, self.runs.clone()),
+            self.response.column(FITTED, self.fitted.clone()),
+            Column::reals(STUDENTIZED, self.studentized.clone()),
+            Column::reals(QUANTILE, self.quantiles.clone()),
+            Column::reals(LEVERAGE, self.leverage.clone()),
         ]
     }
 }

@@ -1,6 +1,6 @@
 //! Orientation of cracks as a rose: petals whose area is the number of cracks, stacked by mode.
 //!
-//! A crack line has no head, so the rose is symmetric; angles run anticlockwise from the horizontal.
+//! A crack line has no direction, so the rose is symmetric; angles run anticlockwise from the horizontal.
 
 use super::axis::fixed;
 use super::column::Column;

@@ -1,4 +1,4 @@
-//! Points in a panel, with names beside the few that deserve one: shared by the plots of residuals and agreement.
+//! Points in a panel, with names beside the outlying ones: shared by the plots of residuals and agreement.
 
 use super::Style;
 use super::palette::{INK, Marker};
@@ -13,7 +13,7 @@ pub fn draw(scene: &mut Scene, panel: &Panel, points: &[[f64; 2]], kind: Marker,
     }
 }
 
-/// Writes names beside points, on the first of four sides where there is room; a name without room is left out.
+/// Writes names beside points, on the first of four sides that has room; a name without room is left out.
 pub fn name(scene: &mut Scene, panel: &Panel, names: &[(String, [f64; 2])], others: &[[f64; 2]], style: &Style) {
     let spot = |[x, y]: Point, r: f64| Rect { left: x - r, right: x + r, top: y - r, bottom: y + r };
     let mut taken: Vec<Rect> = others.iter().map(|p| spot(panel.place(p[0], p[1]), 0.5)).collect();

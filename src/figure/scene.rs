@@ -1,8 +1,8 @@
 //! A picture as plain data: paths, discs, text and clipped groups on a page.
 //!
 //! Units are millimetres on the page, origin in the upper left corner, y down. Colours are opaque or carry one
-//! opacity. The writers ([`super::svg`], [`super::png`], [`super::pdf`]) draw a scene and decide nothing, so two
-//! scenes that are equal give the same bytes.
+//! opacity. The writers ([`super::svg`], [`super::png`], [`super::pdf`]) draw a scene without choices of their own, so
+//! equal scenes give equal bytes.
 
 pub use super::geometry::{Path, Point, Rect, Step, meet};
 use super::text::Line;
@@ -38,7 +38,7 @@ impl Color {
     }
 }
 
-/// How a path is painted inside.
+/// How a path is filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
     /// Colour.
@@ -60,7 +60,7 @@ pub struct Stroke {
     pub color: Color,
     /// Width in mm.
     pub width: f64,
-    /// Lengths of dash and gap in mm by turns; empty is solid.
+    /// Lengths of dashes and gaps in turn, mm; empty is solid.
     pub dash: Vec<f64>,
     /// 1 is opaque.
     pub opacity: f64,
@@ -72,13 +72,13 @@ impl Stroke {
         Self { color, width, dash: Vec::new(), opacity: 1.0 }
     }
 
-    /// The same with dashes.
+    /// Sets the dashes.
     pub fn dashed(mut self, dash: &[f64]) -> Self {
         self.dash = dash.to_vec();
         self
     }
 
-    /// The same, see-through.
+    /// Sets the opacity.
     pub fn with_opacity(mut self, opacity: f64) -> Self {
         self.opacity = opacity;
         self
@@ -119,7 +119,7 @@ pub enum Item {
     Group {
         /// Nothing is drawn outside.
         clip: Option<Rect>,
-        /// Facts for a reader of the SVG: written as `data-…` attributes.
+        /// Attributes of the group in SVG, `data-…`, for scripts.
         facts: Vec<(&'static str, String)>,
         /// Content.
         items: Vec<Item>,
@@ -218,7 +218,7 @@ impl Scene {
         out
     }
 
-    /// What a careful eye would object to: text beyond the page, text over text. Empty when all is well.
+    /// Faults of the layout: text beyond the page, text over text. Empty when there are none.
     pub fn faults(&self) -> Vec<String> {
         let texts = self.texts();
         let page = self.page();

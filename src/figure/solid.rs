@@ -1,9 +1,9 @@
-//! A specimen in space: shaded balls in the colours of their groups, cut open where asked, or its cracks as thin discs.
+//! A specimen in space: shaded balls in the colours of their groups, optionally cut open, or its cracks as thin discs.
 //!
 //! The view is a parallel projection. Balls are shaded by four discs each, from a dark rim to a light spot on the side of
-//! the light (upper left); what lies farther away is paler, so that depth is read in print. Only balls that a ray from the
+//! the light (upper left); balls that are farther away are paler, so that depth shows in print. Only balls that a ray from the
 //! eye meets first are drawn: a cube of 67,000 balls shows some thousand of them, and its file stays small.
-//! A cut plane takes away all that lies before it along one axis; balls that it passes through show a flat section.
+//! A cut plane removes all balls in front of it along one axis; balls that it intersects show a flat section.
 
 mod frame;
 
@@ -70,11 +70,11 @@ pub struct Solid {
     pub view: Option<[f64; 2]>,
 }
 
-/// Azimuth and elevation when none is given.
+/// Default azimuth and elevation, degrees.
 const FROM: [f64; 2] = [-52.0, 24.0];
-/// Shades of a ball from its rim inwards: share of the radius, and how far from dark to light.
+/// Shades of a ball from its rim inwards: fraction of the radius, and position between dark (0) and light (1).
 const SHADES: [(f64, f64); 4] = [(1.0, 0.0), (0.84, 0.38), (0.6, 0.7), (0.3, 1.0)];
-/// Cells along the longer side of the picture when the visible balls are looked for.
+/// Cells along the longer side of the picture in the search for visible balls.
 const CELLS: f64 = 700.0;
 
 impl Figure for Solid {
@@ -143,7 +143,7 @@ struct Page<'a> {
     scale: f64,
 }
 
-/// One thing to be drawn, by nearness to the eye.
+/// One item to be drawn, ordered by its distance from the eye.
 enum Part {
     Ball(usize),
     Section(usize, f64),
@@ -197,12 +197,12 @@ impl Solid {
         format!("{what} in {}{cut}.", size.join(" × "))
     }
 
-    /// Sign of the side of the cut that is taken away: the one before the plane as the eye sees it.
+    /// Sign of the side of the cut that is removed: the one in front of the plane as seen from the eye.
     fn before(&self, view: &View, cut: Cut) -> f64 {
         -view.back()[cut.axis.min(2)]
     }
 
-    /// Balls behind the cut with the depth at which they are drawn, and the sections of those that it passes through.
+    /// Balls behind the cut with the depth at which they are drawn, and the sections of those that it intersects.
     fn parts(&self, view: &View) -> Vec<(f64, Part)> {
         let mut parts = Vec::new();
         for (i, (&centre, &radius)) in self.centres.iter().zip(&self.radii).enumerate() {
@@ -216,7 +216,7 @@ impl Solid {
                 parts.push((depth, Part::Ball(i)));
             }
             if beyond.abs() < radius {
-                // the plane is nearer to the eye than all that it leaves
+                // the plane is nearer to the eye than all balls that remain
                 parts.push((f64::INFINITY, Part::Section(i, (radius * radius - beyond * beyond).sqrt())));
             }
         }
@@ -273,7 +273,7 @@ impl Solid {
         let base = group_color(self.group.get(i).copied().unwrap_or(0));
         let (dark, light) = (base.mix(INK, 0.52), base.mix(PAPER, 0.55));
         for (share, tone) in SHADES {
-            // small balls need no more than a rim and a body
+            // two discs are enough for a small ball
             if r < 0.35 && share < 0.8 {
                 continue;
             }
@@ -283,7 +283,7 @@ impl Solid {
         }
     }
 
-    /// The flat face that the cut leaves of a ball.
+    /// The flat section of a ball that the cut intersects.
     fn draw_section(&self, scene: &mut Scene, page: &Page, i: usize, radius: f64) {
         let Some(cut) = self.cut else { return };
         let mut centre = self.centres[i];
@@ -301,7 +301,7 @@ impl Solid {
         let (far, near) = super::axis::extent(self.corners().map(|c| page.view.depth(c)));
         for crack in order {
             let away = 0.62 * (near - page.view.depth(crack.at)) / (near - far).max(f64::MIN_POSITIVE);
-            // a disc that is seen edge on is a line
+            // a disc seen edge on is a line
             let color = palette::mode(crack.mode).mix(PAPER, away);
             let points: Vec<Point> = circle(crack.at, crack.normal, crack.radius, 12).map(page.place).collect();
             scene.shape(Path::polygon(&points), Fill { color, opacity: 0.85 }, Stroke::new(color.mix(INK, 0.3), 0.08));

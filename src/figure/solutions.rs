@@ -34,7 +34,7 @@ pub struct Solutions {
     pub sets: Vec<SolutionSet>,
 }
 
-/// Free height between the panels of two targets.
+/// Gap between the panels of two targets.
 const BETWEEN: f64 = 3.0;
 
 impl Figure for Solutions {
@@ -85,7 +85,7 @@ impl Figure for Solutions {
 }
 
 impl Solutions {
-    /// One set whose misfits are known: they give the colours.
+    /// Whether there is one set with known misfits, which give the colours.
     fn graded(&self) -> bool {
         self.sets.len() == 1 && self.sets.iter().all(|s| s.misfit.len() == s.rows.len())
     }
@@ -176,7 +176,7 @@ impl Solutions {
     }
 }
 
-/// A bound as a short text.
+/// The short text of a bound.
 fn significant_short(v: f64) -> String {
     (0..4)
         .map(|d| fixed(v, d))

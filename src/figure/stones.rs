@@ -1,7 +1,7 @@
 //! Stones as solids with their clumps beside them: for each a shaded surface above and its pebbles below, on one scale.
 //!
 //! Facets are shaded by the angle of their normal to the light (upper left) and drawn from the far ones to the near ones;
-//! those that face away are left out, which is exact for a convex stone. Pebbles are shaded as balls of a specimen are.
+//! those that face away are left out, which is exact for a convex stone. Pebbles are shaded like the balls of a specimen.
 
 use super::column::Column;
 use super::palette::{INK, ORANGE, PAPER, SOFT};
@@ -32,7 +32,7 @@ pub struct Stones {
 
 /// Stones beside one another.
 const ACROSS: usize = 5;
-/// Rings of a ball: share of the radius, and how far from dark to light.
+/// Rings of a ball: fraction of the radius, and position between dark (0) and light (1).
 const RINGS: [(f64, f64); 4] = [(1.0, 0.0), (0.82, 0.4), (0.56, 0.75), (0.26, 1.0)];
 
 impl Figure for Stones {
@@ -105,7 +105,7 @@ impl Stone {
             let toward = view.depth(normal);
             if toward > 0.0 {
                 let [right, up] = view.project(normal);
-                // The light comes from the upper left, before the page.
+                // The light comes from the upper left, in front of the page.
                 let light = (0.72 * toward + 0.42 * up - 0.55 * right).clamp(0.0, 1.0);
                 seen.push((facet.iter().map(|&p| view.depth(p)).sum(), light, facet));
             }

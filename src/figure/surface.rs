@@ -10,7 +10,7 @@ use super::text::Line;
 use super::view::View;
 use super::{Figure, Style};
 
-/// The surface of a [`Contour`] seen from above and aside.
+/// The surface of a [`Contour`], seen obliquely from above.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Values and titles; its design points are not drawn.
@@ -26,7 +26,7 @@ const FACETS: usize = 36;
 /// Half height of the box where its half width is 1.
 const HEIGHT: f64 = 0.72;
 
-/// Everything needed to place a value on the page.
+/// The projection of values onto the page.
 struct Box3 {
     view: View,
     axes: [Axis; 3],
@@ -49,8 +49,8 @@ impl Box3 {
         self.corner([self.unit(0, v[0]), self.unit(1, v[1]), self.unit(2, v[2])])
     }
 
-    /// Facts from which a script reads values under a pointer: the ends of the three axes, then the points on the page of
-    /// their common low corner and of the high end of each.
+    /// Attributes from which a script computes values under a pointer: the ends of the three axes, then the points on the page
+    /// of their common low corner and of the high end of each.
     fn facts(&self) -> Vec<(&'static str, String)> {
         let ends = self.axes.iter().flat_map(|axis| [axis.low, axis.high]).map(|end| end.to_string());
         let low = [-1.0; 3];
@@ -144,7 +144,7 @@ impl Surface {
                 }
                 let mean = corners.iter().map(|c| c[2]).sum::<f64>() / 4.0;
                 let color = style.map.at(bands.axis.fraction(mean));
-                // A rim of its own colour closes the hairline that smoothing leaves between neighbours.
+                // A rim of the same colour closes the hairline that antialiasing leaves between neighbours.
                 scene.shape(Path::polygon(&corners.map(|c| space.place(c))), color, Stroke::new(color, 0.12));
                 if m % 3 == 0 {
                     line(scene, corners[0], corners[3]);
@@ -248,7 +248,7 @@ fn outward(a: Point, b: Point, mid: Point, middle: Point) -> Point {
     if side < 0.0 { [-normal[0], -normal[1]] } else { normal }
 }
 
-/// Draws an axis with the labels that find room; returns how far the labels reach from the edge.
+/// Draws an axis with the labels that have room; returns how far the labels reach from the edge, mm.
 fn draw_edge(
     scene: &mut Scene,
     space: &Box3,
@@ -267,12 +267,12 @@ fn draw_edge(
         let [x, y] = space.corner(p);
         path.add_polyline(&[[x, y], [x + 0.9 * away[0], y + 0.9 * away[1]]]);
         let line = Line::new(&tick.label, size);
-        // The label's box must clear the edge: half its extent along the outward direction.
+        // The box of the label must not touch the edge: half its extent along the outward direction.
         let reach = 1.5 + (line.width / 2.0 * away[0]).abs() + (0.33 * size * away[1]).abs();
         let at = [x + reach * away[0], y + reach * away[1]];
         let corner = [at[0] - line.width / 2.0, at[1] + 0.33 * size];
         let place = line.corners(corner, 0.0);
-        // Numbers of two edges that meet keep the width of a digit between them.
+        // Numbers at the common corner of two edges are at least the width of a digit apart.
         let near = Line::new(&format!("0{}0", tick.label), size);
         let apart = near.corners([at[0] - near.width / 2.0, corner[1]], 0.0);
         if taken.iter().any(|t| super::scene::meet(t, &apart)) {

@@ -168,7 +168,7 @@ fn thousandth(n: i64) -> String {
     if whole == 0 { format!("{sign}.{fraction}") } else { format!("{sign}{whole}.{fraction}") }
 }
 
-/// The same after another number: with a blank unless the minus sign parts them.
+/// The same after another number: with a blank unless a minus sign separates the two.
 fn joined(n: i64) -> String {
     let text = thousandth(n);
     if text.starts_with('-') { text } else { format!(" {text}") }

@@ -1,11 +1,11 @@
-//! Tables as CSV, LaTeX (booktabs) and Markdown from columns. Symbols and units are in the heads. Texts stay texts in
-//! each of them ([`super::escape`]); captions and notes may hold mathematics between dollar signs.
+//! Tables as CSV, LaTeX (booktabs) and Markdown from columns. Symbols and units are in the heads. Texts are escaped for
+//! each format ([`super::escape`]); captions and notes may hold mathematics between dollar signs.
 
 use super::column::{Column, Digits, Values};
 use super::escape;
 use super::text::unit_parts;
 
-/// A table with the words above it.
+/// A table with caption and note.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     /// Caption; may be empty.
@@ -14,7 +14,7 @@ pub struct Table {
     pub label: String,
     /// Columns of equal length.
     pub columns: Vec<Column>,
-    /// NoteTable under the table.
+    /// Note under the table.
     pub notes: Vec<String>,
 }
 
@@ -28,7 +28,7 @@ pub fn csv(columns: &[Column]) -> String {
     for row in 0..rows(columns) {
         let cells = columns.iter().map(|c| escape::csv(&exact(c, row)));
         let line = cells.collect::<Vec<_>>().join(",");
-        // An empty line would be no row.
+        // An empty line would not be read as a row.
         out += if alone && line.is_empty() { "\"\"" } else { &line };
         out.push('\n');
     }
@@ -39,7 +39,7 @@ fn rows(columns: &[Column]) -> usize {
     columns.iter().map(Column::len).max().unwrap_or(0)
 }
 
-/// A cell without loss; empty when missing.
+/// A cell with all digits; empty when missing.
 fn exact(column: &Column, row: usize) -> String {
     match &column.values {
         Values::Reals(v) => v.get(row).filter(|x| x.is_finite()).map(|&x| lossless(x)).unwrap_or_default(),

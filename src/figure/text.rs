@@ -2,7 +2,7 @@
 //!
 //! A label is plain text with mathematics between dollar signs, in the notation of LaTeX:
 //! `Peak strength $\sigma_u$ / MPa`, `$\bar\sigma_c$`, `$(k_n/k_s)_j$`, `$10^{-3}$`. Letters are italic, except
-//! capital Greek and everything in a subscript or superscript (they name, they do not vary). A hyphen in
+//! capital Greek and everything in a subscript or superscript (labels, not variables). A hyphen in
 //! mathematics is a minus sign. Lengths are millimetres.
 
 mod pen;
@@ -47,7 +47,7 @@ pub struct Line {
     pub above: f64,
     /// Ink below the baseline in mm.
     pub below: f64,
-    /// The text for those who read and search.
+    /// The text as plain characters, for search and screen readers.
     pub plain: String,
 }
 
@@ -64,7 +64,7 @@ pub enum LabelError {
         /// All known commands.
         known: String,
     },
-    /// A brace or dollar sign without its partner.
+    /// An unmatched brace or dollar sign.
     #[error("label `{label}`: `{sign}` has no partner")]
     Unpaired {
         /// The label.
@@ -125,7 +125,7 @@ pub fn unit_markup(unit: &str) -> String {
     out
 }
 
-/// A unit cut behind each of its powers: the text before a power, and the power without `^` and brackets.
+/// A unit split after each of its powers: the text before a power, and the power without `^` and brackets.
 pub(crate) fn unit_parts(unit: &str) -> Vec<(&str, &str)> {
     let mut parts = Vec::new();
     let mut rest = unit;
@@ -147,7 +147,7 @@ pub(crate) fn unit_parts(unit: &str) -> Vec<(&str, &str)> {
 }
 
 impl Line {
-    /// Sets a label at a size in mm. Faults ([`check`]) are set as well as they can be.
+    /// Sets a label at a size in mm. A label with faults ([`check`]) is set as far as it can be read.
     pub fn new(label: &str, size: f64) -> Self {
         Self::with_face(label, size, Face::Regular)
     }

@@ -1,4 +1,4 @@
-//! Targets against what the calibrated parameters gave over several seeds: each run, mean ± standard deviation.
+//! Targets against the responses of the calibrated parameters over several seeds: each run, mean ± standard deviation.
 
 use super::axis::{Axis, extent, fixed};
 use super::column::Column;

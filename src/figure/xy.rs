@@ -1,7 +1,7 @@
-//! Any two columns against each other: points by groups, error bars, fitted lines with bands, measured points over them.
+//! Any two columns against each other: points by groups, error bars, fitted lines with bands, measured points on top.
 //!
-//! Up to six groups differ by colour, marker and dash; more of them, in the order of their value, by colour from dark to
-//! light and by marker, and without their bands. Measured values are hollow and black.
+//! Up to six groups differ by colour, marker and dash; more of them by colour from dark to light, in the order of their
+//! values, and by marker, without bands. Measured values are hollow and black.
 
 use super::axis::{Scale, significant};
 use super::column::Column;
@@ -27,7 +27,7 @@ pub struct Cloud {
     pub y_error: Vec<f64>,
     /// A line through them, with its band.
     pub line: Option<Band>,
-    /// The text at the line, in label markup, such as a slope with its standard error; may be empty.
+    /// Text beside the line, in label markup, such as a slope with its standard error; may be empty.
     pub note: String,
 }
 
@@ -42,7 +42,7 @@ pub struct Xy {
     pub x_scale: Scale,
     /// Spread of the values up the page.
     pub y_scale: Scale,
-    /// What the groups differ in; its title stands before their names.
+    /// The quantity that defines the groups; its title stands before their names.
     pub by: Quantity,
     /// Points by group.
     pub clouds: Vec<Cloud>,
@@ -52,9 +52,9 @@ pub struct Xy {
     pub measured: Vec<Cloud>,
 }
 
-/// A picture grows by this much for the bands, no more.
+/// Largest factor by which the axes grow to show the bands.
 const WIDEST_BAND: f64 = 1.8;
-/// Bands of more groups than this would cover each other.
+/// Most groups that have bands; more bands would cover each other.
 const MOST_BANDS: usize = 4;
 /// More points than this are drawn as plain discs.
 const MANY: usize = 4000;
@@ -116,7 +116,7 @@ impl Xy {
         let bare = Span::of(&self.y, self.y_scale, values());
         let bands = self.clouds.iter().filter(|_| self.clouds.len() <= MOST_BANDS).flat_map(|c| &c.line);
         let full = Span::of(&self.y, self.y_scale, values().chain(bands.flat_map(Band::values)));
-        // the band of a line that hardly any points hold would squeeze the points themselves
+        // the wide band of a line through few points would compress the points themselves
         if full.high - full.low <= WIDEST_BAND * (bare.high - bare.low) { full } else { bare }
     }
 
@@ -224,7 +224,7 @@ fn draw_measured(scene: &mut Scene, panel: &Panel, i: usize, cloud: &Cloud) {
     }
 }
 
-/// The first letter of a sentence as a capital, where it begins a word.
+/// Makes the first letter of a sentence a capital, where it begins a word.
 pub fn capital(words: &str) -> String {
     let mut letters = words.chars();
     let first = letters.next();

@@ -1,4 +1,4 @@
-//! Zingg's diagram: elongation over flatness of stones, parted at two thirds into disc, equant, blade and rod.
+//! Zingg's diagram: elongation over flatness of stones, divided at two thirds into disc, equant, blade and rod.
 //!
 //! Thin curves are those of equal sphericity of ellipsoids after Krumbein (1941), ψ = ((S/I) (I/L)²)^⅓.
 
@@ -20,7 +20,7 @@ pub struct Zingg {
     pub flatness: Vec<f64>,
     /// Intermediate over long extent I/L.
     pub elongation: Vec<f64>,
-    /// Share of each, which its disc's area shows.
+    /// Share of each stone, shown by the area of its disc.
     pub share: Vec<f64>,
 }
 

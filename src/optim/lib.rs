@@ -132,6 +132,8 @@ pub enum Stop {
     Evaluations,
     /// The population or step has become too small to find anything new.
     Collapsed,
+    /// The runs that a slope is taken from gave no response, or one of the other sign than the target.
+    NoSlope,
     /// Every evaluation failed.
     AllFailed,
 }
@@ -145,6 +147,7 @@ impl fmt::Display for Stop {
             Self::Iterations => "the last iteration is done",
             Self::Evaluations => "the budget of evaluations is used up",
             Self::Collapsed => "the population has collapsed",
+            Self::NoSlope => "no slope: runs failed, are not valid, or have the other sign than the target",
             Self::AllFailed => "every evaluation failed",
         })
     }

@@ -5,11 +5,21 @@
 //! the target; the scatter of single packings remains. The tensile strength of a disc of contact bonds against
 //! the bond strength is such a response.
 //!
+//! A run without the response (it failed, or it is not valid and left out) shows no slope, but a proportional response shows
+//! the same slope everywhere: the search goes on a tenth above the value, then a tenth below, then farther off. Such runs do
+//! not count as runs; after [`MOST_MISSES`] of them in a row the search ends.
+//!
 //! Source: the two-step calibration of a Brazilian disc, doi:10.1038/s41598-024-61410-x, section 5 (steps b and d, eq. 15).
 
 use super::{Optimiser, Problem, Stop, Trial};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// Most runs in a row without the response.
+pub const MOST_MISSES: u32 = 6;
+
+/// How far off the value the first run after one without the response lies.
+const DETOUR: f64 = 1.1;
 
 /// Settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,9 +39,14 @@ impl Default for Settings {
 pub struct Proportional {
     settings: Settings,
     problem: Problem,
-    /// The next value, natural units.
+    /// The value that is wanted next, natural units.
     next: f64,
+    /// Runs that gave the response.
     done: usize,
+    /// Runs without the response since the last that gave it.
+    misses: u32,
+    /// The points of those runs.
+    missed: Vec<Vec<f64>>,
     stopped: Option<Stop>,
 }
 
@@ -45,31 +60,62 @@ impl Proportional {
         assert!(factors == 1 && targets == 1, "BUG: one factor and one response, not {factors} and {targets}");
         let first = problem.start.as_deref().unwrap_or(problem.domain.centre());
         let next = problem.domain.natural(first)[0];
-        Self { settings: settings.clone(), problem: problem.clone(), next, done: 0, stopped: None }
+        Self {
+            settings: settings.clone(),
+            problem: problem.clone(),
+            next,
+            done: 0,
+            misses: 0,
+            missed: vec![],
+            stopped: None,
+        }
+    }
+
+    /// The point that is tried next: the wanted value, or one beside it after runs without the response.
+    fn point(&self) -> Vec<f64> {
+        let factor = (0..self.misses.div_ceil(2)).fold(1.0, |factor, _| factor * DETOUR);
+        let value = if self.misses % 2 == 1 { self.next * factor } else { self.next / factor };
+        self.problem.domain.repair(&self.problem.domain.unit(&[value]))
+    }
+
+    /// Goes beside the wanted value after a run without the response; the ends of the range are tried once.
+    fn go_beside(&mut self, tried: &[f64]) {
+        self.missed.push(tried.to_vec());
+        loop {
+            self.misses += 1;
+            if self.misses > MOST_MISSES {
+                self.stopped = Some(Stop::NoSlope);
+                return;
+            }
+            if !self.missed.contains(&self.point()) {
+                return;
+            }
+        }
     }
 }
 
 impl Optimiser for Proportional {
     fn ask(&mut self) -> Vec<Vec<f64>> {
-        vec![self.problem.domain.repair(&self.problem.domain.unit(&[self.next]))]
+        vec![self.point()]
     }
 
     fn tell(&mut self, trials: &[Trial]) {
         let trial = &trials[0];
-        self.done += 1;
         let tried = self.problem.domain.natural(&trial.point)[0];
-        let wanted = trial.responses.first().map(|&y| (y, self.problem.misfit.targets()[0].nearest(y)));
-        match wanted {
-            Some((y, wanted)) if y * wanted > 0.0 => self.next = tried * wanted / y,
-            // A run without the response, or one of the other sign, shows no slope.
-            Some(_) | None => self.stopped = Some(Stop::Stalled),
+        let Some(&y) = trial.responses.first() else { return self.go_beside(&trial.point) };
+        let wanted = self.problem.misfit.targets()[0].nearest(y);
+        self.done += 1;
+        // A response of the other sign shows no slope, here or elsewhere.
+        if !(y * wanted > 0.0) {
+            self.stopped = Some(Stop::NoSlope);
+            return;
         }
-        let unit = self.problem.domain.repair(&self.problem.domain.unit(&[self.next]));
+        (self.next, self.misses) = (tried * wanted / y, 0);
+        self.missed.clear();
         if self.done >= self.settings.runs {
-            self.stopped.get_or_insert(Stop::Iterations);
-        }
-        if unit == trial.point {
-            self.stopped.get_or_insert(Stop::Collapsed);
+            self.stopped = Some(Stop::Iterations);
+        } else if self.point() == trial.point {
+            self.stopped = Some(Stop::Collapsed);
         }
     }
 
@@ -110,12 +156,35 @@ mod tests {
     }
 
     #[test]
-    fn a_target_beyond_the_range_ends_at_its_end_and_a_failed_run_ends_at_once() {
+    fn a_target_beyond_the_range_ends_at_its_end_and_one_of_the_other_sign_at_once() {
         let method = Method::Proportional(Settings { runs: 10 });
         let (stop, state) = minimise(&problem(10.0), &method, &Limits::default(), 1, |x| Some(vec![0.01 * x[0]]));
         assert_eq!((stop, state.evaluations), (Stop::Collapsed, 2));
         assert_eq!(state.best.map(|best| best.point), Some(vec![1.0]));
-        let (stop, state) = minimise(&problem(10.0), &method, &Limits::default(), 1, |_| None);
-        assert_eq!((stop, state.evaluations), (Stop::Stalled, 1));
+        let (stop, state) = minimise(&problem(10.0), &method, &Limits::default(), 1, |x| Some(vec![-x[0]]));
+        assert_eq!((stop, state.evaluations), (Stop::NoSlope, 1));
+    }
+
+    #[test]
+    fn runs_without_the_response_are_passed_and_do_not_count() {
+        let method = Method::Proportional(Settings::default());
+        let mut tried = Vec::new();
+        let (stop, state) = minimise(&problem(20.0), &method, &Limits::default(), 1, |x| {
+            tried.push(x[0]);
+            (tried.len() > 2).then(|| vec![0.3 * x[0]])
+        });
+        assert_eq!((stop, state.evaluations), (Stop::Iterations, 4));
+        for (found, wanted) in tried.iter().zip([20.0, 22.0, 20.0 / 1.1, 9.08 / 0.3]) {
+            assert!((found - wanted).abs() < 1e-9, "{tried:?}");
+        }
+        // At the upper end of the range only values below are left.
+        tried.clear();
+        let (stop, _) = minimise(&problem(60.0), &method, &Limits::default(), 1, |x| {
+            tried.push(x[0]);
+            None
+        });
+        assert_eq!(stop, Stop::NoSlope);
+        let below = [60.0, 60.0 / 1.1, 60.0 / 1.21, 60.0 / 1.331];
+        assert!(tried.len() == 4 && tried.iter().zip(below).all(|(a, b)| (a - b).abs() < 1e-9), "{tried:?}");
     }
 }

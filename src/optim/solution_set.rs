@@ -3,7 +3,7 @@
 //! Three targets leave a four-dimensional set of seven parameters free. From one minimiser of the misfit:
 //! * the **chosen** point is the solution nearest a preference, by default the centre of the box: minimise ‖u − p‖
 //!   subject to the responses of the minimiser, by sequential linearisation; each step is one
-//!   [`least_distance`] problem, halved while it makes the responses worse than they were;
+//!   [`least_distance`](super::least_distance) problem, halved while it makes the responses worse than they were;
 //! * the **sample** takes the solutions nearest random points of the domain;
 //! * the number of **free** directions is d minus the rank of the sensitivities there;
 //! * the **reach** of every response over the domain shows which target cannot be met by itself, and how near one

@@ -1,5 +1,7 @@
 //! The `[stage.NAME]` tables: each is read by its kind, then the ports are connected.
 
+mod idle;
+
 use super::collect::{Check, MOST_FAULTS, steps};
 use super::fault::Fault;
 use super::node::{Entry, Node, Step, Table, Value};
@@ -52,6 +54,7 @@ pub(super) fn read_all(
     examine(check, table, &stages, materials.as_ref(), context);
     given_materials(&mut stages, context);
     look(check, table, &stages, context, looked);
+    idle::tell(check, materials.as_ref(), &stages, context, looked);
     same_but_for_case(check, table);
     let inputs = connect(check, table, &stages);
     let needs: Vec<Vec<usize>> = inputs.iter().map(|inputs| inputs.iter().map(|(_, i)| *i).collect()).collect();

@@ -1,6 +1,6 @@
 //! A figure of the page: the picture, the words for those who cannot see it, and its values.
 
-use super::paper::{Paper, Part, capital};
+use super::paper::{Paper, Part, State, capital};
 use super::{svg, values};
 use crate::artifact::presentation::Picture;
 use maud::{Markup, PreEscaped, html};
@@ -44,9 +44,27 @@ const SINGLE: f64 = 120.0;
 /// SVG larger than this many bytes gives way to PNG when that is smaller.
 const LARGE: usize = 600_000;
 
+/// A note in place of a missing result, with the command that computes it.
+pub(super) fn missing(paper: &Paper, part: &Part) -> Markup {
+    // A section of its own bears the id; a table or figure bears it here.
+    let id = part.is_shown_elsewhere().then(|| format!("stage-{}", part.name));
+    html! {
+        div.missing id=[id] role="note" {
+            p {
+                b { @if part.is_shown_elsewhere() { (part.words()) ": no result" } @else { "No result" } }
+                @match &part.state {
+                    State::Broken(why) => { ": " (why) },
+                    State::Missing | State::Done { .. } => { " yet." },
+                }
+            }
+            p { code { (paper.command("run", &part.name)) } }
+        }
+    }
+}
+
 /// A figure in the section of the stage that it shows.
 pub(super) fn figure(paper: &Paper, part: &Part, glyphs: &mut Glyphs) -> Markup {
-    let Some(artifact) = part.artifact() else { return super::stage::missing(paper, part) };
+    let Some(artifact) = part.artifact() else { return missing(paper, part) };
     let Ok(drawn) = Picture::from_artifact(artifact) else { return unshown(part) };
     let title = &drawn.title;
     let description = capital(drawn.description.trim_start_matches([':', ' ']));

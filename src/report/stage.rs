@@ -2,7 +2,7 @@
 
 use super::calibrator::calibrator;
 use super::compared;
-use super::figure::{Glyphs, figure};
+use super::figure::{Glyphs, figure, missing};
 use super::paper::{Paper, Part, State, capital};
 use super::table::Sheet;
 use super::time::{duration, moment};
@@ -48,24 +48,6 @@ fn interactive(paper: &Paper, part: &Part) -> Markup {
     match calibrator(paper, part) {
         Ok(found) => found.unwrap_or_else(|| html! {}),
         Err(fault) => html! { p.missing { "The calibrator cannot be shown: " (fault.message) } },
-    }
-}
-
-/// A note in place of a missing result, with the command that computes it.
-pub(super) fn missing(paper: &Paper, part: &Part) -> Markup {
-    // A section of its own bears the id; a table or figure bears it here.
-    let id = part.is_shown_elsewhere().then(|| format!("stage-{}", part.name));
-    html! {
-        div.missing id=[id] role="note" {
-            p {
-                b { @if part.is_shown_elsewhere() { (part.words()) ": no result" } @else { "No result" } }
-                @match &part.state {
-                    State::Broken(why) => { ": " (why) },
-                    State::Missing | State::Done { .. } => { " yet." },
-                }
-            }
-            p { code { (paper.command("run", &part.name)) } }
-        }
     }
 }
 

@@ -13,6 +13,7 @@ mod own;
 use crate::artifact::{Table, Values};
 use crate::stage::Context;
 use figure::text::Line;
+use figure::{agreement, convergence, curve, effect_plot, effects, residuals};
 use serde_json::{Value, json};
 
 /// Nodes along one side of a thinned field.
@@ -67,7 +68,7 @@ fn name_of(context: &Context, key: &str) -> String {
 }
 
 /// The columns of curves that are no counts of cracks.
-const CURVE: [&str; 4] = ["curve", "axial_strain", "axial_stress", "lateral_strain"];
+const CURVE: [&str; 4] = [curve::CURVE, curve::AXIAL_STRAIN, curve::AXIAL_STRESS, curve::LATERAL_STRAIN];
 
 fn curves(data: &Table) -> Option<Value> {
     let numbers = data.ints(CURVE[0]).ok()?;
@@ -159,7 +160,8 @@ fn quantity(value: f64, unit: &str) -> String {
 fn pairs(data: &Table, context: &Context) -> Option<Value> {
     let [.., a, b] = data.columns.as_slice() else { return None };
     let (xs, ys) = (data.shown(&a.name).ok()?.0, data.shown(&b.name).ok()?.0);
-    let (units, origins, rows) = (texts(data, "unit")?, texts(data, "origin")?, texts(data, "row")?);
+    let (units, origins, rows) =
+        (texts(data, agreement::UNIT)?, texts(data, agreement::ORIGIN)?, texts(data, agreement::ROW)?);
     let panel = |(response, members): (&str, Vec<usize>)| {
         let sign = name_of(context, response);
         let words = |i: usize| {
@@ -170,27 +172,28 @@ fn pairs(data: &Table, context: &Context) -> Option<Value> {
         };
         members.into_iter().map(|i| (xs[i], ys[i], words(i))).collect()
     };
-    points(groups(texts(data, "response")?).into_iter().map(panel).collect())
+    points(groups(texts(data, agreement::RESPONSE)?).into_iter().map(panel).collect())
 }
 
 fn effects(data: &Table, context: &Context) -> Option<Value> {
-    let (levels, units) = (data.shown("level").ok()?.0, texts(data, "level_unit")?);
-    let means = data.column("mean")?;
-    let (values, unit) = (data.shown("mean").ok()?.0, &means.unit);
+    let (levels, units) = (data.shown(effects::LEVEL).ok()?.0, texts(data, effects::LEVEL_UNIT)?);
+    let means = data.column(effects::MEAN)?;
+    let (values, unit) = (data.shown(effects::MEAN).ok()?.0, &means.unit);
     let panel = |(factor, rows): (&str, Vec<usize>)| {
         let sign = name_of(context, factor);
         let words =
             |i: usize| format!("{sign} = {}: mean {}", quantity(levels[i], &units[i]), quantity(values[i], unit));
         rows.into_iter().map(|i| (levels[i], values[i], words(i))).collect()
     };
-    points(groups(texts(data, "factor")?).into_iter().map(panel).collect())
+    points(groups(texts(data, effects::FACTOR)?).into_iter().map(panel).collect())
 }
 
 fn residuals(data: &Table) -> Option<Value> {
-    let runs = texts(data, "run")?;
-    let ys = data.shown("studentized_residual").ok()?.0;
-    let (fitted, quantile, leverage) =
-        (data.shown("fitted").ok()?.0, data.shown("normal_quantile").ok()?.0, data.shown("leverage").ok()?.0);
+    let runs = texts(data, residuals::RUN)?;
+    let numbers = |name: &str| Some(data.shown(name).ok()?.0);
+    let ys = numbers(residuals::STUDENTIZED)?;
+    let (fitted, quantile) = (numbers(residuals::FITTED)?, numbers(residuals::QUANTILE)?);
+    let leverage = numbers(residuals::LEVERAGE)?;
     let order: Vec<f64> = (1..=runs.len()).map(|i| i as f64).collect();
     let panel = |(xs, what): (&Vec<f64>, &str)| {
         let words = |i: usize| {
@@ -204,7 +207,8 @@ fn residuals(data: &Table) -> Option<Value> {
 
 fn convergence(data: &Table) -> Option<Value> {
     let [_, effort, ..] = data.columns.as_slice() else { return None };
-    let (runs, xs, ys) = (texts(data, "run")?, data.shown(&effort.name).ok()?.0, data.shown("best").ok()?.0);
+    let (runs, xs, ys) =
+        (texts(data, convergence::RUN)?, data.shown(&effort.name).ok()?.0, data.shown(convergence::BEST).ok()?.0);
     let words =
         |i: usize| format!("{}, {} {}: best misfit {}", runs[i], effort.name, quantity(xs[i], ""), quantity(ys[i], ""));
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
@@ -212,7 +216,8 @@ fn convergence(data: &Table) -> Option<Value> {
 
 fn effect_plot(data: &Table) -> Option<Value> {
     let [_, sizes, ..] = data.columns.as_slice() else { return None };
-    let (names, xs, ys) = (texts(data, "effect")?, data.shown(&sizes.name).ok()?.0, data.shown("quantile").ok()?.0);
+    let (names, xs, ys) =
+        (texts(data, effect_plot::EFFECT)?, data.shown(&sizes.name).ok()?.0, data.shown(effect_plot::QUANTILE).ok()?.0);
     let words = |i: usize| format!("{}: {}", Line::new(&names[i], 1.0).plain, quantity(xs[i], &sizes.unit));
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }

@@ -2,9 +2,10 @@
 //! of the field.
 
 use super::paper::Part;
-use crate::artifact::calibration::{Prediction, Solution, Summary, Verification};
+use crate::artifact::calibration::{Answer, Prediction, Solution, Summary, Verification};
 use crate::artifact::groups::{GroupResiduals, Groups};
-use crate::artifact::statistics::{Anova, Coefficients, Fits, Residuals, Screening, Surfaces};
+use crate::artifact::statistics::{Anova, Fits, Residuals, Screening};
+use crate::artifact::surfaces::{Coefficients, Surfaces};
 use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Wanted};
 
@@ -13,8 +14,6 @@ const GAP: f64 = 0.2;
 /// Coefficients with a larger variance inflation factor share most of what they say (Marquardt 1970,
 /// doi:10.2307/1267205).
 const INFLATION: f64 = 10.0;
-/// How a calibration calls a target that its ranges cannot give.
-const OUT_OF_REACH: &str = "out of reach";
 /// Level of significance of the lack of fit.
 const LEVEL: f64 = 0.05;
 
@@ -36,13 +35,10 @@ fn counted((text, count): &(String, usize)) -> String {
 /// Targets of a stage that are not met: out of reach of a calibration, or outside the interval of a verification.
 pub(super) fn unmet(part: &Part) -> [usize; 2] {
     let Some(artifact) = part.artifact() else { return [0, 0] };
-    let reach = Solution::from_artifact(artifact).map(|found| found.prediction.reach);
-    let inside = Verification::from_artifact(artifact).map(|found| found.summary.target_inside);
-    let out = |words: &&String| words.starts_with(OUT_OF_REACH);
-    [
-        reach.unwrap_or_default().iter().filter(out).count(),
-        inside.unwrap_or_default().iter().filter(|word| *word == "no").count(),
-    ]
+    let prediction = Solution::from_artifact(artifact).map(|found| found.prediction).ok();
+    let out = |found: Prediction| (0..found.reach.len()).filter(|&row| found.out_of_reach(row)).count();
+    let inside = Verification::from_artifact(artifact).map(|found| found.summary.target_inside).unwrap_or_default();
+    [prediction.map_or(0, out), inside.iter().filter(|answer| **answer == Answer::No).count()]
 }
 
 /// Warnings from the numbers of a result.
@@ -117,14 +113,17 @@ fn inflation(coefficients: &Coefficients) -> Vec<String> {
 }
 
 fn reach(prediction: &Prediction) -> Vec<String> {
-    let rows = prediction.set.iter().zip(&prediction.response).zip(&prediction.reach);
-    let out = rows.filter(|(_, reach)| reach.starts_with(OUT_OF_REACH));
-    out.map(|((set, response), reach)| format!("set {set}: the target of {response} is {reach}")).collect()
+    let out = (0..prediction.set.len()).filter(|&row| prediction.out_of_reach(row));
+    let words = |row: usize| {
+        let (set, response, reach) = (prediction.set[row], &prediction.response[row], &prediction.reach[row]);
+        format!("set {set}: the target of {response} is {reach}")
+    };
+    out.map(words).collect()
 }
 
 fn outside(summary: &Summary) -> Vec<String> {
     let rows = summary.set.iter().zip(&summary.response).zip(&summary.target_inside);
-    let out = rows.filter(|(_, inside)| *inside == "no");
+    let out = rows.filter(|(_, inside)| **inside == Answer::No);
     let words: Vec<String> = out.map(|((set, response), _)| format!("{response} of set {set}")).collect();
     if words.is_empty() {
         Vec::new()
@@ -163,7 +162,7 @@ mod tests {
         let (response, row, flag) = (words(&["E", "E"]), vec![4, 26], words(&["", "outlier"]));
         let residuals = Residuals { response, row, flag, ..Residuals::default() };
         assert_eq!(flags(&residuals), ["suspicious runs, kept in the fit: E, row 26 (outlier)"]);
-        let (response, target_inside) = (words(&["E", "nu"]), words(&["no", "yes"]));
+        let (response, target_inside) = (words(&["E", "nu"]), vec![Answer::No, Answer::Yes]);
         let summary = Summary { set: vec![1, 2], response, target_inside, ..Summary::default() };
         assert_eq!(outside(&summary), ["targets outside the 95 % interval of the mean: E of set 1"]);
     }

@@ -135,7 +135,7 @@ const SECTIONS: &str = "shape,position [mm],thickness [mm],height [mm]\nslab,0,2
 /// Stage and the first digits of the hash of its result, then work and version.
 const PINS: &str = "\
 specimen 3dc1aee5970f
-simulate 216b9c27fbe6
+simulate 0fef41b28042
 design 4707cd1886b9
 formula c57272d7c660
 command ab7cb869a592
@@ -153,25 +153,25 @@ agreement 7abe77c0ea84
 table 464517716712
 figure e5375085b080
 agreement 3
-anova 3
-calibrate 4
+anova 4
+calibrate 5
 command 2
-data 2
-design 2
+data 3
+design 3
 effort 1
 figure 15
-fit 3
+fit 4
 formula 2
 gather 2
-groups 3
+groups 4
 mix 1
 range 3
-screening 4
+screening 5
 shapes 1
-simulate 3
+simulate 4
 specimen 2
 table 7
-verify 2
+verify 3
 ";
 
 /// What the workflow gives, in the form of the pins.

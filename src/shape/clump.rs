@@ -1,16 +1,16 @@
-//! Few balls that stand for a solid.
+//! Clumps: few balls that represent a solid.
 //!
 //! Candidates are the bubbles about the medial axis ([`super::medial`]) or the maximal balls of the distance transform
 //! ([`super::transform`]); those smaller than `ratio` times the largest are left out. Then either
 //!
-//! * **by distance** (Taghavi's rule): the largest first, and a ball goes out when the angle φ at which it meets a larger one
-//!   that stays exceeds `distance` (degrees, 0 … 180: 0 is a touch, 180 two equal balls in one place)
+//! * **by distance** (Taghavi's rule): the largest first; a ball is dropped when the angle φ at which it meets a larger ball
+//!   of the clump exceeds `distance` (degrees, 0 … 180: 0 is a touch, 180 two coincident balls)
 //!
 //!   ```text
 //!   φ = π − arccos((r₁² + r₂² − d²) / (2 r₁ r₂))
 //!   ```
 //! * or **by error**: the candidate that covers most of the volume not yet covered comes next; all radii grow by one length
-//!   until the union has the volume of the solid; the first number of balls that meets every bound is taken. Balls inside a
+//!   until the union has the volume of the solid; the smallest number of balls that meets every bound is taken. Balls inside a
 //!   convex stone cover it slowly, so without growth no clump of tens of balls is within 2 % of its volume.
 
 use super::Ball;
@@ -77,7 +77,7 @@ impl Default for Bound {
     }
 }
 
-/// A clump against its solid, signed: above 0 where the clump has more.
+/// Relative differences between a clump and its solid; positive where the clump has more.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Errors {
     /// Of the volume.
@@ -119,7 +119,7 @@ pub struct Clump {
 }
 
 impl Clump {
-    /// The same in another frame: the pebbles about their centre of mass, with rows of `axes` as unit vectors.
+    /// The clump in another frame: the pebbles about their centre of mass, with rows of `axes` as unit vectors.
     #[must_use]
     pub fn about_centre(&self, axes: [[f64; 3]; 3]) -> Self {
         let into = |v: [f64; 3]| axes.map(|axis| dot(axis, v));
@@ -193,7 +193,7 @@ pub fn fill(solid: &Mesh, pebbles: &Pebbles, bound: &Bound) -> Result<Clump, Clu
         let Some(growth) = judge.growth(&chosen[..number]) else { continue };
         let balls = grown(&chosen[..number], growth);
         let moments = union::moments(&balls, COARSE).ok_or(ClumpFault::Thin)?;
-        // The coarse quadrature only says whether the fine one is worth its while.
+        // The coarse quadrature decides whether the fine one is needed.
         let rough = Bound { volume: 1.5 * bound.volume, inertia: 1.1 * bound.inertia, ..*bound };
         if number < chosen.len() && !judge.errors(&balls, &moments, None).within(&rough) {
             continue;
@@ -206,7 +206,7 @@ pub fn fill(solid: &Mesh, pebbles: &Pebbles, bound: &Bound) -> Result<Clump, Clu
     Err(ClumpFault::Thin)
 }
 
-/// What clumps of one solid are held against.
+/// The solid with which its clumps are compared.
 struct Judge<'a> {
     whole: Moments,
     principal: [f64; 3],
@@ -238,7 +238,7 @@ impl Judge<'_> {
         }
     }
 
-    /// The length by which radii must grow for the union to have the solid's volume; none when a fifth of the radius of the
+    /// The length by which radii must grow for the union to have the solid's volume; `None` when a fifth of the radius of the
     /// ball of equal volume is not enough.
     fn growth(&self, balls: &[Ball]) -> Option<f64> {
         let volume = |growth: f64| union::moments(&grown(balls, growth), COARSE).map_or(0.0, |m| m.volume);
@@ -272,14 +272,14 @@ fn apart(candidates: &[Ball], distance: f64) -> Vec<Ball> {
     kept
 }
 
-/// The angle at which two balls meet in degrees: 0 where they are apart or touch, 180 where one holds the other.
+/// The angle at which two balls meet, degrees: 0 where they are apart or touch, 180 where one contains the other.
 fn meeting_angle(a: &Ball, b: &Ball) -> f64 {
     let d = norm(minus(a.centre, b.centre));
     let cosine = (a.radius * a.radius + b.radius * b.radius - d * d) / (2.0 * a.radius * b.radius);
     (PI - acos(cosine.clamp(-1.0, 1.0))).to_degrees()
 }
 
-/// The balls in the order in which they cover most of what is not yet covered, at most so many.
+/// Chooses balls greedily: each covers most of the cells not yet covered. At most `most` of them.
 fn covering(candidates: &[Ball], voxels: &Voxels, most: usize) -> Vec<Ball> {
     let cells: Vec<[f64; 3]> =
         (0..voxels.inside.len()).filter(|&c| voxels.inside[c]).map(|c| voxels.middle(c)).collect();
@@ -287,13 +287,13 @@ fn covering(candidates: &[Ball], voxels: &Voxels, most: usize) -> Vec<Ball> {
     let covers: Vec<Vec<u32>> = candidates
         .iter()
         .map(|ball| {
-            // Half a cell more, so that a sliver between neighbours is no cell of its own.
+            // Half a cell more, so that slivers between neighbours count as covered.
             let reach = ball.radius + 0.5 * voxels.side;
             let held = (0..cells.len()).filter(|&c| norm(minus(cells[c], ball.centre)) <= reach);
             held.map(|c| c as u32).collect()
         })
         .collect();
-    // What a ball gains only falls, so an old gain is an upper bound on the new one.
+    // The gain of a ball only decreases, so an old gain is an upper bound on the new one.
     let mut gains: Vec<usize> = covers.iter().map(Vec::len).collect();
     let mut chosen = Vec::new();
     while chosen.len() < most {

@@ -1,11 +1,11 @@
-//! Solids of stones and the rigid clumps that stand for them. Pure: values in, values out, the same bits every time.
+//! Solids of stones and the rigid clumps that represent them. Pure: values in, values out, the same bits every time.
 //!
 //! * [`mesh`]: closed surfaces of triangles; [`mend`]: from loose triangles to a closed, outward surface
 //! * [`loft`]: the surface through sections along a stone's longest side; [`stl`]: STL files, text and binary
 //! * [`moments`]: volume, centre, inertia and principal values, exact; [`statistics`]: shape measures, classes of Zingg
 //! * [`voxels`]: the cells of a grid that lie in a solid; [`medial`] and [`transform`]: balls inside it, in two ways
-//! * [`union`]: volume, inertia and surface of overlapping balls; [`clump`]: few balls within a bound on the errors
-//! * [`lists`]: clumps as PFC, LAMMPS and YADE read them
+//! * [`union`]: volume, inertia and surface of overlapping balls; [`clump`]: few balls within bounds on the errors
+//! * [`lists`]: clumps in the formats of PFC, LAMMPS and YADE
 //!
 //! Lengths are of one unit throughout, which the caller chooses (metres in `flow`); densities are the caller's.
 //!

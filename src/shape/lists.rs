@@ -1,10 +1,10 @@
-//! Clumps as other codes read them: PFC, LAMMPS, YADE. SI units; the origin is the clump's centre of mass.
+//! Clumps in the formats of PFC, LAMMPS and YADE. SI units; the origin is the clump's centre of mass.
 
 use super::clump::Clump;
 use super::vector::minus;
 use std::fmt::Write as _;
 
-/// A PFC command that creates a template: radius and place of every pebble, volume and inertia of unit density.
+/// A PFC command that creates a template: radius and position of every pebble, volume and inertia of unit density.
 pub fn pfc(name: &str, clump: &Clump) -> String {
     let mut text = format!("clump template create name '{name}' ...\n  pebbles {} ...\n", clump.balls.len());
     for (radius, [x, y, z]) in local(clump) {
@@ -52,7 +52,7 @@ pub fn yade(clumps: &[&Clump]) -> String {
     text
 }
 
-/// Radius and place of the pebbles about the centre of mass.
+/// Radius and position of the pebbles about the centre of mass.
 fn local(clump: &Clump) -> impl Iterator<Item = (f64, [f64; 3])> + '_ {
     clump.balls.iter().map(|ball| (ball.radius, minus(ball.centre, clump.moments.centre)))
 }

@@ -1,16 +1,16 @@
 //! The closed surface through sections across a stone's longest side.
 //!
-//! Each section stands at a position along x and has a thickness a (along y) and a height b (along z), as a caliper gives
-//! them. Its outline is the superellipse
+//! Each section lies at a position along x and has a thickness a (along y) and a height b (along z), as measured with a
+//! caliper. Its outline is the superellipse
 //!
 //! ```text
 //! |2 y / a|ᵖ + |2 z / b|ᵖ = 1
 //! ```
 //!
-//! with the exponent p: 2 is an ellipse, 1 a rhombus, 4 and more a box with rounded edges; the caliper does not see it, so
-//! it is the user's to choose. All outlines have the same number of points at the same angles of the parameter; points of neighbouring
-//! outlines are joined by triangles (a ruled surface), and both ends are capped by a fan, or run into a point where a
-//! section has no extent.
+//! with the exponent p: 2 is an ellipse, 1 a rhombus, 4 and more a box with rounded edges. A caliper does not measure p, so the
+//! user chooses it. All outlines have the same number of points at the same angles of the parameter. Triangles join the
+//! points of neighbouring outlines (a ruled surface), and both ends are capped by a fan, or end in a point where a section
+//! has no extent.
 
 use super::mesh::Mesh;
 use math::elementary::{pow, sin_cos};
@@ -117,7 +117,7 @@ pub fn faults(sections: &[Section]) -> Vec<LoftFault> {
 /// The solid through sections, with `around` points on each outline.
 ///
 /// # Errors
-/// The first fault of the sections, or a number of points that is none.
+/// The first fault of the sections, or a number of points outside its range.
 pub fn loft(sections: &[Section], around: usize) -> Result<Mesh, LoftFault> {
     if let Some(fault) = faults(sections).into_iter().next() {
         return Err(fault);
@@ -172,7 +172,7 @@ impl Ring {
     }
 }
 
-/// The belt between two sections.
+/// The facets between two sections.
 fn join(last: Ring, next: Ring, around: usize, facets: &mut Vec<[u32; 3]>) {
     let at = |first: u32, k: usize| first + (k % around) as u32;
     for k in 0..around {

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! (Ma, Bae & Choi 2012, doi:10.1007/s00371-011-0594-7), which gives the same balls: those that touch at p and at q and
-//! are empty. A point q that the centre sees within 30° of p is noise of the facets and shrinks nothing. In the end each radius is
-//! the distance to the nearest point.
+//! are empty. A point q that lies within 30° of p as seen from the centre is noise of the facets and does not shrink the ball.
+//! In the end each radius is the distance to the nearest point.
 //!
 //! Source: Taghavi, R. (2011), Automatic clump generation based on mid-surface, Continuum and Distinct Element Numerical
 //! Modeling in Geomechanics, paper 05-02.
@@ -19,9 +19,9 @@ use super::Ball;
 use super::mesh::{Mesh, area_vector};
 use super::vector::{dot, minus, norm, plus, times};
 
-/// Angle (cosine) between facets up to which the surface is smooth, and between p and q up to which q is noise.
+/// Cosine of the angle between facets up to which the surface is smooth, and between p and q up to which q is noise.
 const SMOOTH: f64 = 0.866_025_403_784_438_6;
-/// Most shrinkings of one ball.
+/// Most iterations for one ball.
 const ROUNDS: usize = 40;
 
 /// A point of a surface with its outward normal.
@@ -33,7 +33,7 @@ pub struct Sample {
     pub normal: [f64; 3],
 }
 
-/// Points spread over a surface, each for the same area.
+/// Points spread over a surface, each representing the same area.
 pub fn samples(mesh: &Mesh, number: usize) -> Vec<Sample> {
     let areas: Vec<[f64; 3]> = mesh.triangles().map(area_vector).collect();
     let normals = corner_normals(mesh, &areas);
@@ -45,7 +45,7 @@ pub fn samples(mesh: &Mesh, number: usize) -> Vec<Sample> {
         let corners = mesh.corners(facet);
         while found.len() < number && (found.len() as f64 + 0.5) < passed + share {
             let [u, v] = pair(found.len());
-            // The square of the triangle, folded.
+            // A point of the unit square, folded into the triangle.
             let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
             let weights = [1.0 - u - v, u, v];
             let mix = |three: [[f64; 3]; 3]| (0..3).fold([0.0; 3], |sum, k| plus(sum, times(three[k], weights[k])));
@@ -57,7 +57,7 @@ pub fn samples(mesh: &Mesh, number: usize) -> Vec<Sample> {
     found
 }
 
-/// Two numbers of an even sequence (additive recurrence of the plastic number).
+/// Two coordinates of a low-discrepancy sequence (additive recurrence of the plastic number).
 fn pair(k: usize) -> [f64; 2] {
     [0.754_877_666_246_693, 0.569_840_290_998_053].map(|step| ((k as f64 + 1.0) * step).fract())
 }
@@ -77,7 +77,7 @@ fn corner_normals(mesh: &Mesh, areas: &[[f64; 3]]) -> Vec<[[f64; 3]; 3]> {
     (0..areas.len()).map(|facet| mesh.facets()[facet].map(|vertex| normal(facet, vertex))).collect()
 }
 
-/// One ball for each point, the largest that touches there and holds none of the others.
+/// For each point the largest ball that touches the surface there and contains none of the other points.
 pub fn bubbles(samples: &[Sample]) -> Vec<Ball> {
     let (low, high) = super::vector::extent(samples.iter().map(|s| s.point));
     let widest = 0.5 * norm(minus(high, low));
@@ -110,7 +110,7 @@ fn bubble(at: &Sample, samples: &[Sample], widest: f64) -> Option<Ball> {
     (inside > 0.5 * radius).then_some(Ball { centre, radius: inside })
 }
 
-/// The point nearest to a place, with its distance.
+/// The point nearest to a position, with its distance.
 fn nearest(place: [f64; 3], samples: &[Sample]) -> Option<([f64; 3], f64)> {
     let square = |s: &Sample| {
         let d = minus(s.point, place);

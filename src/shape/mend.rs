@@ -1,31 +1,31 @@
-//! From loose triangles to a closed surface that faces outwards, with a list of what had to be mended.
+//! Repair: from loose triangles to a closed surface that faces outwards, with a list of the repairs.
 //!
-//! 1. Corners nearer than 10⁻⁶ of the diagonal are one vertex; triangles that lose a corner or their area are dropped,
-//!    and of triangles with the same corners one stays.
+//! 1. Corners nearer than 10⁻⁶ of the diagonal become one vertex; triangles without three corners or without area are
+//!    dropped, and of triangles with the same corners one stays.
 //! 2. Every edge belongs to one or two triangles; more is a fault.
 //! 3. Neighbours are turned so that they run along their common edge in opposite ways; where that is impossible (a Möbius
 //!    band) it is a fault.
 //! 4. Edges of one triangle make the rims of holes. A hole is closed by a fan about the middle of its rim when the fan is
 //!    at most 5 % of the surface; a larger one is a fault.
 //! 5. Every shell is turned so that its volume is positive. Of several shells the largest counts, if the others together
-//!    have at most 1 % of its volume; else it is a fault, for nobody can know which of them is the stone.
+//!    have at most 1 % of its volume; else it is a fault, because it is not clear which of them is the stone.
 
 use super::mesh::{Mesh, area_vector};
 use super::moments::Moments;
 use super::vector::{dot, extent, minus, norm, plus, times};
 use std::collections::{BTreeMap, HashMap};
 
-/// Corners nearer than this share of the diagonal are one.
+/// Corners nearer than this fraction of the diagonal are one vertex.
 const NEAR: f64 = 1e-6;
-/// Largest share of the surface that is closed by a fan.
+/// Largest hole that a fan closes, as a fraction of the surface.
 const HOLE: f64 = 0.05;
-/// Largest share of the volume that stray shells may have.
+/// Largest volume of stray shells, as a fraction of that of the stone.
 const STRAY: f64 = 0.01;
 
-/// What was mended.
+/// The repairs of a surface.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Mended {
-    /// Triangles without area, or twice there, that were dropped.
+    /// Triangles without area and duplicate triangles, which were dropped.
     pub dropped: usize,
     /// Triangles whose corners ran the wrong way.
     pub turned: usize,
@@ -36,7 +36,7 @@ pub struct Mended {
 }
 
 impl Mended {
-    /// In words, one each.
+    /// The repairs in words, one text each.
     pub fn words(&self) -> Vec<String> {
         let said = [
             (
@@ -114,7 +114,7 @@ fn volumes(volumes: &[f64]) -> String {
 /// The solid that loose triangles enclose.
 ///
 /// # Errors
-/// The first reason why they enclose none, or none that is clear.
+/// The first fault because of which they enclose no solid, or no single one.
 pub fn mend(triangles: &[[[f64; 3]; 3]]) -> Result<(Mesh, Mended), Unsound> {
     if let Some(bad) = triangles.iter().position(|t| t.iter().flatten().any(|x| !x.is_finite())) {
         return Err(Unsound::Number(bad + 1));
@@ -130,7 +130,7 @@ pub fn mend(triangles: &[[[f64; 3]; 3]]) -> Result<(Mesh, Mended), Unsound> {
     Ok((mesh, mended))
 }
 
-/// Corners that are near become one vertex.
+/// Merges corners that are near one another into one vertex.
 fn weld(triangles: &[[[f64; 3]; 3]], mended: &mut Mended) -> Mesh {
     let (low, high) = extent(triangles.iter().flatten().copied());
     let near = NEAR * norm(minus(high, low));
@@ -138,7 +138,7 @@ fn weld(triangles: &[[[f64; 3]; 3]], mended: &mut Mended) -> Mesh {
         std::array::from_fn(|k| ((p[k] - low[k]) / (4.0 * near).max(f64::MIN_POSITIVE) + shift[k]).floor() as i64)
     };
     let mut vertices: Vec<[f64; 3]> = Vec::new();
-    // Only looked up, never walked: its order is in no result.
+    // Only looked up, never iterated: no result depends on its order.
     let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
     let mut vertex = |p: [f64; 3]| -> u32 {
         for corner in 0..8 {
@@ -182,7 +182,7 @@ fn edges(facets: &[[u32; 3]]) -> BTreeMap<[u32; 2], Vec<(usize, bool)>> {
     edges
 }
 
-/// Turns neighbours alike, and shells outwards as far as their volume can tell; gives the shell of every facet.
+/// Orients neighbours consistently, and shells outwards by the sign of their volume; returns the shell of every facet.
 fn orient(mesh: &mut Mesh, mended: &mut Mended) -> Result<Vec<usize>, Unsound> {
     let edges = edges(&mesh.facets);
     let middle = |edge: &[u32; 2]| {
@@ -226,7 +226,7 @@ fn orient(mesh: &mut Mesh, mended: &mut Mended) -> Result<Vec<usize>, Unsound> {
         shells += 1;
     }
     let state: Vec<(usize, bool)> = state.into_iter().flatten().collect();
-    // The centre of its own corners is near enough to the inside of an open shell to tell its two sides apart.
+    // The centre of the corners lies inside of an open shell, or near enough to it for the sign of the volume.
     let mut volumes = vec![0.0; shells];
     let base = times(mesh.vertices.iter().fold([0.0; 3], |sum, &v| plus(sum, v)), 1.0 / mesh.vertices.len() as f64);
     for (facet, &(shell, turned)) in state.iter().enumerate() {
@@ -243,7 +243,7 @@ fn orient(mesh: &mut Mesh, mended: &mut Mended) -> Result<Vec<usize>, Unsound> {
     Ok(state.into_iter().map(|(shell, _)| shell).collect())
 }
 
-/// Closes small holes; gives the shell of every facet.
+/// Closes small holes; returns the shell of every facet.
 fn close(mesh: &mut Mesh, mut shells: Vec<usize>, mended: &mut Mended) -> Result<Vec<usize>, Unsound> {
     // The rim runs against the facet at it: from its second vertex to its first.
     let mut next: BTreeMap<u32, (u32, usize)> = BTreeMap::new();

@@ -3,8 +3,8 @@
 use super::vector::{cross, dot, extent, minus, norm, times};
 use std::collections::BTreeMap;
 
-/// A closed surface of triangles whose corners run anticlockwise as seen from outside. Made by [`super::loft::loft`] and
-/// [`super::mend::mend`], which see to it that every edge belongs to two triangles that run along it in opposite ways.
+/// A closed surface of triangles whose corners run anticlockwise as seen from outside. [`super::loft::loft`] and
+/// [`super::mend::mend`] make it; in both, every edge belongs to two triangles that run along it in opposite directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     pub(crate) vertices: Vec<[f64; 3]>,
@@ -21,7 +21,7 @@ pub struct Edge {
 }
 
 impl Mesh {
-    /// A surface from its own parts, such as a stored one; `None` where a triangle names a vertex that is not there.
+    /// A surface from stored vertices and triangles; `None` where a triangle names a vertex that does not exist.
     pub fn of(vertices: Vec<[f64; 3]>, facets: Vec<[u32; 3]>) -> Option<Self> {
         let there = facets.iter().flatten().all(|&v| (v as usize) < vertices.len());
         there.then_some(Self { vertices, facets })
@@ -57,7 +57,7 @@ impl Mesh {
         extent(self.vertices.iter().copied())
     }
 
-    /// The same surface with every vertex moved by a function that keeps its handedness.
+    /// The surface with every vertex moved by a function that preserves handedness.
     #[must_use]
     pub fn mapped(&self, map: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         Self { vertices: self.vertices.iter().map(|&v| map(v)).collect(), facets: self.facets.clone() }

@@ -11,7 +11,7 @@
 use super::mesh::Mesh;
 use super::vector::{cross, dot, minus, plus};
 
-/// Volume and its moments, of unit density.
+/// Volume, centre and inertia at unit density.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Moments {
     /// Volume (length³).
@@ -23,7 +23,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Of the solid inside a surface.
+    /// The moments of the solid inside a surface.
     pub fn of(mesh: &Mesh) -> Self {
         let (low, high) = mesh.extent();
         let base: [f64; 3] = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
@@ -43,7 +43,7 @@ impl Moments {
         Self::about_centre(volume, first, second, base)
     }
 
-    /// From the integrals of 1, x and x ⊗ x about a base point.
+    /// The moments from the integrals of 1, x and x ⊗ x about a base point.
     pub(crate) fn about_centre(volume: f64, first: [f64; 3], mut second: [[f64; 3]; 3], base: [f64; 3]) -> Self {
         let centre = first.map(|x| x / volume);
         for i in 0..3 {

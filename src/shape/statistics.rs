@@ -9,7 +9,7 @@
 //! | angularity | share of the integral of mean curvature ½ Σ l θ that lies in edges sharper than 30°: 0 for a smooth stone, 1 for a polyhedron |
 //! | convexity | share of edges' length that is not concave by more than 5° |
 //!
-//! Zingg (1935) parts them at two thirds: equant (both above), disc (flat), rod (elongated), blade (both).
+//! Zingg (1935) divides them at two thirds: equant (both above), disc (flat), rod (elongated), blade (both).
 
 use super::mesh::Mesh;
 use super::moments::Moments;
@@ -17,7 +17,7 @@ use super::vector::{dot, minus};
 use math::elementary::cbrt;
 use std::f64::consts::PI;
 
-/// Where Zingg's classes part.
+/// Bound between Zingg's classes.
 pub const ZINGG: f64 = 2.0 / 3.0;
 
 /// Class of Zingg.
@@ -44,7 +44,7 @@ impl Zingg {
         }
     }
 
-    /// The word.
+    /// Name of the class.
     pub fn name(self) -> &'static str {
         match self {
             Self::Equant => "equant",
@@ -79,7 +79,7 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Of a solid.
+    /// The measures of a solid.
     pub fn of(solid: &Mesh) -> Self {
         let moments = Moments::of(solid);
         let (_, axes) = moments.principal();

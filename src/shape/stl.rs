@@ -1,10 +1,10 @@
 //! STL files: triangles as text or as records of 50 bytes.
 //!
-//! A binary file has 80 bytes of anything, the number of facets (little endian), and for each facet a normal, three
+//! A binary file has 80 arbitrary bytes, the number of facets (little endian), and for each facet a normal, three
 //! corners (32-bit floats) and two bytes of attributes. A text file has `solid`, then `facet normal … outer loop`,
 //! three times `vertex x y z`, `endloop endfacet`, and `endsolid`; several solids may follow one another. Many binary
-//! files begin with the word `solid` too, so a file is binary when its length fits to its number of facets.
-//! The normals in the file are not used: the order of the corners says the same, and [`super::mend`] corrects it.
+//! files begin with the word `solid` too, so a file is binary when its length fits its number of facets.
+//! The normals in the file are not used: the order of the corners gives them, and [`super::mend`] corrects it.
 
 use super::mesh::{Mesh, area_vector};
 use super::vector::{norm, times};
@@ -16,7 +16,7 @@ pub const MOST_FACETS: usize = 5_000_000;
 const HEAD: usize = 84;
 const RECORD: usize = 50;
 
-/// Why a file is no STL.
+/// Why a file is not STL.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StlFault {
     /// Neither form.
@@ -55,7 +55,7 @@ pub enum StlFault {
 /// The triangles of a file, with every coordinate times `unit`.
 ///
 /// # Errors
-/// The first place at which the file is no STL. Nothing is allocated on the word of the file alone.
+/// The first fault in the file. Memory is allocated by the size of the file, never by numbers in it.
 pub fn read(bytes: &[u8], unit: f64) -> Result<Vec<[[f64; 3]; 3]>, StlFault> {
     let count = bytes.get(80..HEAD).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes);
     let wanted = count.map(|count| HEAD as u64 + RECORD as u64 * u64::from(count));
@@ -84,7 +84,7 @@ fn binary(bytes: &[u8], unit: f64) -> Result<Vec<[[f64; 3]; 3]>, StlFault> {
     Ok(records.map(corners).collect())
 }
 
-/// What follows in a text file.
+/// The token that must follow in a text file.
 enum Place {
     Outside,
     Solid,

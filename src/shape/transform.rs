@@ -2,7 +2,7 @@
 //!
 //! The distance of each cell's middle to the nearest middle outside, exact on the grid by lower envelopes of parabolas along
 //! one axis after the other (Felzenszwalb & Huttenlocher 2012, doi:10.4086/toc.2012.v008a019); half a cell less is the radius of
-//! a ball inside. A ball that lies in the ball of a neighbouring cell is left out: what stays are the centres of maximal balls.
+//! a ball inside. A ball that lies in the ball of a neighbouring cell is left out: maximal balls remain.
 
 use super::Ball;
 use super::voxels::Voxels;

@@ -1,6 +1,6 @@
-//! Volume, centre, inertia and surface of overlapping balls, parts that several share counted once.
+//! Volume, centre, inertia and surface of the union of overlapping balls.
 //!
-//! Columns of a square grid across z cut each ball in an interval; the merged intervals give ∫ dz, ∫ z dz and ∫ z² dz of a
+//! Columns of a square grid along z cut each ball in an interval; the merged intervals give ∫ dz, ∫ z dz and ∫ z² dz of a
 //! column exactly, and the midpoint rule sums the columns. With 256 columns along the longer extent the volume of one ball
 //! is within 10⁻⁵ and that of a clump within 10⁻⁴. The surface is the share of each sphere that no other ball covers, by
 //! points that are spread evenly over it (a spiral of the golden angle), to about 1 %.
@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// Points on each sphere for its surface.
 const POINTS: usize = 2000;
 
-/// Volume, centre and inertia of a union, with `along` columns along the longer extent; none of no balls.
+/// Volume, centre and inertia of a union, with `along` columns along the longer extent; `None` without balls.
 pub fn moments(balls: &[Ball], along: usize) -> Option<Moments> {
     let corners = balls.iter().flat_map(|b| [b.centre.map(|x| x - b.radius), b.centre.map(|x| x + b.radius)]);
     let (low, high) = extent(corners);
@@ -24,7 +24,7 @@ pub fn moments(balls: &[Ball], along: usize) -> Option<Moments> {
     }
     let base: [f64; 3] = std::array::from_fn(|k| 0.5 * (low[k] + high[k]));
     let [nx, ny] = [0, 1].map(|k| (((high[k] - low[k]) / side).ceil() as usize).max(1));
-    // The columns are centred, so that a symmetric clump stays so.
+    // The columns are centred, so that a symmetric clump has symmetric moments.
     let start = [0, 1].map(|k| -0.5 * side * ([nx, ny][k] as f64 - 1.0));
     let columns = intervals(balls, base, start, side, [nx, ny]);
     let (mut volume, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
@@ -37,7 +37,7 @@ pub fn moments(balls: &[Ball], along: usize) -> Option<Moments> {
             volume += zero;
             let weights = [x * zero, y * zero, one];
             (0..3).for_each(|k| first[k] += weights[k]);
-            // The square of the side spreads the column's own width.
+            // The second moment of the width of the column itself.
             second[0][0] += (x * x + side * side / 12.0) * zero;
             second[1][1] += (y * y + side * side / 12.0) * zero;
             second[2][2] += area * (to * to * to - from * from * from) / 3.0;

@@ -1,8 +1,8 @@
 //! The cells of a regular grid whose centres lie in a solid.
 //!
-//! A ray through each column of the grid meets the surface; the cells between an entry and the next exit are inside. The
+//! A ray through each column of the grid intersects the surface; the cells between an entry and the next exit are inside. The
 //! side of an edge is computed from its vertices in one order, so two facets that share it never both miss or both take
-//! a ray; columns stand off the middle by an irrational share, so that none runs through a vertex of a regular surface.
+//! a ray; columns are offset from the middle by an irrational fraction, so that none passes through a vertex of a regular surface.
 
 use super::mesh::Mesh;
 use super::vector::minus;
@@ -20,11 +20,11 @@ pub struct Voxels {
     pub inside: Vec<bool>,
 }
 
-/// Where in a cell its column stands.
+/// Position of the column within its cell.
 const OFF: [f64; 2] = [0.5 + 1.414_213_562_373_095e-4, 0.5 - 1.732_050_807_568_877e-4];
 
 impl Voxels {
-    /// Of a solid, `along` cells along its longest extent, with one layer around it.
+    /// The cells of a solid, with `along` cells along its longest extent and one layer around it.
     ///
     /// # Panics
     /// `along` is 0.

@@ -1,18 +1,18 @@
 //! `kind = "agreement"`: computed results beside values of the same points from elsewhere.
 //!
-//! `of` and `compare` name tables of results in pairs. Rows are paired by the factors that both hold; equal points pair
-//! off in their order. The result has the tables
+//! `of` and `compare` name tables of results in pairs. Rows are paired by the factors that both hold; equal points are
+//! paired in their order. The result has the tables
 //! * `summary` (`response,table,n,median,lower,upper,least,greatest,mean,std,spearman`): the ratio computed/reference
 //!   per pair of tables, and over all of them where there are several;
-//! * `trends` (`response,table,factor,effect,std_error,t,p`): what the ratio depends on: the regression of 100 ln ratio
-//!   on the factors of a table, each effect over the factor's span, in per cent;
+//! * `trends` (`response,table,factor,effect,std_error,t,p`): the regression of 100 ln ratio on the factors of a table,
+//!   each effect over the factor's span, in per cent;
 //! * `pairs` (`response,table,row,computed,reference,ratio`): every pair, `row` in the reference.
 
 use super::columns::{Columns, Rows, Wanted, check_names, runs};
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names, given::check_given, invalid::Invalid};
 use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
-use crate::artifact::statistics::NoteTable;
+use crate::artifact::notes::NoteTable;
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
@@ -29,15 +29,15 @@ use stats::terms::Term;
 pub struct Agreement {
     /// The stages with the computed results.
     pub of: Names,
-    /// As many stages with the values to compare with, in the same order.
+    /// The stages with the values to compare with, one for each of `of`, in the same order.
     pub compare: Names,
-    /// Responses that are compared; all that both tables have when not given.
+    /// Responses to compare; by default all that both tables have.
     #[serde(default)]
     pub responses: Vec<String>,
-    /// Largest relative difference of a level that still counts as the same: published levels are rounded.
+    /// Largest relative difference between levels that count as equal, because published levels are rounded.
     #[serde(default = "tolerance")]
     pub tolerance: f64,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
 }

@@ -27,17 +27,17 @@ use std::collections::BTreeMap;
 pub struct Anova {
     /// The stage whose runs are analysed.
     pub table: String,
-    /// Factors of the table that are looked at; all when not given.
+    /// Factors to analyse; by default all of the table.
     #[serde(default)]
     pub factors: Vec<String>,
-    /// Responses to analyse; all that the table has when not given.
+    /// Responses to analyse; by default all that the table has.
     #[serde(default)]
     pub responses: Vec<String>,
     /// Factors that are counted as error: empty columns, weak factors.
     #[serde(default)]
     pub as_error: Vec<String>,
-    /// Factors that set nothing: they are analysed like the others, and a significant one gets a note, for then
-    /// the model lacks interactions or the table has an error.
+    /// Factors that set nothing: they are analysed like the others, and a significant one gets a note, because the
+    /// model then lacks interactions or the table has an error.
     #[serde(default)]
     pub empty: Vec<String>,
     /// Terms whose p exceeds this are pooled into the error.
@@ -48,7 +48,7 @@ pub struct Anova {
     /// Sums of squares of type I, II or III.
     #[serde(default, rename = "type")]
     pub squares: Squares,
-    /// What F divides by: `"residual"`, or `"pure-error"` of replicated runs.
+    /// Denominator of F: `"residual"`, or `"pure-error"` of replicated runs.
     #[serde(default)]
     pub error: Error,
     /// A p up to this is significant.
@@ -63,15 +63,15 @@ pub struct Anova {
     /// Level of the outlier test on the studentized residuals, over all rows together.
     #[serde(default = "alpha")]
     pub outlier_alpha: f64,
-    /// Column with the number of replicates that each row is the mean of.
+    /// Column with the number of replicates of which each row is the mean.
     pub weights: Option<String>,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
-    /// Step to which a response of the table is rounded; adds what that does to F.
+    /// Step to which a response of the table is rounded; adds the effect of rounding on F.
     #[serde(default)]
     pub rounding: BTreeMap<String, f64>,
-    /// CSV beside the workflow with printed F values: `response,source,f`, perhaps `note`.
+    /// CSV beside the workflow with printed F values: `response,source,f` and, optionally, `note`.
     pub published: Option<String>,
 }
 
@@ -91,7 +91,7 @@ pub enum Pairs {
 pub enum PairWord {
     /// Main effects alone.
     None,
-    /// Every pair that the runs can tell from the terms before it.
+    /// Every pair that the runs can separate from the terms before it.
     Estimable,
 }
 
@@ -219,8 +219,8 @@ impl Kind for Anova {
     const ABOUT: &'static str = "analysis of variance: sums of squares, F, p and contribution of every factor";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::ANOVA];
     const CLASS: Class = Class::Statistics;
-    // 3: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "anova", version: 3, run: analyse }];
+    // 4: what all responses have in common costs no digits. 3: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "anova", version: 4, run: analyse }];
 }
 
 fn settings(params: &Params) -> Settings {
@@ -289,7 +289,7 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     Ok(Stored { anova: table, fit, notes, residuals, not_valid: not_valid.some() }.to_artifact())
 }
 
-/// What a person should see at once.
+/// Notes on what a reader must know first.
 fn notes<'a>(analyses: &[Analysis], params: &Params, not_valid: &'a NotValid) -> Notes<'a> {
     let mut notes = Notes::of(not_valid);
     for analysis in analyses {

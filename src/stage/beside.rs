@@ -8,23 +8,23 @@ use std::path::{Path, PathBuf};
 /// Largest file that a workflow may name, in bytes.
 pub const LARGEST: u64 = 4 << 30;
 
-/// What was found.
+/// The faults and warnings that were found.
 #[derive(Debug, Default)]
 pub struct Beside {
     folder: PathBuf,
-    /// Files that cannot be read, or not as what they are named for.
+    /// Files that cannot be read, or do not hold what their key asks for.
     pub faults: Vec<Complaint>,
-    /// What makes a result stale, or a program fail, without being a fault for certain.
+    /// Warnings: what may make a result stale or a program fail.
     pub warnings: Vec<Complaint>,
 }
 
 impl Beside {
-    /// Looks from the folder of the workflow.
+    /// A check that looks for files from the folder of the workflow.
     pub fn of(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), ..Self::default() }
     }
 
-    /// A file that is named under `key` must be there, and be a plain file.
+    /// Checks that the file under `key` exists and is a plain file.
     pub fn file(&mut self, key: &str, path: &str) -> Option<PathBuf> {
         let full = self.folder.join(path);
         match plain(&full) {
@@ -37,20 +37,20 @@ impl Beside {
         None
     }
 
-    /// A file that may be named under `key`.
+    /// As [`Beside::file`], for a key that need not be set.
     pub fn optional(&mut self, key: &str, path: Option<&String>) {
         path.and_then(|path| self.file(key, path));
     }
 
-    /// The plain file that a word of a command names from this folder, if it does.
+    /// The plain file in this folder that a word of a command names, if there is one.
     pub fn named(&self, word: &str) -> Option<PathBuf> {
         let path = self.folder.join(word);
         (!word.is_empty() && plain(&path).is_ok()).then_some(path)
     }
 }
 
-/// Metadata of a plain file that is not too large; everything else (a folder, a pipe, a device) is refused before it
-/// is opened, because opening a pipe waits for ever.
+/// Metadata of a plain file that is not too large. A folder, a pipe and a device are refused before they are opened,
+/// because opening a pipe waits for ever.
 ///
 /// # Errors
 /// Why it cannot be read, in a few words.

@@ -1,11 +1,12 @@
-//! Runs of earlier campaigns, so that a design with one new row does not look at ten thousand old ones.
+//! Summaries of the runs of earlier campaigns, so that a design with one new row does not read ten thousand old runs.
 //!
-//! A run is a function of its point, its replicate, and of what all rows share. While the shared part is unchanged, the
-//! runner knows the key and the result of an old row without making its task, and a [`RunSummary`]: all that gathering takes
-//! from a run. Summaries only save work: the gathered table is the same with them and without them.
+//! A run is a function of its point, its replicate, and of parameters that all rows share. While the shared part is
+//! unchanged, the runner knows the key and the result of an old row without making its task, and a [`RunSummary`]: all
+//! that the gathered table needs of a run. Summaries only save work: the table is the same with them and without them.
 
+use super::StageError;
 use crate::artifact::run::{Outcome, Run};
-use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table};
+use crate::artifact::{Artifact, ContentHash, Group, Key, Node, Table, Values};
 use std::borrow::Cow;
 
 /// A run of an earlier campaign.
@@ -15,7 +16,7 @@ pub struct CachedRun<'a> {
     pub key: Key,
     /// Its result.
     pub content: ContentHash,
-    /// What gathering takes from it.
+    /// Its summary.
     pub summary: RunSummary<'a>,
 }
 
@@ -54,7 +55,7 @@ pub struct RunSummary<'a> {
 }
 
 impl<'a> RunSummary<'a> {
-    /// As gathering sees a run.
+    /// The summary of a run.
     pub(super) fn responses(&self) -> Outcome<'a> {
         let found = self.names.iter().zip(self.values);
         let (failure, validity, cautions) = self.verdict;
@@ -97,7 +98,7 @@ impl RunSummaries {
         self.values.extend_from_slice(summary.values);
     }
 
-    /// Adds a run as its artifact holds it; false when it holds no responses.
+    /// Adds the run of an artifact; false when it holds no responses.
     pub fn push_run(&mut self, run: &Artifact) -> bool {
         let Ok(Outcome { failure, validity, cautions, responses }) = Run::outcome(run) else { return false };
         let names: Vec<_> = responses.iter().map(|(name, _, unit)| ((*name).to_owned(), (*unit).to_owned())).collect();
@@ -120,6 +121,21 @@ impl RunSummaries {
         let indices = Table::default().ints_column("index", "", indices);
         let summaries = Node::Bytes(self.to_bytes());
         Artifact::new("cached", 1, Group::new().with("indices", Node::Table(indices)).with("summaries", summaries))
+    }
+
+    /// Reads what [`RunSummaries::artifact`] wrote: indices among the inputs, and the summaries.
+    ///
+    /// # Errors
+    /// The artifact is another one.
+    pub fn of_artifact(cached: &Artifact) -> Result<(&[i64], Self), StageError> {
+        let indices = cached.table("indices").and_then(|table| table.column("index")).map(|column| &column.values);
+        match (indices, cached.root.get("summaries")) {
+            (Some(Values::Ints(indices)), Some(Node::Bytes(bytes))) => {
+                let summaries = Self::from_bytes(bytes).filter(|summaries| summaries.len() == indices.len());
+                Ok((indices, summaries.ok_or_else(|| StageError::new("the cached runs cannot be read"))?))
+            }
+            _ => Err(StageError::new("the cached runs hold no indices or no summaries")),
+        }
     }
 
     /// Length, texts as JSON, three numbers for each run, values; little-endian.
@@ -153,7 +169,7 @@ impl RunSummaries {
     }
 }
 
-/// Index of the value in the list, to which it is added when it is new. The last value is the likeliest.
+/// Index of the value in the list, to which it is added when it is new. The search begins at the last value.
 fn index_of<T>(list: &mut Vec<T>, is: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> u32 {
     let found = list.iter().rposition(is).unwrap_or_else(|| {
         list.push(make());

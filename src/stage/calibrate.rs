@@ -1,34 +1,35 @@
-//! `kind = "calibrate"`: from wanted responses to the parameters that give them.
+//! `kind = "calibrate"`: finds the parameters that give the target responses.
 //!
 //! The misfit of [`optim::misfit`] is minimised over the ranges of the factors, for one or many target sets:
 //! * with `surfaces` alone, on the fitted surfaces, at once;
 //! * with `simulator` (or several `simulators`, all run at every point), by simulations: each is an ordinary task (cached,
-//!   parallel, resumed by replay), because the next points are a pure function of the outcomes so far; failed ones show
-//!   the optimiser where not to go;
-//! * with both, by the surrogate, which takes the surfaces for its first belief and corrects them by simulations;
-//! * with `coarse` twins of the simulators, on these, and a bounded number of runs of the simulators corrects them.
+//!   parallel, resumed by replay), because the next points are a pure function of the outcomes so far; failed ones tell
+//!   the optimiser which regions to avoid;
+//! * with both, by the surrogate, which uses the surfaces as its prior mean and corrects them by simulations;
+//! * with `coarse` twins of the simulators, on these, and a bounded number of runs of the simulators corrects the result.
 //!
 //! Simulation k of a set stands on replicate k of the specimen (or cycles through `specimens` of them), so the scatter
-//! of packings is in the runs and not hidden behind one lucky packing. `learn_from` names stages whose runs the
-//! surrogate takes in; the result depends on these inputs and on nothing else in the store.
+//! of packings enters the runs and is not hidden by a single packing. `learn_from` names stages whose runs the
+//! surrogate uses too; the result depends on these inputs and on nothing else in the store.
 //!
 //! The artifact `solution` holds the tables
 //! * `solution`: a row per target set with the parameters, the predicted responses, `misfit`, `evaluations`, `stop`,
 //!   whether the targets are `met`, and `free`, the number of directions in which the parameters can change without
 //!   changing a response;
-//! * `parameters`: per set and factor its value, the interval of it over all equally good solutions, and whether the
+//! * `parameters`: per set and factor its value, its interval over all equally good solutions, and whether the
 //!   targets determine it or leave it free;
 //! * `prediction`: per set and response the target, the expected value with its 95 % interval, the scatter of a run, and
-//!   what the response can be over the ranges: a target outside that reach is named, with the nearest value;
+//!   the range of the response over the ranges of the factors; a target outside it is named, with the nearest value;
 //! * `history`: every simulation, or on surfaces every evaluation that improved; the simulation itself, with its curve,
 //!   is row `row` of the stage: `flow show W 'calibrate[17]'`;
 //! * `effort`: evaluations until the responses came within 10, 5 and 2 % of the targets;
 //! * `solution_set`: further parameters that meet the targets;
-//! * `notes`: what to look at before the numbers are used.
+//! * `notes`: what a reader must know before the numbers are used.
 //!
-//! Where parameters outnumber targets the solution nearest the centre of the ranges (or `preference`) is taken.
+//! Where there are more parameters than targets, the solution nearest the centre of the ranges (or `preference`) is taken.
 
 mod config;
+mod constraint;
 mod course;
 mod curve;
 mod effort;
@@ -42,12 +43,14 @@ mod record;
 mod sets;
 mod slope;
 mod solve;
+mod solved;
 #[cfg(test)]
 mod tests;
 mod twin;
 mod words;
 
-pub use config::{Calibrate, Constraint, MethodName, Unmet};
+pub use config::{Calibrate, MethodName, Unmet};
+pub use constraint::Constraint;
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
 pub use instrument::{Instrument, Parameter, Surface, instrument};
@@ -64,7 +67,7 @@ use params::Params;
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// One response in the wanted unit of the runs of a point, each with the simulator that made it, or why there is none;
+/// One response of the runs of a point in the unit of the target, each run with its simulator, or why there is none;
 /// `stress at 0.001` reads the curve.
 pub(super) fn read_response(
     runs: &[(&str, &Artifact)],
@@ -114,7 +117,7 @@ impl Stage for Calibrate {
     }
 
     fn forecast(&self, ahead: &Ahead) -> Forecast {
-        // A curve alone is one target.
+        // A curve without other targets makes one target set.
         let sets = self.targets.len().max(1);
         let one = Forecast { rows: Some(sets), ..Forecast::ONE };
         if self.simulators().is_empty() {
@@ -164,7 +167,7 @@ impl Stage for Calibrate {
 }
 
 impl Calibrate {
-    /// All that decides the result, now that the inputs are known.
+    /// All parameters that decide the result, now that the inputs are known.
     fn known_params(&self, known: &Known) -> Result<Params, StageError> {
         let measured = known.port("curve").map(|input| known.load(input)).collect::<Result<Vec<_>, _>>()?;
         let mut params = self.params(known.context, &measured)?;
@@ -184,7 +187,7 @@ impl Calibrate {
         1 + self.specimens.map_or(index, |count| index % count)
     }
 
-    /// Which of `names`, the simulators in their order or their coarse twins, gives the responses of `from`.
+    /// For each response in `from` the name of the stage that gives it; `names` are the simulators or their coarse twins.
     fn givers(&self, names: &[String]) -> BTreeMap<String, String> {
         let simulators = self.simulators();
         let named = |(response, own): (&String, &String)| {
@@ -202,5 +205,6 @@ impl Kind for Calibrate {
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
     const CLASS: Class = Class::Calibration;
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 4, run: solve::solve }];
+    // 5: proportional corrections go on after a run without the response
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 5, run: solve::solve }];
 }

@@ -1,4 +1,4 @@
-//! From a table of runs to the statistician's sample and back: shared by every stage that analyses.
+//! Converts a table of runs into a sample for statistics and back: shared by every stage of statistics.
 
 use super::derived::Derived;
 use super::invalid::Invalid;
@@ -13,7 +13,7 @@ use stats::error::Faults;
 use stats::sample::{Factor, Response, Sample};
 use std::collections::BTreeMap;
 
-/// Which columns of a table are analysed, and in which units.
+/// The columns of a table that are analysed, with their units.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Columns {
     factors: Vec<FactorColumn>,
@@ -21,7 +21,7 @@ pub(super) struct Columns {
     /// Formulas of factors that terms name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     derived: Vec<Derived>,
-    /// Column with the number of replicates that a row is the mean of.
+    /// Column with the number of replicates of which a row is the mean.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     weights: Option<String>,
     /// What becomes of runs that are not valid.
@@ -33,13 +33,13 @@ pub(super) struct Columns {
 struct FactorColumn {
     name: String,
     unit: String,
-    /// Values that no row may leave; empty when any value may stand.
+    /// The values that are allowed; empty when every value is.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     levels: Vec<f64>,
-    /// Values of −1 and +1 in coded units.
+    /// Natural values of −1 and +1 in coded units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     coding: Option<(f64, f64)>,
-    /// Whether a model takes its logarithm.
+    /// Whether models use its logarithm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     log: bool,
     /// Names of the levels of a category.
@@ -53,12 +53,12 @@ struct ResponseColumn {
     unit: String,
 }
 
-/// What a stage asks of a table.
+/// A stage's choice of columns.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wanted<'a> {
-    /// Factors, or formulas of factors; empty takes all factors that the table has.
+    /// Factors, or formulas of factors; empty for all factors of the table.
     pub factors: &'a [String],
-    /// Responses; empty takes all that the table has.
+    /// Responses; empty for all of the table.
     pub responses: &'a [String],
     /// Column of weights.
     pub weights: Option<&'a str>,
@@ -66,7 +66,7 @@ pub(super) struct Wanted<'a> {
     pub levels: bool,
     /// Whether factors with a logarithmic scale enter by their logarithms.
     pub scales: bool,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     pub invalid: Invalid,
 }
 
@@ -76,7 +76,7 @@ pub(super) fn runs(artifact: &Artifact) -> Result<&Table, StageError> {
 }
 
 impl Columns {
-    /// The columns of `table` that are wanted, in the table's order.
+    /// The chosen columns of `table`, in the table's order.
     pub(super) fn of(table: &Table, context: &Context, wanted: Wanted) -> Result<Self, StageError> {
         let present = |name: &&String| table.column(name).is_some();
         let known: Vec<&String> = table.columns.iter().map(|c| &c.name).collect();
@@ -168,7 +168,7 @@ impl Columns {
         all.find(|(name, _)| *name == factor).map_or("", |(_, unit)| unit.as_str())
     }
 
-    /// The runs of a table that are not valid, for each response that they gave, and what becomes of them.
+    /// The runs of a table that are not valid, for each response that they gave, and whether they are used.
     ///
     /// # Errors
     /// Such runs are refused, or a response cannot be read.
@@ -181,8 +181,7 @@ impl Columns {
         Ok(list)
     }
 
-    /// The sample that the columns of `table` make. A response without a number is a missing row, as is that of a run that
-    /// is left out.
+    /// The sample of the columns of `table`. A response without a number is missing, as is that of a run that is left out.
     pub(super) fn sample(&self, table: &Table) -> Result<Sample, StageError> {
         let factor = |own: &FactorColumn| {
             if !own.labels.is_empty() {
@@ -245,7 +244,7 @@ pub(super) fn refused(Faults(faults): Faults) -> StageError {
     StageError::new(faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
 }
 
-/// The faults of a sample from which runs may have been left out: it may lack what these had.
+/// The faults of a sample from which runs may have been left out, which may be the cause.
 pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageError {
     let mut error = refused(faults);
     not_valid.grouped_sentences().iter().for_each(|sentence| error.message += &format!("\n{sentence}"));
@@ -269,7 +268,7 @@ pub(super) fn check_probability(key: &str, value: f64) -> Option<Complaint> {
         .then(|| Complaint::new(key, format!("`{key}` is {value}; it must lie between 0 and 1")).hint("such as 0.05"))
 }
 
-/// A table column by column from rows.
+/// Adds columns to a table, row by row computed from a list.
 pub(super) struct Rows<'a, R>(pub &'a [R]);
 
 impl<'a, R> Rows<'a, R> {

@@ -1,4 +1,4 @@
-//! What a stage can see when it decides what to do next.
+//! The context of a stage: everything on which its next step depends.
 
 use super::cached::CachedRun;
 use super::material::Material;
@@ -8,6 +8,7 @@ use super::{Memory, StageError, Task};
 use crate::artifact::{Artifact, ContentHash};
 use crate::expression::Measure;
 use crate::unit::{Dimension, Unit};
+use dem::genesis::region::Region;
 use math::scale::Scale;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -32,24 +33,26 @@ pub struct Context {
 }
 
 impl Context {
-    /// Whether a path that a factor sets is one of a stage and not of a material.
+    /// Whether a path that a factor sets belongs to a stage, not to a material.
     pub fn sets_stage(&self, path: &str) -> bool {
         path.split_once('.').is_some_and(|(stage, _)| self.sketches.contains_key(stage))
     }
 }
 
-/// What other stages know of a stage before anything runs.
+/// The properties of a stage that other stages can use before anything runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sketch {
     /// Names of the groups of particles in the specimen that it makes, by their number; empty for other kinds.
     pub groups: Vec<String>,
+    /// The outline of the specimen that it makes.
+    pub region: Option<Region>,
     /// The factors that its rows vary; none for a kind that is no design.
     pub factors: Option<Vec<String>>,
     /// The name under its key `material`: a `[material.NAME]`, or a stage that gives one.
     pub material: Option<String>,
     /// The responses that its runs, fits or targets are of; `None` where that is not known before it runs.
     pub responses: Option<Vec<String>>,
-    /// The stage whose runs it asks for.
+    /// The stage whose runs it requests.
     pub simulator: Option<String>,
     /// Whether factors may set its numbers: it makes specimens, or runs tests.
     pub varies: bool,
@@ -71,44 +74,44 @@ pub struct Outline {
 pub struct Parameter {
     /// The value.
     pub value: f64,
-    /// Its dimension, to be checked by whoever knows what the path stands for.
+    /// Its dimension; the reader of the path checks it.
     pub dimension: Dimension,
 }
 
-/// An experimental factor: the parameter it sets, its unit and symbol, and its levels or range in that unit.
+/// An experimental factor: the values that it sets, its unit and symbol, and its levels or range in that unit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Factor {
-    /// Paths of what it sets, such as `mortar.Ec`; empty for a column that sets nothing by itself.
+    /// Paths of the values that it sets, such as `mortar.Ec`; empty for a column that sets nothing by itself.
     pub sets: Vec<String>,
     /// Unit of levels and range, `""` for a pure number.
     pub unit: String,
     /// Symbol for tables and figures, such as `\bar\sigma_c`.
     pub symbol: String,
-    /// How its range is divided.
+    /// Its scale, linear or logarithmic.
     pub scale: Scale,
-    /// Levels, in `unit`; empty when only a range is given. Of a category 0, 1, 2 ….
+    /// Levels, in `unit`; empty when there is only a range. For a category 0, 1, 2 ….
     pub levels: Vec<f64>,
     /// Names of the levels of a category, such as the kind of cement; empty for a factor of numbers.
     pub names: Vec<String>,
-    /// Low and high end, in `unit`; from the levels when not given.
+    /// Low and high end, in `unit`; by default those of the levels.
     pub range: Option<[f64; 2]>,
 }
 
 impl Factor {
-    /// A number in the factor's unit as a quantity; none when the unit cannot be read.
+    /// A number in the factor's unit as a quantity; `None` when the unit cannot be read.
     pub fn measure(&self, value: f64) -> Option<Measure> {
         let unit = Unit::parse(&self.unit).ok()?;
         Some(Measure::of(value * unit.factor, unit.dimension))
     }
 
-    /// One of its values, as good as any other for what does not depend on it.
+    /// One of its values, for checks that do not depend on which.
     pub fn sample(&self) -> Option<Measure> {
         let value = self.levels.first().copied().or(self.range.map(|[low, _]| low))?;
         self.measure(value)
     }
 }
 
-/// A response: the unit and symbol it is shown with.
+/// A response: the unit and symbol in tables and figures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Response {
     /// Unit in tables and figures, such as `MPa`.
@@ -142,7 +145,7 @@ pub type Varier<'a> = Box<dyn Fn(&Point, u64) -> Result<Option<Task>, StageError
 /// Values of factors by name, in the factors' units.
 pub type Point = BTreeMap<String, f64>;
 
-/// What became of a task that the stage asked for.
+/// The outcome of a task that the stage requested.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// Its artifact.
@@ -151,7 +154,7 @@ pub enum Outcome {
     Failed(String),
 }
 
-/// Access to artifacts, outcomes and files, given by the runner.
+/// Access to artifacts, outcomes and files, which the runner implements.
 pub trait Library {
     /// The artifact of this content.
     ///
@@ -159,32 +162,32 @@ pub trait Library {
     /// It cannot be read.
     fn load(&self, content: &ContentHash) -> Result<Arc<Artifact>, StageError>;
 
-    /// What became of a task asked for earlier; `None` when it was not asked for yet.
+    /// The outcome of a task; `None` when the stage has not requested it yet.
     fn outcome(&self, task: &Task) -> Option<Outcome>;
 
-    /// The run of a row that an earlier campaign made, if it knows of one and all that decides a run is as it was. Asked
-    /// once for every row of a fan-out, in order.
+    /// The run of a row that an earlier campaign made, if there is one and everything else that decides a run is unchanged.
+    /// Called once for every row of a fan-out, in order.
     fn cached(&self, _rows: &Arc<DesignRows>, _index: usize) -> Option<CachedRun<'_>> {
         None
     }
 
-    /// What the stage that asks remembers of its last step, if it is given a memory.
+    /// The memory of the stage between its steps, if it has one.
     fn memory(&self) -> Option<&Memory> {
         None
     }
 
-    /// A file beside the workflow, with its hash taken.
+    /// A file beside the workflow, with its hash.
     ///
     /// # Errors
     /// It cannot be read.
     fn file(&self, name: &str, path: &str) -> Result<super::FileInput, StageError>;
 }
 
-/// All that a stage knows when it decides.
+/// Everything that a stage knows when it decides.
 pub struct Known<'a> {
     /// Name of the stage.
     pub name: &'a str,
-    /// What the workflow shares.
+    /// The context that all stages share.
     pub context: &'a Context,
     /// Finished inputs, port by port in the order of [`super::Stage::inputs`].
     pub inputs: Vec<Input<'a>>,

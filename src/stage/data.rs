@@ -1,9 +1,9 @@
-//! `kind = "data"`: a table from a CSV file or a workbook stands wherever a simulated table stands.
+//! `kind = "data"`: a table from a CSV file or a workbook, wherever a simulated table can stand.
 //!
 //! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or `sigma_c/MPa`.
 //! A column whose cells are all numbers (or missing) holds reals, any other holds texts. Comments (`#`) stand above the
 //! line of names only. The result is an artifact `results` with the table `runs`, as `simulate` gives it, and the table
-//! `notes`, which says how the file was read where that was detected and is not the plain way (UTF-8, commas between
+//! `notes`, which says how the file was read where that was detected and is not the default (UTF-8, commas between
 //! cells, decimal points).
 
 mod cells;
@@ -30,15 +30,15 @@ use serde_json::json;
 pub struct Data {
     /// The file, relative to the workflow: CSV, or a workbook of Excel or LibreOffice (xlsx, xls, ods).
     pub file: String,
-    /// What stands between cells; detected when not given.
+    /// Separator of the cells; detected by default.
     pub delimiter: Option<Delimiter>,
-    /// What stands before decimals; detected when not given.
+    /// Decimal sign; detected by default.
     pub decimal: Option<Decimal>,
-    /// How letters are written as bytes; detected when not given.
+    /// Encoding of the text; detected by default.
     pub encoding: Option<Encoding>,
-    /// Words that stand for no value; `NA`, `N/A`, `n/a`, `NaN`, `nan`, `null`, `-` and `–` when not given.
+    /// Words for missing values; by default `NA`, `N/A`, `n/a`, `NaN`, `nan`, `null`, `-` and `–`.
     pub missing: Option<Vec<String>>,
-    /// The sheet of a workbook; its only one when not given.
+    /// The sheet of a workbook; needed if it has several.
     pub sheet: Option<String>,
 }
 
@@ -54,7 +54,7 @@ impl Data {
     }
 }
 
-/// Largest file that is looked into before anything runs, in bytes.
+/// Largest file that is read by the check before anything runs, bytes.
 const READ_BEFORE: u64 = 4 << 20;
 
 impl Data {
@@ -75,7 +75,7 @@ impl Data {
             let (given, wanted) = (words(&column.unit), words(unit));
             let message = format!("{file}: column `{name}` is in {given} and `{name}` of the workflow in {wanted}");
             let complaint = Complaint::new("file", message).hint("give the unit in the head of the column: `Ec [GPa]`");
-            // Without a unit it may be a column that nothing reads.
+            // A column without a unit may be one that no stage reads.
             if column.unit.is_empty() { found.warnings.push(complaint) } else { found.faults.push(complaint) }
         }
     }
@@ -121,8 +121,8 @@ impl Kind for Data {
     const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    // 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
-    const WORKS: &'static [Work] = &[Work { name: "data", version: 2, run: read }];
+    // 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    const WORKS: &'static [Work] = &[Work { name: "data", version: 3, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
@@ -143,7 +143,7 @@ pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
     parse_as(bytes, &Dialect::default()).map(|(table, _)| table)
 }
 
-/// Reads the table as `how` fixes it; the second is what was detected, where that is not plain CSV.
+/// Reads the table by the settings `how`; the second value says what was detected, where that is not plain CSV.
 fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), StageError> {
     let (sheet, decimal, said) = if workbook::is_workbook(bytes) {
         (workbook::sheet(bytes, how.sheet.as_deref())?, Decimal::Point, None)

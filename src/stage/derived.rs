@@ -1,4 +1,4 @@
-//! Formulas of factors as columns: what a term such as `scn/(1+ratio)` stands for, with its unit.
+//! Formulas of factors as columns: the values of a term such as `scn/(1+ratio)`, with their unit.
 //!
 //! A formula is computed in SI units and shown in the unit of a factor of the same dimension (the first in the alphabet),
 //! or in SI units. One that adds quantities of different kinds, or takes the exponential of one, is refused.
@@ -19,7 +19,7 @@ pub(super) struct Derived {
     pub unit: String,
 }
 
-/// Whether a name is that of a factor, and no formula of some.
+/// Whether a name is that of a factor, not a formula.
 fn is_plain(name: &str) -> bool {
     name.chars().all(|c| c.is_alphanumeric() || c == '_')
 }

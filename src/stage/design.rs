@@ -1,13 +1,13 @@
 //! `kind = "design"`: the runs of an experiment, and a report on what they can estimate.
 //!
 //! `method` picks the design; the other keys are its options, and an option of another method is refused. The factors
-//! are those of the workflow, in the order named. Orthogonal, factorial designs take a factor's levels (its range if it
+//! are those of the workflow, in the order of `factors`. Orthogonal, factorial designs take a factor's levels (its range if it
 //! has none); two-level and sampled designs its range (the extreme levels if it has none); central composite and
 //! Box–Behnken designs its range, or up to three levels. Rows come from the workflow (`rows`) or a CSV file beside it
 //! (`file`) with `method = "given"`.
 //!
-//! `valid` holds rules that the rows must obey, checked with units before anything runs: a row that breaks one is named with the rule and
-//! the design refused, or, with `invalid_rows = "leave-out"`, the row is left out and listed in the table `left_out`.
+//! `valid` holds rules that the rows must obey, checked with units before anything runs. A row that breaks a rule is a fault
+//! of the design; with `invalid_rows = "leave-out"` the row is left out and listed in the table `left_out`.
 //!
 //! The result has the tables `design` (run, standard order, point type, factors in their units), `coded` and `report`.
 
@@ -32,7 +32,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 use valid::{Broken, InvalidRows, Rule};
 
-/// Parameters of the task: all that decides the table.
+/// Parameters of the task: everything that decides the table.
 #[derive(Serialize, Deserialize)]
 struct Params {
     design: Method,
@@ -70,7 +70,7 @@ impl Stage for Design {
             return found;
         }
         match self.method() {
-            // rows of a file are checked when it is read
+            // rows of a file are checked when the file is read
             Ok(Method::Given(_)) if self.file.is_some() => self.rule_complaints(),
             Ok(method) => {
                 let faults = check(&method, &self.factors(context), self.layout());
@@ -117,7 +117,7 @@ impl Stage for Design {
 }
 
 impl Design {
-    /// The design as it will be.
+    /// The design with all its settings.
     fn table_ahead(&self, ahead: &Ahead) -> Option<DesignTable> {
         let mut method = self.method().ok()?;
         let factors = self.factors(ahead.context);
@@ -142,11 +142,11 @@ impl Kind for Design {
         "the runs of an experiment: factorial, orthogonal, screening, surface or sampled designs";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::DESIGN];
     const CLASS: Class = Class::Design;
-    // 2: tables of 12, 20, 24, 40 and 48 runs more, among which the smallest is looked for
-    const WORKS: &'static [Work] = &[Work { name: "design", version: 2, run }];
+    // 3: the left sides of broken rules have units. 2: tables of 12, 20, 24, 40 and 48 runs more, among which the smallest is looked for
+    const WORKS: &'static [Work] = &[Work { name: "design", version: 3, run }];
 }
 
-/// A fault of the design, at the key it concerns.
+/// A fault of the design, at its key.
 fn complaint(fault: &Fault) -> Complaint {
     let path = match fault {
         Fault::BadOption { option, .. } => option.split(',').next().unwrap_or(""),
@@ -198,11 +198,11 @@ fn run(job: &Job) -> Result<Artifact, Failure> {
 /// What to do about rows that break a rule.
 const LEAVE_OUT: &str = "change the factors, or say `invalid_rows = \"leave-out\"`";
 
-/// Most rows that break a rule and are named one by one.
+/// Most rows that break a rule and are listed one by one.
 const MOST_TOLD: usize = 10;
 
 impl Design {
-    /// Rules that cannot be read or name what is no factor of the design.
+    /// Rules that cannot be read or name something that is not a factor of the design.
     fn rule_complaints(&self) -> Vec<Complaint> {
         let mut found = Vec::new();
         for text in &self.valid {
@@ -227,7 +227,7 @@ impl Design {
         found
     }
 
-    /// Rows that break a rule, where the design is refused for them.
+    /// Rows that break a rule, where that is a fault of the design.
     fn broken_rules(&self, method: &Method, context: &Context) -> Vec<Complaint> {
         let mut found = self.rule_complaints();
         if !found.is_empty() || self.valid.is_empty() {

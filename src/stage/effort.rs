@@ -1,16 +1,16 @@
-//! `kind = "effort"`: what calibrations cost, side by side.
+//! `kind = "effort"`: the cost of calibrations, side by side.
 //!
-//! `of` names calibrations, each perhaps with several target sets and `seeds`. The artifact `effort` holds
+//! `of` names calibrations, which may have several target sets and `seeds`. The artifact `effort` holds
 //! * `effort`: a row per search: stage, method, set, seed, and the evaluations until all responses lay within 10, 5 and
-//!   2 % of their targets, by a run and by the prediction at the recommended point; empty where they never
-//!   did;
-//! * `distribution`: how large a part of the searches of a stage was done after how many evaluations, level by level:
-//!   the empirical distribution of effort, a row per step. A stage whose searches did not all get there ends below 1
+//!   2 % of their targets, by a run and by the prediction at the recommended point; empty where they never did;
+//! * `distribution`: the part of the searches of a stage that reached a level within a number of evaluations: the empirical
+//!   distribution of effort, a row per step. It ends below 1 for a stage whose searches did not all reach the level
 //!   (Hansen et al. 2021, doi:10.1080/10556788.2020.1808977).
 
 use super::figure::Names;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Group, Node, Table};
+use crate::artifact::calibration::{self, Percents, Solution};
+use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -23,8 +23,66 @@ pub struct Effort {
     pub of: Names,
 }
 
-/// What calibrations cost.
+/// The effort of calibrations.
 pub const EFFORT: ArtifactKind = ArtifactKind::new("effort", 1).main("effort");
+
+crate::artifact! {
+    /// The effort of several calibrations.
+    pub struct Efforts = EFFORT {
+        /// the searches
+        pub effort: Searches, "";
+        /// the empirical distribution of the evaluations
+        pub distribution: Distribution, "";
+    }
+}
+
+crate::table! {
+    /// evaluations until all responses were near their targets, search by search
+    pub struct Searches {
+        /// the calibration
+        pub stage: Vec<String>, "";
+        /// the method of the search
+        pub method: Vec<String>, "";
+        /// target set, from 1
+        pub set: Vec<i64>, "";
+        /// of the optimiser, where it is not the workflow's
+        pub seed: Vec<f64>, "";
+        /// in all
+        pub evaluations: Vec<f64>, "";
+        /// before them, on coarse twins
+        pub coarse: Vec<f64>, "";
+        /// until a run showed it
+        pub to: Percents, "";
+        /// until the recommended point was expected to
+        pub expected: Percents, "";
+    }
+}
+
+crate::table! {
+    /// part of the searches that reached a deviation within a number of evaluations
+    pub struct Distribution {
+        /// the calibration
+        pub stage: Vec<String>, "";
+        /// the criterion
+        pub by: Vec<Criterion>, "";
+        /// greatest deviation from a target
+        pub percent: Vec<i64>, "";
+        /// number of evaluations
+        pub evaluations: Vec<f64>, "";
+        /// of the stage's searches
+        pub share: Vec<f64>, "";
+    }
+}
+
+crate::words! {
+    /// What counts as having reached a target.
+    pub enum Criterion {
+        /// The responses of a run.
+        Shown = "shown by a run",
+        /// The expected responses of the recommended point.
+        Expected = "expected",
+    }
+}
 
 #[derive(Serialize, Deserialize)]
 struct Params {
@@ -64,109 +122,58 @@ impl Kind for Effort {
     const WORKS: &'static [Work] = &[Work { name: "effort", version: 1, run: gather }];
 }
 
-/// How a solution names the columns of its effort: what is counted, and the deviation in percent.
-const COUNTS: [(&str, [u32; 3]); 2] = [("to", [10, 5, 2]), ("expected", [10, 5, 2])];
-
-/// One search.
-struct Search {
-    stage: String,
-    method: String,
-    set: i64,
-    seed: f64,
-    evaluations: f64,
-    coarse: f64,
-    /// Evaluations by count and level, NaN where it never got there.
-    counts: Vec<f64>,
-}
-
 fn gather(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let mut searches = Vec::new();
+    let mut effort = Searches::default();
     for (stage, (_, solution)) in params.stages.iter().zip(job.inputs) {
-        searches.extend(of_solution(stage, solution)?);
+        effort.append(stage, Solution::from_artifact(solution).map_err(StageError::from)?.effort);
     }
-    let root = Group::new()
-        .with("effort", Node::Table(effort(&searches)))
-        .with("distribution", Node::Table(distribution(&params.stages, &searches)));
-    Ok(Artifact::of(EFFORT, root))
+    let distribution = distribution(&params.stages, &effort);
+    Ok(Efforts { effort, distribution }.to_artifact())
 }
 
-/// Names of the columns of counts.
-fn columns() -> impl Iterator<Item = (&'static str, u32, String)> {
-    COUNTS
-        .iter()
-        .flat_map(|(what, levels)| levels.iter().map(move |level| (*what, *level, format!("{what}_{level}_percent"))))
-}
-
-fn of_solution(stage: &str, solution: &Artifact) -> Result<Vec<Search>, StageError> {
-    let missing = || StageError::new(format!("the solution of `{stage}` holds no table `effort`"));
-    let table = solution.table("effort").ok_or_else(missing)?;
-    let (sets, methods) = (table.ints("set")?, table.texts("method")?);
-    let numbers = |name: &str| table.numbers(name, "");
-    let (evaluations, coarse) = (numbers("evaluations")?, numbers("coarse")?);
-    let seeds = numbers("seed").unwrap_or_else(|_| vec![f64::NAN; sets.len()]);
-    let counts = columns().map(|(.., name)| numbers(&name)).collect::<Result<Vec<_>, _>>()?;
-    let search = |i: usize| Search {
-        stage: stage.to_owned(),
-        method: methods[i].clone(),
-        set: sets[i],
-        seed: seeds[i],
-        evaluations: evaluations[i],
-        coarse: coarse[i],
-        counts: counts.iter().map(|column| column[i]).collect(),
-    };
-    Ok((0..sets.len()).map(search).collect())
-}
-
-fn effort(searches: &[Search]) -> Table {
-    let reals = |pick: &dyn Fn(&Search) -> f64| searches.iter().map(pick).collect::<Vec<_>>();
-    let about = "evaluations until all responses lay near their targets, search by search";
-    let mut table = Table { about: about.to_owned(), columns: Vec::new() }
-        .texts_column("stage", "", searches.iter().map(|search| search.stage.clone()).collect())
-        .texts_column("method", "", searches.iter().map(|search| search.method.clone()).collect())
-        .ints_column("set", "target set, from 1", searches.iter().map(|search| search.set).collect())
-        .reals_column("seed", "", "of the optimiser, where it is not the workflow's", reals(&|search| search.seed))
-        .reals_column("evaluations", "", "in all", reals(&|search| search.evaluations))
-        .reals_column("coarse", "", "before them, on coarse twins", reals(&|search| search.coarse));
-    for (k, (what, _, name)) in columns().enumerate() {
-        let about = if what == "to" { "until a run showed it" } else { "until the recommended point was expected to" };
-        table = table.reals_column(&name, "", about, reals(&|search| search.counts[k]));
+impl Searches {
+    /// Adds the searches of a calibration.
+    fn append(&mut self, stage: &str, own: calibration::Effort) {
+        let count = own.set.len();
+        let reals = |counts: Vec<usize>| counts.into_iter().map(|count| count as f64);
+        self.stage.extend(std::iter::repeat_n(stage.to_owned(), count));
+        self.method.extend(own.method);
+        self.set.extend(own.set);
+        match own.seed {
+            Some(seeds) => self.seed.extend(seeds.into_iter().map(|seed| seed as f64)),
+            None => self.seed.extend(std::iter::repeat_n(f64::NAN, count)),
+        }
+        self.evaluations.extend(reals(own.evaluations));
+        self.coarse.extend(reals(own.coarse));
+        for (all, own) in [(&mut self.to, own.to), (&mut self.expected, own.expected)] {
+            all.0.iter_mut().zip(own.0).for_each(|(all, own)| all.extend(own));
+        }
     }
-    table
 }
 
-/// One step of an empirical distribution.
-struct Rise<'a> {
-    stage: &'a str,
-    count: &'static str,
-    level: u32,
-    evaluations: f64,
-    share: f64,
-}
-
-fn distribution(stages: &[String], searches: &[Search]) -> Table {
-    let mut steps = Vec::new();
+fn distribution(stages: &[String], searches: &Searches) -> Distribution {
+    let mut steps = Distribution::default();
     for stage in stages {
-        let own: Vec<&Search> = searches.iter().filter(|search| search.stage == *stage).collect();
-        for (k, (count, level, _)) in columns().enumerate() {
-            let mut done: Vec<f64> = own.iter().map(|search| search.counts[k]).filter(|n| n.is_finite()).collect();
-            done.sort_by(f64::total_cmp);
-            for (i, &evaluations) in done.iter().enumerate() {
-                // Searches that were done at once are one step.
-                if done.get(i + 1) != Some(&evaluations) {
-                    let share = (i + 1) as f64 / own.len() as f64;
-                    steps.push(Rise { stage, count, level, evaluations, share });
+        let own: Vec<usize> = (0..searches.set.len()).filter(|&row| searches.stage[row] == *stage).collect();
+        for (by, counts) in [(Criterion::Shown, &searches.to), (Criterion::Expected, &searches.expected)] {
+            for (level, counts) in Percents::LEVELS.into_iter().zip(&counts.0) {
+                let mut done: Vec<f64> = own.iter().map(|&row| counts[row]).filter(|n| n.is_finite()).collect();
+                done.sort_by(f64::total_cmp);
+                for (i, &evaluations) in done.iter().enumerate() {
+                    // Searches with the same number of evaluations are one step.
+                    if done.get(i + 1) != Some(&evaluations) {
+                        steps.stage.push(stage.clone());
+                        steps.by.push(by);
+                        steps.percent.push(i64::from(level));
+                        steps.evaluations.push(evaluations);
+                        steps.share.push((i + 1) as f64 / own.len() as f64);
+                    }
                 }
             }
         }
     }
-    let words = |step: &Rise| if step.count == "to" { "shown by a run" } else { "expected" }.to_owned();
-    Table { about: "part of the searches that was done after so many evaluations".to_owned(), columns: Vec::new() }
-        .texts_column("stage", "", steps.iter().map(|step| step.stage.to_owned()).collect())
-        .texts_column("by", "what was counted", steps.iter().map(words).collect())
-        .ints_column("percent", "greatest deviation from a target", steps.iter().map(|s| i64::from(s.level)).collect())
-        .reals_column("evaluations", "", "", steps.iter().map(|step| step.evaluations).collect())
-        .reals_column("share", "", "of the stage's searches", steps.iter().map(|step| step.share).collect())
+    steps
 }
 
 #[cfg(test)]
@@ -176,19 +183,22 @@ mod tests {
     /// Four searches: two done after 20 evaluations, one after 35, one never.
     #[test]
     fn the_distribution_rises_at_every_search_that_was_done() {
-        let search = |to: f64| Search {
-            stage: "a".into(),
-            method: "surrogate".into(),
-            set: 1,
-            seed: 1.0,
-            evaluations: 60.0,
-            coarse: 0.0,
-            counts: vec![to, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN],
+        let none = || vec![f64::NAN; 4];
+        let own = calibration::Effort {
+            set: vec![1, 2, 3, 4],
+            seed: None,
+            method: vec!["surrogate".to_owned(); 4],
+            evaluations: vec![60; 4],
+            coarse: vec![0; 4],
+            to: Percents([vec![20.0, f64::NAN, 35.0, 20.0], none(), none()]),
+            expected: Percents([none(), none(), none()]),
         };
-        let searches = [20.0, f64::NAN, 35.0, 20.0].map(search);
-        let table = distribution(&["a".to_owned()], &searches);
-        assert_eq!(table.numbers("evaluations", "").unwrap(), [20.0, 35.0]);
-        assert_eq!(table.numbers("share", "").unwrap(), [0.5, 0.75]);
-        assert_eq!(table.ints("percent").unwrap(), [10, 10]);
+        let mut searches = Searches::default();
+        searches.append("a", own);
+        let steps = distribution(&["a".to_owned()], &searches);
+        assert_eq!(steps.evaluations, [20.0, 35.0]);
+        assert_eq!(steps.share, [0.5, 0.75]);
+        assert_eq!(steps.percent, [10, 10]);
+        assert_eq!(steps.by, [Criterion::Shown; 2]);
     }
 }

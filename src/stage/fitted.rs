@@ -1,16 +1,15 @@
-//! Fitted models as artifacts: the tables that people read and what prediction needs, written once for `regression`
-//! and `rsm`, and read back by every stage that predicts.
+//! Fitted models as artifacts: the tables for readers and the data for prediction, shared by `regression` and `rsm`, and
+//! read by every stage that predicts.
 
 use super::columns::{Columns, Rows, refused_without, runs};
 use super::notes::Notes;
 use super::published::{Computed, beside, prints};
-use super::regression::origin::Beside;
 use super::{Failure, Job, StageError};
 use crate::artifact::Artifact;
-use crate::artifact::statistics::{
-    Coefficients, Domains, Fits, PrincipalAxes, Residuals, Selections, Stationary, Surfaces, WithConstant,
-};
+use crate::artifact::statistics::{Fits, Residuals};
+use crate::artifact::surfaces::{Coefficients, Domains, PrincipalAxes, Selections, Stationary, Surfaces, WithConstant};
 use crate::artifact::validity::NotValid;
+use origin::Beside;
 use serde::{Deserialize, Serialize};
 use stats::canonical::canonical;
 use stats::diagnostics::Residual;
@@ -20,6 +19,7 @@ use stats::selection::{Direction, Selection};
 use stats::terms::Term;
 
 mod keep;
+pub(super) mod origin;
 mod predict;
 pub use keep::models;
 pub use predict::Predict;
@@ -35,11 +35,11 @@ pub(super) struct Fitting {
     pub terms: Vec<Term>,
 }
 
-/// Everything that decides fitted models.
+/// Parameters of the task: everything that decides fitted models.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Params {
     pub fittings: Vec<Fitting>,
-    /// Every model is through the origin, and stands beside the same terms with a constant.
+    /// Whether every model passes through the origin; it is then compared with the same terms and a constant.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub through_origin: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -51,7 +51,7 @@ pub(super) struct Params {
     pub predict: Option<Predict>,
 }
 
-/// The level at which terms are selected when none is given.
+/// Default level at which terms are selected.
 pub(super) const SELECT_ALPHA: f64 = 0.05;
 
 /// Fits every response and makes the artifact `surfaces`.
@@ -125,12 +125,13 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     Ok(surfaces.to_artifact())
 }
 
-/// What a person should see at once.
+/// Notes on what a reader must know first.
 fn notes<'a>(found: &[(&Fitting, Regression)], points: Option<&Predict>, not_valid: &'a NotValid) -> Notes<'a> {
     let mut notes = Notes::of(not_valid);
     for (fitting, regression) in found {
         let response = fitting.response.as_str();
         notes.fit(&regression.fit);
+        notes.one_level(response, "", &regression.model.axes);
         for (factor, reference) in fitting.columns.categories() {
             let text = format!(
                 "`{factor}` has names for levels and enters by dummy coding: `{factor}[…]` is the difference from `{reference}`"
@@ -229,7 +230,7 @@ pub(super) fn fit_table(fits: &[&Fit]) -> Fits {
     }
 }
 
-/// Every row seen by every model.
+/// The residuals of every model, row by row.
 pub(super) fn residual_table<'a>(found: impl Iterator<Item = (&'a str, &'a [Residual])>) -> Residuals {
     let all: Vec<(&str, &Residual)> = found.flat_map(|(name, list)| list.iter().map(move |r| (name, r))).collect();
     let rows = Rows(&all);
@@ -281,7 +282,7 @@ fn stationary_tables(found: &[(&Fitting, Regression)]) -> (Stationary, Principal
     (stationary, axes)
 }
 
-/// Where each model was seen: beyond it lies extrapolation.
+/// The domain of each model: its factors' ranges in the data. A point beyond it is an extrapolation.
 fn domain_table(found: &[(&Fitting, Regression)]) -> Domains {
     let all: Vec<_> = found.iter().flat_map(|(f, r)| r.model.axes.iter().map(move |axis| (f, axis))).collect();
     let rows = Rows(&all);
@@ -306,7 +307,13 @@ fn selection_table(found: &[(&Fitting, Regression)]) -> Selections {
     }
 }
 
-/// The models that an artifact `surfaces` holds, or why it cannot be read.
+/// The terms with the constant in front.
+pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
+    let rest = terms.iter().filter(|t| t.degree() > 0).cloned();
+    std::iter::once(Term::constant()).chain(rest).collect()
+}
+
+/// The error of an artifact `surfaces` that cannot be read.
 fn unreadable(what: &str) -> StageError {
     StageError::new(format!("the fitted models cannot be read: {what}"))
 }

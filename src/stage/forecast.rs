@@ -1,4 +1,5 @@
-//! What a stage is expected to ask for, as far as the workflow and its files tell before anything runs: for `flow plan`.
+//! Forecasts for `flow plan`: the number of tasks of a stage, as far as the workflow and its files determine it before
+//! anything runs.
 
 use super::Context;
 use super::cost::Bulk;
@@ -6,13 +7,13 @@ use super::cost::Bulk;
 /// Tasks and rows of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
-    /// Rows of its result, for stages that go through them; none where only the run tells.
+    /// Rows of its result, for stages that run them; `None` where only the run shows it.
     pub rows: Option<usize>,
-    /// How many of these rows are equal, at most.
+    /// Largest number of equal rows among them.
     pub replicates: usize,
-    /// Tasks that one more run of it asks for when it stands on a specimen of its own: the specimen and the run.
+    /// Tasks of one more run on a specimen of its own: the specimen and the run.
     pub per_run: usize,
-    /// Tasks that it asks for; none where only the run tells.
+    /// Its tasks; `None` where only the run shows their number.
     pub tasks: Option<TaskForecast>,
     /// Seconds that all its tasks take on one core, roughly; none where nothing tells, as of a program.
     pub seconds: Option<f64>,
@@ -22,39 +23,39 @@ pub struct Forecast {
     pub bulk: Option<Bulk>,
 }
 
-/// How many tasks a stage asks for.
+/// Number of tasks of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TaskForecast {
-    /// This number; fewer where stages ask for the same tasks.
+    /// This number; fewer are run where stages share tasks.
     Exactly(usize),
     /// This number or fewer: the stage may end early.
     AtMost(usize),
 }
 
-/// What can be seen ahead of a run.
+/// The information for a forecast.
 pub struct Ahead<'a> {
-    /// Of the whole workflow.
+    /// The context of the whole workflow.
     pub context: &'a Context,
     /// The forecasts of the stages behind a port.
     pub behind: &'a dyn Fn(&str) -> Vec<Forecast>,
-    /// The bytes of a file beside the workflow; none when it cannot be read.
+    /// Reads a file beside the workflow; `None` when it cannot be read.
     pub file: &'a dyn Fn(&str) -> Option<Vec<u8>>,
 }
 
 impl TaskForecast {
-    /// The number, exact or greatest.
+    /// The number, exact or an upper bound.
     pub fn count(self) -> usize {
         match self {
             Self::Exactly(tasks) | Self::AtMost(tasks) => tasks,
         }
     }
 
-    /// Whether the number is only the greatest one.
+    /// Whether the number is an upper bound.
     pub fn is_bound(self) -> bool {
         matches!(self, Self::AtMost(_))
     }
 
-    /// These and `more`.
+    /// The sum of these tasks and `more`.
     pub fn and(self, more: usize) -> Self {
         match self {
             Self::Exactly(tasks) => Self::Exactly(tasks.saturating_add(more)),
@@ -75,7 +76,7 @@ impl Forecast {
         bulk: None,
     };
 
-    /// Nothing is known.
+    /// An unknown number of tasks.
     pub const UNKNOWN: Self = Self { tasks: None, seconds: None, run_seconds: None, ..Self::ONE };
 
     /// Seconds of so many runs of each of these simulators.

@@ -1,9 +1,10 @@
-//! `kind = "formula"`: a stand-in simulator whose responses are formulas of the factors, with or without scatter.
+//! `kind = "formula"`: a simulator whose responses are formulas of the factors, with or without scatter.
 //!
-//! It costs microseconds, so a campaign's design, analysis and calibration can be tried before a simulation is paid for,
-//! and methods can be compared on known truths. A formula names factors (in their units) and parameters of the material by
-//! path with `_` for the dot (`mortar_Ec`, SI); it knows `+ - * / ^`, `abs sqrt exp ln log10 sin cos tan atan tanh min max`.
-//! The grammar and its choices stand in `expression/read.rs`. Scatter is relative, normal, and a function of seed, point and replicate.
+//! It costs microseconds, so a campaign's design, analysis and calibration can be tried before simulations are run, and
+//! methods can be compared on known truths. A formula names factors (in their units) and parameters of the material by path
+//! with `_` for the dot (`mortar_Ec`, SI). Its operators and functions are `+ - * / ^`,
+//! `abs sqrt exp ln log10 sin cos tan atan tanh min max`; `expression/read.rs` documents the grammar. Scatter is relative,
+//! normal, and a function of seed, point and replicate.
 
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
@@ -23,7 +24,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formula {
-    /// The design whose rows are run; once, at the material, when not given.
+    /// The design whose rows are run; without it there is one run, at the material's values.
     pub design: Option<String>,
     /// The `[material.NAME]` that rows vary.
     pub material: Option<String>,
@@ -107,7 +108,7 @@ impl Stage for Formula {
         let mut values: BTreeMap<String, f64> =
             values.into_iter().map(|(path, value)| (path.replace(['.', '-'], "_"), value)).collect();
         for (response, name) in self.named() {
-            // a factor that sets nothing else still stands where a formula names it
+            // formulas can name a factor that sets nothing
             match point.get(&name) {
                 Some(value) => drop(values.insert(name, *value)),
                 None if values.contains_key(&name) => {}
@@ -166,13 +167,13 @@ fn evaluate(job: &Job) -> Result<Artifact, Failure> {
     Ok(Run::plain(&failure, Responses::of(&responses)).to_artifact())
 }
 
-/// The fault of a formula that names what a run does not have.
+/// The fault of a formula with a name that has no value in a run.
 fn unset(response: &str, name: &str) -> StageError {
     StageError::new(format!("response `{response}` needs `{name}`, which neither the design nor the material sets"))
         .hint("name it as a factor of the design, or give a material that holds it")
 }
 
-/// The point as text: what the scatter of a run depends on, besides seed and replicate.
+/// The point as text, from which the scatter of a run is drawn together with seed and replicate.
 fn point_text(params: &Params) -> String {
     params.values.iter().map(|(name, value)| format!("{name}={value};")).collect()
 }

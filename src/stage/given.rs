@@ -1,9 +1,9 @@
-//! What runs give is known before they run: a response that none of the named stages can give is refused by `check`.
+//! Checks of responses before anything runs: `check` refuses a response that none of the named stages can give.
 
 use super::{Complaint, Context};
 
-/// Complaints about responses at `path` that no stage among `stages` gives, as far as it is known what these give: those of
-/// a data file, or of a stage that passes on what others give, are not.
+/// Complaints about responses at `path` that no stage among `stages` gives. The responses of a data file, or of a stage that
+/// passes on the results of others, are not known before the run and are not checked.
 pub(super) fn check_given<'a>(
     context: &Context,
     path: &str,
@@ -24,7 +24,7 @@ pub(super) fn check_given<'a>(
         Complaint::new(path, format!("`{response}` is no response of {whose}"))
             .hint(gives.collect::<Vec<_>>().join("; "))
     };
-    // A response that the workflow does not declare is a fault of its own.
+    // Another check reports a response that the workflow does not declare.
     let declared = |response: &&String| context.responses.contains_key(*response);
     responses.into_iter().filter(declared).filter(lacks).map(complaint).collect()
 }

@@ -1,9 +1,8 @@
-//! What a stage does with runs that are not valid: the one setting of every kind that takes runs, and the one module that
-//! applies it.
+//! The treatment of runs that are not valid: one setting for every kind that takes runs, and the module that applies it.
 //!
-//! A run is not valid when a decisive check of its own is not met: a Brazilian disc that turned, a confining stress that
-//! was not held. Its numbers are there, but the test did not measure what it is called after. Statistics, fits and
-//! calibrations leave such runs out and state how many of how many and why; printed tables show and mark them.
+//! A run is not valid when it does not meet a decisive check: a Brazilian disc that turned, a confining stress that was not
+//! held. It has numbers, but they are not those of the intended test. Statistics, fits and calibrations leave such runs out
+//! and state how many of how many, and why; printed tables show and mark them.
 
 use super::StageError;
 use crate::artifact::results::Results;
@@ -13,20 +12,20 @@ use crate::artifact::{Artifact, Table};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of runs that are not valid.
+/// What to do with runs that are not valid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Invalid {
-    /// They are left out; the stage states how many of how many and why.
+    /// Leave them out; the stage states how many of how many, and why.
     #[default]
     LeaveOut,
-    /// They are used like the others; the stage states how many they are.
+    /// Use them like the others; the stage states how many they are.
     Keep,
-    /// The stage fails.
+    /// Let the stage fail.
     Refuse,
 }
 
-/// The runs of a table after the choice was made.
+/// The runs of a table to which the setting was applied.
 pub(super) struct Judged<'a> {
     all: usize,
     treated: Treated,
@@ -40,10 +39,10 @@ impl Invalid {
         *self == Self::default()
     }
 
-    /// Applies the choice to a table of runs.
+    /// Applies the setting to a table of runs.
     ///
     /// # Errors
-    /// The choice is to refuse, and a run is not valid.
+    /// The setting is to refuse, and a run is not valid.
     pub(super) fn judge(self, runs: &Table) -> Result<Judged<'_>, StageError> {
         let (all, invalid) = (runs.rows(), Results::invalid(runs));
         let treated = match self {
@@ -59,7 +58,7 @@ impl Invalid {
         Ok(Judged { all, treated, invalid })
     }
 
-    /// Whether a single run is drawn, and the statement on it.
+    /// Whether to draw a single run, and the statement on it.
     ///
     /// # Errors
     /// It is not valid and refused.
@@ -77,7 +76,7 @@ impl Invalid {
     }
 }
 
-/// The words with a capital in front, unless a name with a colon is there, and a full stop behind.
+/// A sentence: the first letter as a capital, unless a name with a colon begins it, and a full stop.
 pub(super) fn sentence(words: &str) -> String {
     if words.split(' ').next().is_some_and(|first| first.ends_with(':')) {
         return format!("{words}.");
@@ -104,12 +103,12 @@ impl Judged<'_> {
         Verdict::Treated(self.treated)
     }
 
-    /// How many of how many are not valid, why, and what became of them; nothing when all are valid.
+    /// How many of how many runs are not valid, why, and whether they are used; `None` when all are valid.
     pub(super) fn sentence(&self) -> Option<String> {
         Tally::of(self.all, self.invalid.iter().map(|(_, why)| *why)).sentence(self.verdict())
     }
 
-    /// The list of the runs that are not valid and gave a value of the response.
+    /// The runs that are not valid and gave a value of the response.
     pub(super) fn listed(&self, response: &str, values: &[f64]) -> NotValid {
         let mut list = NotValid::default();
         for (row, why) in self.invalid.iter().filter(|(row, _)| values.get(*row).is_some_and(|v| !v.is_nan())) {

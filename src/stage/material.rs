@@ -7,8 +7,8 @@
 //! * `bond` of an entry is its bond where it differs from that of the stage; `"none"` for contacts that are never bonded.
 //!
 //! A value is a quantity, or a formula. A name in a formula is a microparameter of the same entry, else a factor, else
-//! one of another entry (`rock_Ec`: `_` in place of `.` and `-`); units are checked. What no contact of a specimen can have is
-//! neither asked for nor part of a task.
+//! a microparameter of another entry (`rock_Ec`: `_` in place of `.` and `-`); units are checked. Values that no contact of
+//! a specimen can have are not required and are not part of a task.
 
 mod assemble;
 mod given;
@@ -49,9 +49,9 @@ pub enum PairRule {
 /// One entry.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entry {
-    /// The groups between which its contacts lie, when it is a pair with a name of its own.
+    /// The two groups between which its contacts lie; `None` when the name of the entry says it.
     pub between: Option<[String; 2]>,
-    /// Its bond; that of the stage when not given.
+    /// Its bond; by default that of the stage.
     pub bond: Option<BondKind>,
     /// Distribution of its strengths.
     pub distribution: Option<Distribution>,
@@ -71,7 +71,7 @@ pub enum Value {
 /// Values by path (`rock.Ec`).
 pub type Values = BTreeMap<String, Parameter>;
 
-/// A value that cannot be had: its path and why.
+/// The fault of a value that cannot be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unresolved {
     /// Path of the value, such as `rock.tau_c`.
@@ -94,7 +94,7 @@ impl Material {
         self.entries.get(entry)?.values.get(key)
     }
 
-    /// Whether a factor may set this path: the entry is there, and has the value or could have it.
+    /// Whether a factor may set this path: the entry exists, and has the value or can have it.
     pub fn takes(&self, path: &str) -> bool {
         let known = |(entry, key): (&str, &str)| {
             let entry = self.entries.get(entry)?;
@@ -121,7 +121,7 @@ impl Material {
         self.resolve(&Values::new(), &|_| None).0
     }
 
-    /// All values, those of `set` in place of its own; `factor` gives the factors that formulas may name.
+    /// All values, where those of `set` replace its own; `factor` gives the factors that formulas may name.
     pub fn resolve(&self, set: &Values, factor: &dyn Fn(&str) -> Option<Measure>) -> (Values, Vec<Unresolved>) {
         let mut resolver = Resolver { material: self, set, factor, values: Values::new(), open: Vec::new() };
         let paths: Vec<String> = self.paths().chain(set.keys().cloned()).collect();
@@ -175,7 +175,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// What a name in the formula of `path` stands for.
+    /// The value of a name in the formula of `path`.
     fn name(&mut self, path: &str, name: &str) -> Result<Measure, Unresolved> {
         let (entry, _) = path.split_once('.').unwrap_or((path, ""));
         let own = format!("{entry}.{name}");

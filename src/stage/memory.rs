@@ -1,7 +1,7 @@
-//! What a stage remembers between two of its steps in one campaign.
+//! The memory of a stage between two of its steps in one campaign.
 //!
-//! A stage that asks for outcomes is asked again after every batch, and its next step is a function of the whole
-//! history. A memory spares it from going through that history each time. It may be lost at any moment, and a stage must
+//! [`crate::stage::Stage::next`] is called again after every batch of outcomes, and the next step is a function of the whole
+//! history. A memory makes it unnecessary to replay that history each time. It may be lost at any moment, and a stage must
 //! take the same step with and without it: it holds only values that can be computed again.
 
 use std::any::Any;
@@ -13,12 +13,12 @@ use std::fmt;
 pub struct Memory(RefCell<Option<Box<dyn Any>>>);
 
 impl Memory {
-    /// Takes out what was put in, if it is of this type.
+    /// Removes and returns the value, if it is of this type.
     pub fn take<T: 'static>(&self) -> Option<T> {
         self.0.borrow_mut().take()?.downcast().ok().map(|value| *value)
     }
 
-    /// Puts a value in, in place of any other.
+    /// Stores a value, which replaces any other.
     pub fn put<T: 'static>(&self, value: T) {
         *self.0.borrow_mut() = Some(Box::new(value));
     }

@@ -2,7 +2,7 @@
 //!
 //! A workflow's `[stage.NAME]` table is read into the config type of its kind (`kind = "anova"` → [`Kind`]), which *is*
 //! the configured stage: it implements [`Stage`]. A stage is a pure function of what is known: its context, the
-//! artifacts of its inputs and the outcomes of tasks it asked for earlier. [`Stage::next`] answers with a [`Step`]:
+//! artifacts of its inputs and the outcomes of the tasks that it has requested. [`Stage::next`] returns a [`Step`]:
 //!
 //! * `Finish(task)`: the artifact of this task is the stage's result. A task may take other tasks as inputs, so a
 //!   stage that fans out (a simulation per design row, each on its own specimen) finishes at once with a gathering
@@ -12,7 +12,7 @@
 //!   When all are done, `next` is called again and sees their outcomes in [`Known`]; a killed run resumes by replay.
 //!
 //! A [`Task`] holds everything that decides its result and nothing else. Its `work` names a function in
-//! [`works`]; bump that function's version when its results change, with a line that says what moved.
+//! [`work`]; raise that function's version when its results change, with a line that says what changed.
 //!
 //! # Artifacts that several kinds exchange
 //! * `results`: a table `runs` with one row per run: factors (in their units), `replicate`, responses (in the units of
@@ -88,7 +88,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserializer, Serialize};
 use serde_json::Value;
 
-/// Names of columns that stand beside factors and responses in one table or template, so that neither can bear them.
+/// Names of columns beside factors and responses in a table or template, which no factor or response can have.
 pub const OWN_COLUMNS: [&str; 21] = [
     "run",
     "row",
@@ -148,23 +148,23 @@ pub trait Stage: Settings + Send + Sync {
     /// Every fault that can be seen without running anything: unknown factors, empty ranges, settings without effect.
     fn check(&self, context: &Context) -> Vec<Complaint>;
 
-    /// What can be seen of the files that it names: those that are not there, and those outside every key.
+    /// Checks the files that it names: files that do not exist, and files outside every key.
     fn beside(&self, _context: &Context, _found: &mut beside::Beside) {}
 
-    /// What other stages know of it before anything runs.
+    /// The properties that other stages can use before anything runs.
     fn sketch(&self) -> Sketch {
         Sketch::default()
     }
 
-    /// What it is expected to ask for.
+    /// The forecast of its tasks.
     fn forecast(&self, _ahead: &forecast::Ahead) -> forecast::Forecast {
         forecast::Forecast::ONE
     }
 
-    /// What to do next, given all that is known; a pure function.
+    /// The next step; a pure function of what is known.
     ///
     /// # Errors
-    /// What makes the stage impossible now that its inputs are known, such as a design that lacks a factor.
+    /// The stage is impossible with these inputs, such as with a design that lacks a factor.
     fn next(&self, known: &Known) -> Result<Step, StageError>;
 
     /// A requirement of the workflow that the computed result does not meet: `flow run` reports it and exits
@@ -181,8 +181,8 @@ pub trait Stage: Settings + Send + Sync {
 
     /// The task that tries one point of the factor space on replicate `number` of its specimen, for kinds
     /// that can stand as a simulator (`simulate`, `command`): calibration and verification ask for such tasks. Its
-    /// artifact is that of a single run. What it looks at is its settings, its inputs, the seed, materials, responses, and
-    /// of factors their units and what they set, but not their levels: a run does not depend on the rest of a design.
+    /// artifact is that of a single run. The task depends on the settings of the stage, its inputs, the seed, materials,
+    /// responses, and the units and paths of factors, but not on their levels: a run does not depend on the rest of a design.
     ///
     /// # Errors
     /// The kind is no simulator, or a factor of the point is not one that it can set.
@@ -203,7 +203,7 @@ pub trait Kind: Stage + DeserializeOwned + JsonSchema + 'static {
     const CLASS: Class;
     /// The work that its tasks name.
     const WORKS: &'static [Work];
-    /// Which of it takes long enough to be sent to the workers of a cluster.
+    /// The work that takes long enough to be sent to the workers of a cluster.
     const FAR: Option<&'static str> = None;
 }
 
@@ -212,7 +212,7 @@ pub trait Kind: Stage + DeserializeOwned + JsonSchema + 'static {
 pub enum Class {
     /// Makes specimens, or runs a model at points.
     Simulation,
-    /// Reads values that were measured or computed elsewhere.
+    /// Reads values that were measured, or computed by other programs.
     Data,
     /// Plans experiments.
     Design,
@@ -220,12 +220,12 @@ pub enum Class {
     Statistics,
     /// Finds parameters, or verifies them.
     Calibration,
-    /// Shows what other stages computed.
+    /// Shows the results of other stages.
     Presentation,
 }
 
 impl Class {
-    /// Whether its stages compute something, and do not only read or show it.
+    /// Whether its stages compute results, rather than read or show them.
     pub fn computes(self) -> bool {
         !matches!(self, Self::Data | Self::Presentation)
     }
@@ -277,7 +277,7 @@ impl Complaint {
     }
 }
 
-/// Why a stage or a task cannot go on, in a person's words.
+/// Why a stage or a task cannot continue, as a message for the user.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct StageError {
@@ -313,7 +313,7 @@ impl From<Wanted> for StageError {
     }
 }
 
-/// What the list knows of one kind.
+/// The entry of one kind in [`KINDS`].
 pub struct KindEntry {
     /// The word after `kind =`.
     pub name: &'static str,
@@ -323,9 +323,9 @@ pub struct KindEntry {
     pub gives: &'static [ArtifactKind],
     /// Its class in pictures of a workflow.
     pub class: Class,
-    /// The work its tasks name.
+    /// The work that its tasks name.
     pub works: &'static [Work],
-    /// Which of it takes long enough to be sent to the workers of a cluster.
+    /// The work that takes long enough to be sent to the workers of a cluster.
     pub far: Option<&'static str>,
     /// Schema of its table.
     pub schema: fn(&mut SchemaGenerator) -> Schema,
@@ -380,7 +380,7 @@ kinds! {
     verify::Verify,
 }
 
-/// What the list knows of the kind called `name`.
+/// The entry of the kind called `name`.
 pub fn kind(name: &str) -> Option<&'static KindEntry> {
     KINDS.iter().find(|kind| kind.name == name)
 }

@@ -1,14 +1,15 @@
-//! What a person should look at before trusting an analysis: the table `notes` of every stage of statistics.
+//! The table `notes` of every stage of statistics: what a reader must know before an analysis is trusted.
 //!
-//! A note repeats in words what stands in the other tables; nothing is left out of an analysis because of one.
+//! A note says in words what the other tables hold as numbers; no note changes an analysis.
 
-use crate::artifact::statistics::NoteTable;
+use crate::artifact::notes::NoteTable;
 use crate::artifact::validity::NotValid;
 use stats::diagnostics::Residual;
 use stats::fit::Fit;
+use stats::model::Axis;
 use stats::regression::Coefficient;
 
-/// Notes with the responses they are about, in order.
+/// Notes with their responses, in order.
 #[derive(Default)]
 pub(super) struct Notes<'a> {
     notes: Vec<(String, String)>,
@@ -18,16 +19,16 @@ pub(super) struct Notes<'a> {
 
 /// Lack of fit up to this p gets a note.
 const LACK_OF_FIT: f64 = 0.05;
-/// How far predicted R² may lie below adjusted R².
+/// Largest difference between adjusted and predicted R² without a note.
 const R2_GAP: f64 = 0.2;
-/// Variance inflation above this makes a coefficient hard to tell from the others (Marquardt 1970,
+/// A coefficient with a larger variance inflation is hardly separable from the others (Marquardt 1970,
 /// doi:10.1080/00401706.1970.10488699).
 const INFLATION: f64 = 10.0;
-/// Rows named one by one.
+/// Most rows that are listed one by one.
 const ROWS: usize = 8;
 
 impl<'a> Notes<'a> {
-    /// Begins with the runs that are not valid.
+    /// New notes, which begin with the runs that are not valid.
     pub(super) fn of(not_valid: &'a NotValid) -> Self {
         let mut notes = Self { notes: Vec::new(), not_valid: Some(not_valid) };
         not_valid.sentences().into_iter().for_each(|(response, said)| notes.add(response, said));
@@ -39,13 +40,27 @@ impl<'a> Notes<'a> {
         self.notes.push((response.to_owned(), note.into()));
     }
 
-    /// Runs without a value, beside those that were left out.
+    /// A note on runs without a value, besides those that were left out.
     pub(super) fn missing(&mut self, response: &str, used: usize, missing: usize) {
         let left_out = self.not_valid.map_or(0, |list| list.left_out(response));
         let (all, without) = (used + missing, missing - left_out.min(missing));
         if without > 0 {
             let have = if without == 1 { "has" } else { "have" };
             self.add(response, format!("{without} of {all} runs {have} no value; the analysis is of {used}"));
+        }
+    }
+
+    /// Factors with a single value, from which only a fit through the origin takes a slope; `whose` names the group.
+    pub(super) fn one_level(&mut self, response: &str, whose: &str, axes: &[Axis]) {
+        for axis in axes.iter().filter(|axis| axis.low == axis.high) {
+            let (name, value) = (&axis.name, short(axis.low));
+            self.add(
+                response,
+                format!(
+                    "{whose}`{name}` is {value} in every run: the slope takes the response as proportional to it, which \
+                     one level cannot show"
+                ),
+            );
         }
     }
 
@@ -84,7 +99,7 @@ impl<'a> Notes<'a> {
         }
     }
 
-    /// Rows that a model does not explain, or that make it what it is.
+    /// Notes on rows that a model does not explain, or that have a strong influence on it.
     pub(super) fn residuals(&mut self, response: &str, rows: &[Residual]) {
         let flagged: Vec<&Residual> = rows.iter().filter(|r| r.outlier || r.influential).collect();
         for r in flagged.iter().take(ROWS) {
@@ -102,7 +117,7 @@ impl<'a> Notes<'a> {
         }
     }
 
-    /// Coefficients that the runs hardly separate from others.
+    /// Notes on coefficients that the runs hardly separate from others.
     pub(super) fn inflation(&mut self, response: &str, coefficients: &[Coefficient]) {
         let inflated = |c: &&Coefficient| c.vif.is_some_and(|vif| vif > INFLATION);
         for c in coefficients.iter().filter(inflated) {

@@ -1,9 +1,9 @@
-//! Parameters of a task in few bytes: a fan-out holds a hundred thousand of them at once, and a [`Value`] takes about a
+//! Parameters of a task in few bytes: a fan-out has a hundred thousand tasks in memory, and a [`Value`] takes about a
 //! kilobyte for every table in it.
 
 use serde_json::{Map, Number, Value};
 
-/// A JSON value in one piece of memory; it comes back as it was.
+/// A JSON value in one piece of memory, without loss.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packed(Box<[u8]>);
 
@@ -22,7 +22,7 @@ impl Packed {
         unpack(&mut rest).unwrap_or_else(|| panic!("BUG: packed parameters that cannot be read"))
     }
 
-    /// Its bytes as hexadecimal digits: a text with every bit of every number.
+    /// Its bytes as hexadecimal digits: a text that holds every bit of every number.
     pub fn to_hex(&self) -> String {
         self.0.iter().fold(String::with_capacity(2 * self.0.len()), |mut text, byte| {
             for digit in [byte >> 4, byte & 15] {
@@ -32,7 +32,7 @@ impl Packed {
         })
     }
 
-    /// The value of such a text; none when it is not one.
+    /// The value of such a text; `None` when it is not one.
     pub fn from_hex(text: &str) -> Option<Self> {
         let digit = |byte: u8| char::from(byte).to_digit(16);
         let (pairs, []) = text.as_bytes().as_chunks::<2>() else { return None };
@@ -92,7 +92,7 @@ fn push_text(bytes: &mut Vec<u8>, text: &str) {
     bytes.extend_from_slice(text.as_bytes());
 }
 
-/// Seven bits a byte, the lowest first; the last byte is below 128.
+/// Seven bits per byte, the lowest first; the last byte is below 128.
 fn push_length(bytes: &mut Vec<u8>, mut length: usize) {
     while length > 127 {
         bytes.push(length as u8 | 128);

@@ -1,8 +1,8 @@
 //! Printed values beside computed ones: the values of a paper, the deviation, and its explanation.
 //!
-//! The file is a CSV with a column `response`, a column that names the line (`source` or `term`), the printed value as
-//! it was printed (its decimals count), an optional `decimals` where the print drops zeros at the end, and an optional
-//! `note` that explains a printed value that differs.
+//! The file is a CSV with a column `response`, a column with the name of the line (`source` or `term`), the value with the
+//! decimals of the print, an optional `decimals` where the print drops zeros at the end, and an optional `note` that
+//! explains a printed value that differs.
 
 use super::sheet::Sheet;
 use super::{Failure, Job, StageError};
@@ -52,21 +52,21 @@ fn parse(bytes: &[u8], line: &str, value: &str) -> Result<Vec<Print>, StageError
     (0..sheet.rows()).map(one).collect()
 }
 
-/// One computed value, and how far rounding of the data may move it.
+/// One computed value, and how far rounding of the data may change it.
 pub(super) struct Computed<'a> {
     pub response: &'a str,
     pub line: &'a str,
     pub value: Option<f64>,
-    /// Standard deviation of the value under rounding of the responses; 0 when they are taken as they stand.
+    /// Standard deviation of the value under rounding of the responses; 0 when they count as exact.
     pub rounding: f64,
     /// A remark on the line.
     pub remark: &'static str,
 }
 
-/// The printed values, how far the computed ones lie from them, and a remark on each.
+/// The printed values, the deviations of the computed ones, and a remark on each.
 ///
-/// A print is met within half a unit of its last decimal, or, where the data are rounded, within that and two standard
-/// deviations of what rounding them does.
+/// A computed value agrees with print within half a unit of its last decimal; where the data are rounded, within that and
+/// two standard deviations of the effect of rounding.
 pub(super) fn beside(prints: &[Print], computed: &[Computed]) -> (Published, Vec<String>) {
     let own = |c: &Computed| prints.iter().find(|p| p.response == c.response && p.line == c.line);
     let published = computed.iter().map(|c| own(c).map_or(f64::NAN, |p| p.value)).collect();

@@ -1,7 +1,7 @@
 //! `kind = "range"`: range analysis of an orthogonal table, per factor and response.
 //!
 //! The result has the table `range` (`response,factor,level_1,…,range,rank`: mean response at each level, in the unit of
-//! the response) and the table `levels` (the values that level 1, 2, … stand for), and `notes`.
+//! the response), the table `levels` (the values of level 1, 2, …), and `notes`.
 
 use super::columns::{Columns, Rows, Wanted, check_names, refused_without, runs};
 use super::given::check_given;
@@ -22,15 +22,15 @@ use stats::range::{Range as Line, range_analysis};
 pub struct Range {
     /// The stage whose runs are analysed.
     pub table: String,
-    /// Factors to analyse; all that the table has when not given.
+    /// Factors to analyse; by default all that the table has.
     #[serde(default)]
     pub factors: Vec<String>,
-    /// Responses to analyse; all that the table has when not given.
+    /// Responses to analyse; by default all that the table has.
     #[serde(default)]
     pub responses: Vec<String>,
-    /// Column with the number of replicates that each row is the mean of.
+    /// Column with the number of replicates of which each row is the mean.
     pub weights: Option<String>,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
 }
@@ -95,7 +95,7 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     Ok(Stored { range, levels, notes, not_valid: not_valid.some() }.to_artifact())
 }
 
-/// Responses whose missing runs spoil the balance of the table.
+/// Notes on responses whose missing runs make the table unbalanced.
 fn notes<'a>(lines: &[Line], rows: usize, not_valid: &'a NotValid) -> Notes<'a> {
     let mut notes = Notes::of(not_valid);
     for lines in lines.chunk_by(|a, b| a.response == b.response) {
@@ -108,7 +108,7 @@ fn notes<'a>(lines: &[Line], rows: usize, not_valid: &'a NotValid) -> Notes<'a> 
     notes
 }
 
-/// What level 1, 2, … of each factor stand for.
+/// The values of level 1, 2, … of each factor.
 fn levels(columns: &Columns, lines: &[Line], most: usize) -> LevelValues {
     let first = lines.first().map(|line| line.response.clone());
     let own: Vec<&Line> = lines.iter().filter(|line| Some(&line.response) == first.as_ref()).collect();

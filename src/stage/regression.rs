@@ -1,20 +1,19 @@
 //! `kind = "regression"`: linear models of one table, one per response, or one per response and group of rows.
 //!
 //! A term is a product of powers of factors, or holds a formula of factors such as `scn/(1+ratio)`. A factor whose values
-//! are names enters by dummy coding. With `through_origin` no model has a constant: R² is then a share of the squares about
-//! zero, and stands beside R² about the mean and the same terms with a constant. With `by` the result is an artifact
-//! `groups` ([`grouped`]).
+//! are names enters by dummy coding. With `through_origin` no model has a constant: R² is then a fraction of the squares
+//! about zero, and the result also holds R² about the mean and the same terms with a constant. With `by` the result is an
+//! artifact `groups` ([`grouped`]).
 //!
 //! The result is an artifact `surfaces`: tables `coefficients` (natural units), `coded`, `fit`, `residuals`,
-//! `stationary`, `axes`, `path`, `domain`, `selection`, `predictions` where they are asked for, `notes` (what to look
-//! at), and the models that prediction needs.
+//! `stationary`, `axes`, `path`, `domain`, `selection`, `predictions` if `predict` is set, `notes`, and the models for
+//! prediction.
 
 mod grouped;
-pub(super) mod origin;
 
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, check_probability, runs};
-use super::fitted::{self, Fitting, Params, Predict, check_predict, fit};
+use super::fitted::{self, Fitting, Params, Predict, check_predict, fit, with_constant};
 use super::given::check_given;
 use super::invalid::Invalid;
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -37,29 +36,29 @@ pub struct Regression {
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Vec<String>>")]
     pub terms: BTreeMap<String, Vec<Term>>,
-    /// Columns of the table: one fit for every set of rows with equal values in them.
+    /// Columns of the table by which rows are grouped: one fit for every group of rows with equal values.
     #[serde(default)]
     pub by: Vec<String>,
-    /// Leave the constant out of every model.
+    /// Whether to leave the constant out of every model.
     #[serde(default)]
     pub through_origin: bool,
-    /// Coverage of the intervals of coefficients by groups, 0.95 when not given.
+    /// Coverage of the intervals of coefficients by groups, 0.95 by default.
     pub confidence: Option<f64>,
     /// Choose terms by significance, with hierarchy.
     pub select: Option<Direction>,
-    /// Level of the selection, 0.05 when not given.
+    /// Level of the selection, 0.05 by default.
     pub select_alpha: Option<f64>,
     /// Level of the outlier test on the studentized residuals, over all rows together.
     #[serde(default = "outlier_alpha")]
     pub outlier_alpha: f64,
-    /// Column with the number of replicates that each row is the mean of.
+    /// Column with the number of replicates of which each row is the mean.
     pub weights: Option<String>,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
-    /// Points at which the models are asked.
+    /// Points of prediction.
     pub predict: Option<Predict>,
-    /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
+    /// CSV beside the workflow with printed coefficients: `response,term,estimate` and, optionally, `note`; the term `r2` is
     /// compared with the fit.
     pub published: Option<String>,
 }
@@ -94,12 +93,6 @@ pub(super) fn factors_of(terms: &[Term]) -> Vec<String> {
     names.sort();
     names.dedup();
     names
-}
-
-/// The terms with the constant in front.
-pub(super) fn with_constant(terms: &[Term]) -> Vec<Term> {
-    let rest = terms.iter().filter(|t| t.degree() > 0).cloned();
-    std::iter::once(Term::constant()).chain(rest).collect()
 }
 
 impl Stage for Regression {
@@ -216,7 +209,7 @@ impl Kind for Regression {
     const ABOUT: &'static str = "linear regression of responses on factors, from one table";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES, ArtifactKind::GROUPS];
     const CLASS: Class = Class::Statistics;
-    // Groups 3: a group without a fit says how many of its runs are missing. 3, of groups 2: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
+    // 4: what all responses have in common costs no digits; one level through the origin. Groups 3: a group without a fit says how many of its runs are missing. 3, of groups 2: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
     const WORKS: &'static [Work] =
-        &[Work { name: "fit", version: 3, run: fit }, Work { name: "groups", version: 3, run: grouped::fit }];
+        &[Work { name: "fit", version: 4, run: fit }, Work { name: "groups", version: 4, run: grouped::fit }];
 }

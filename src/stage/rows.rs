@@ -1,7 +1,7 @@
-//! Fanning out over the rows of a design, and gathering the runs into one table: shared by every simulator kind.
+//! A run for every row of a design, gathered into one table: shared by every simulator kind.
 //!
-//! Rows are known by content. Equal rows of one design are replicates, numbered from 1 by occurrence, so adding rows
-//! changes nothing for the others, and the same row and replicate in two designs is one run.
+//! Rows are identified by their content. Equal rows of one design are replicates, numbered from 1 by occurrence, so new
+//! rows change nothing for the others, and the same row and replicate in two designs is one run.
 
 mod points;
 
@@ -15,7 +15,7 @@ use super::{
 use crate::artifact::design::Design;
 use crate::artifact::results::{Results, Verdicts};
 use crate::artifact::run::{Outcome, Run};
-use crate::artifact::{Artifact, Column, Node, Table, Values};
+use crate::artifact::{Artifact, Column, Table};
 use crate::expression::Measure;
 use crate::unit::{Conversion, Dimension, Unit};
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ fn factor_columns<'a>(design: &'a Artifact, context: &Context) -> Result<Vec<&'a
 /// Values of a material by path after a point of the factor space was applied to it, and its formulas evaluated.
 ///
 /// # Errors
-/// A factor of the point is not known or sets a value that is not there, or a formula needs what is not set.
+/// A factor of the point is unknown or sets a value that does not exist, or a formula needs a value that is not set.
 pub fn apply(material: &Material, point: &Point, context: &Context) -> Result<material::Values, StageError> {
     let mut set = material::Values::new();
     let mut measures: BTreeMap<&str, Measure> = BTreeMap::new();
@@ -58,7 +58,7 @@ pub fn apply(material: &Material, point: &Point, context: &Context) -> Result<ma
     }
 }
 
-/// Everything a run may name at a point: the material's values by path (SI) after the point was applied, and the
+/// All values that a run can name at a point: the material's values by path (SI) after the point was applied, and the
 /// factors by name (in their units) that set something.
 ///
 /// # Errors
@@ -77,7 +77,7 @@ pub fn values(
     Ok(values)
 }
 
-/// The complaint about a material that is not in the workflow.
+/// The complaint about a material that the workflow does not declare.
 pub fn check_material(name: Option<&String>, context: &Context) -> Option<Complaint> {
     let name = name.filter(|name| !context.materials.contains_key(*name))?;
     let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
@@ -85,8 +85,8 @@ pub fn check_material(name: Option<&String>, context: &Context) -> Option<Compla
     Some(Complaint::new("material", format!("there is no [material.{name}]")).hint(hint))
 }
 
-/// The complaint about the unit in which a simulator gives a response: it cannot be read, or not be shown in the unit that
-/// the workflow declares.
+/// The complaint about the unit of a simulator's response: it cannot be read, or not be converted to the unit that the
+/// workflow declares.
 pub fn check_response(path: &str, name: &str, unit: &str, context: &Context) -> Option<Complaint> {
     let given = match Unit::parse(unit) {
         Ok(given) => given,
@@ -102,13 +102,13 @@ pub fn check_response(path: &str, name: &str, unit: &str, context: &Context) -> 
 
 #[derive(Serialize, Deserialize)]
 struct GatherParams {
-    /// Factor columns to take from the design.
+    /// Names of the factor columns of the design.
     factors: Vec<String>,
-    /// Unit to show each response in; a response that is not named keeps the unit of the runs.
+    /// Unit of each response in the table; other responses have the unit of the runs.
     units: BTreeMap<String, String>,
 }
 
-/// The step of a simulator: every row of its `design` on its own task, gathered into one table; one run without a design.
+/// The step of a simulator: a task for every row of its `design`, gathered into one table; one run without a design.
 ///
 /// # Errors
 /// The design cannot be read, or a row cannot be tried.
@@ -138,7 +138,7 @@ pub fn fan_out(simulator: &dyn Stage, known: &Known) -> Result<Step, StageError>
     Ok(Step::Finish(task))
 }
 
-/// The task that gathers runs, one per row of the design, into the table `runs` of a `results` artifact; without runs yet.
+/// The task that gathers runs, one per row of the design, into the table `runs` of a `results` artifact; it has no runs yet.
 fn gather(known: &Known, design: &Input<'_>, artifact: &Artifact) -> Result<Task, StageError> {
     let factors = factor_columns(artifact, known.context)?.iter().map(|column| column.name.clone()).collect();
     let unit = |(name, response): (&String, &super::Response)| (name.clone(), response.unit.clone());
@@ -166,8 +166,12 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     let params: GatherParams = job.params()?;
     let design = job.input("design")?;
     let design = Design::table(design).map_err(StageError::from)?;
-    let cached =
-        job.inputs.iter().find(|(name, _)| name == "cached").map(|(_, cached)| cached_runs(cached)).transpose()?;
+    let cached = job
+        .inputs
+        .iter()
+        .find(|(name, _)| name == "cached")
+        .map(|(_, cached)| RunSummaries::of_artifact(cached))
+        .transpose()?;
     let results = all_responses(job, cached.as_ref())?;
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() };
     for name in &params.factors {
@@ -192,19 +196,7 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     Ok(Results::of(table, verdicts).to_artifact())
 }
 
-/// Indices among the inputs of the task, and summaries, of runs that were made before.
-fn cached_runs(cached: &Artifact) -> Result<(&[i64], RunSummaries), StageError> {
-    let indices = cached.table("indices").and_then(|table| table.column("index")).map(|column| &column.values);
-    match (indices, cached.root.get("summaries")) {
-        (Some(Values::Ints(indices)), Some(Node::Bytes(bytes))) => {
-            let summaries = RunSummaries::from_bytes(bytes).filter(|summaries| summaries.len() == indices.len());
-            Ok((indices, summaries.ok_or_else(|| StageError::new("the cached runs cannot be read"))?))
-        }
-        _ => Err(StageError::new("the cached runs hold no indices or no summaries")),
-    }
-}
-
-/// What every run gave, in the order of the rows, whether it is loaded or cached.
+/// The summary of every run, loaded or cached, in the order of the rows.
 fn all_responses<'a>(job: &'a Job, cached: Option<&'a (&[i64], RunSummaries)>) -> Result<Vec<Outcome<'a>>, StageError> {
     let old = cached.into_iter().flat_map(|(indices, summaries)| {
         let summary = |run: usize| summaries.get(run).ok_or_else(|| StageError::new("a cached run has no summary"));
@@ -241,7 +233,7 @@ fn response_column(
         let value = responses.iter().find(|(n, _, _)| *n == name);
         values.push(match value {
             Some((_, value, from)) if failure.is_empty() => {
-                // Nearly always the unit of the row before.
+                // The unit is nearly always that of the previous row.
                 let (_, conversion) = match &last {
                     Some((text, conversion)) if text == from => (*text, *conversion),
                     _ => *last.insert((*from, conversion(name, from, unit)?)),

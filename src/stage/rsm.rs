@@ -3,14 +3,14 @@
 //! A factor with `scale = "log"` enters by its logarithm: −1, 0 and +1 in coded units are the levels of a design on that
 //! scale, and coefficients are per unit of ln(value in the factor's unit).
 //!
-//! The result is an artifact `surfaces`, as [`super::regression`] gives it.
+//! The result is an artifact `surfaces`, as in [`super::regression`].
 
 use super::beside::Beside;
 use super::columns::{Columns, Wanted, check_names, runs};
-use super::fitted::{self, Fitting, Params, Predict, check_predict};
+use super::fitted::{self, Fitting, Params, Predict, check_predict, with_constant};
 use super::given::check_given;
 use super::invalid::Invalid;
-use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha, with_constant};
+use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha};
 use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
@@ -24,29 +24,29 @@ use std::collections::BTreeMap;
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rsm {
-    /// The stages whose runs are fitted: one per response, in the same order, or one for all.
+    /// The stages whose runs are fitted: one for each response, in the same order, or one for all.
     pub tables: Vec<String>,
     /// The responses.
     pub responses: Vec<String>,
-    /// Terms of a response; without an entry the full second order in the factors that its table varies.
+    /// Terms of a response; by default the full second order in the factors that its table varies.
     #[serde(default)]
     #[schemars(with = "BTreeMap<String, Vec<String>>")]
     pub terms: BTreeMap<String, Vec<Term>>,
     /// Choose terms by significance, with hierarchy.
     pub select: Option<Direction>,
-    /// Level of the selection, 0.05 when not given.
+    /// Level of the selection, 0.05 by default.
     pub select_alpha: Option<f64>,
     /// Level of the outlier test on the studentized residuals, over all rows together.
     #[serde(default = "outlier_alpha")]
     pub outlier_alpha: f64,
-    /// Column with the number of replicates that each row is the mean of.
+    /// Column with the number of replicates of which each row is the mean.
     pub weights: Option<String>,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
-    /// Points at which the models are asked.
+    /// Points of prediction.
     pub predict: Option<Predict>,
-    /// CSV beside the workflow with printed coefficients: `response,term,estimate`, perhaps `note`; the term `r2` is
+    /// CSV beside the workflow with printed coefficients: `response,term,estimate` and, optionally, `note`; the term `r2` is
     /// compared with the fit.
     pub published: Option<String>,
 }
@@ -132,7 +132,7 @@ impl Stage for Rsm {
 }
 
 impl Rsm {
-    /// The model of one response: its own terms, or second order in what its table varies.
+    /// The model of one response: its own terms, or the second order in the factors that its table varies.
     fn fitting(
         &self,
         response: &str,

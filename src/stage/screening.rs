@@ -1,8 +1,8 @@
-//! `kind = "screening"`: effects of a two-level design, judged by Lenth's limits where nothing else estimates the noise.
+//! `kind = "screening"`: effects of a two-level design, judged by Lenth's limits where no replicates estimate the noise.
 //!
 //! The result has the tables `effects` (one row per response and term, with the coordinates of normal, half-normal and
-//! Pareto plots), `limits` (pseudo standard error and margins, critical value of the standardised effects), `fit`, `residuals` and `notes` (what stands out, and
-//! what to look at).
+//! Pareto plots), `limits` (pseudo standard error and margins, critical value of the standardised effects), `fit`,
+//! `residuals` and `notes` (active effects, and what a reader must know).
 
 use super::columns::{Columns, Rows, Wanted, check_names, check_probability, refused_without, runs};
 use super::fitted::{fit_table, residual_table};
@@ -26,19 +26,19 @@ use stats::terms::Term;
 pub struct Screening {
     /// The stage whose runs are analysed.
     pub table: String,
-    /// Responses to analyse; all that the table has when not given.
+    /// Responses to analyse; by default all that the table has.
     #[serde(default)]
     pub responses: Vec<String>,
-    /// Terms whose effects are estimated, such as `["A", "B", "A*B"]`; the main effects when not given.
+    /// Terms whose effects are estimated, such as `["A", "B", "A*B"]`; by default the main effects.
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub terms: Vec<Term>,
     /// Level of the margins of error.
     #[serde(default = "alpha")]
     pub alpha: f64,
-    /// Column with the number of replicates that each row is the mean of.
+    /// Column with the number of replicates of which each row is the mean.
     pub weights: Option<String>,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
 }
@@ -97,8 +97,8 @@ impl Kind for Screening {
     const ABOUT: &'static str = "effects of a two-level design with Lenth's limits";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SCREENING];
     const CLASS: Class = Class::Statistics;
-    // 4: runs that are not valid are left out. 3: standardised effects with their critical value. 2: notes; what rounding leaves of an exact fit is no error
-    const WORKS: &'static [Work] = &[Work { name: "screening", version: 4, run: analyse }];
+    // 5: what all responses have in common costs no digits. 4: runs that are not valid are left out. 3: standardised effects with their critical value. 2: notes; what rounding leaves of an exact fit is no error
+    const WORKS: &'static [Work] = &[Work { name: "screening", version: 5, run: analyse }];
 }
 
 fn analyse(job: &Job) -> Result<Artifact, Failure> {
@@ -123,7 +123,7 @@ fn analyse(job: &Job) -> Result<Artifact, Failure> {
     Ok(screening.to_artifact())
 }
 
-/// What stands out of the noise, and what to look at.
+/// Notes on active effects, and on what a reader must know.
 fn notes<'a>(found: &[Found], not_valid: &'a NotValid) -> Notes<'a> {
     let mut notes = Notes::of(not_valid);
     for screened in found {

@@ -1,23 +1,23 @@
-//! CSV files as laboratories and papers write them: the only reader of them.
+//! The only reader of CSV files, as laboratories and papers write them.
 //!
 //! UTF-8 text, with or without a byte order mark. Lines that begin with `#` are comments *above* the line of names only:
-//! below it a `#` is a character like any other, because specimens are called `#2`. The first line names the columns, a
-//! unit in brackets after the name: `sigma_c [MPa]`. Cells are separated by commas and may stand in double quotes; every
-//! line has as many as the first. Lines without any character are passed over, unless the file has one column, where an
-//! empty line would be a missing value that nobody sees.
+//! below it a `#` is a character like any other, because specimens have names such as `#2`. The first line names the columns,
+//! a unit in brackets after the name: `sigma_c [MPa]`. Cells are separated by commas and may have double quotes; every line
+//! has as many cells as the first. Lines without any character are skipped; in a file of one column they are refused, because
+//! an empty line could be a missing value.
 
 use super::StageError;
 use design::table::MOST_RUNS;
 
 /// The cells of a file, column by column.
 pub(super) struct Sheet {
-    /// Names and units of the columns, as they stand in the file.
+    /// Names and units of the columns, as in the file.
     pub(super) heads: Vec<String>,
     /// The cells of each column.
     pub(super) columns: Vec<Vec<String>>,
 }
 
-/// White space, and the mark that is a blank without width everywhere but at the head of a file.
+/// White space, and the byte order mark, which inside a file is a blank without width.
 fn blank(c: char) -> bool {
     c.is_whitespace() || c == '\u{feff}'
 }
@@ -26,7 +26,7 @@ impl Sheet {
     /// Reads a whole file, or returns its fault.
     ///
     /// # Errors
-    /// It is no text, has other separators, or a line has more or fewer cells than the first.
+    /// It is not text, has other separators, or a line has more or fewer cells than the first.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, StageError> {
         let text = std::str::from_utf8(bytes).map_err(|e| not_text(bytes, e.valid_up_to()))?;
         Self::of(text, b',', separated_by_commas)
@@ -41,7 +41,7 @@ impl Sheet {
         separator: u8,
         check: impl Fn(&[String]) -> Result<(), StageError>,
     ) -> Result<Self, StageError> {
-        // Programs that add a mark to a file may find one there.
+        // A program that adds a mark may have added a second one.
         let (body, skipped) = below_comments(text.trim_start_matches('\u{feff}'));
         if let Some(at) = body.find('\0') {
             let line = skipped + body[..at].matches('\n').count() + 1;
@@ -77,7 +77,7 @@ impl Sheet {
         Ok(Self { heads, columns })
     }
 
-    /// Which column has this head.
+    /// Index of the column with this head.
     pub(super) fn place(&self, head: &str) -> Option<usize> {
         self.heads.iter().position(|own| own == head)
     }
@@ -99,7 +99,7 @@ pub(super) fn below_comments(text: &str) -> (&str, usize) {
     (rest, skipped)
 }
 
-/// The first line without a character that has others below it, from 1.
+/// The first empty line that is followed by others, from 1.
 fn empty_line(text: &str) -> Option<usize> {
     let filled = text.trim_end();
     // A line break within quotes belongs to a cell.
@@ -111,7 +111,7 @@ fn empty_line(text: &str) -> Option<usize> {
     })
 }
 
-/// The first line, from 1, with an odd number of quotes, when the whole text has one.
+/// The first line, from 1, with an odd number of quotes, if the number in the whole text is odd.
 fn open_quote(text: &str) -> Option<usize> {
     let odd = |text: &str| text.matches('"').count() % 2 == 1;
     if odd(text) { text.lines().position(odd).map(|at| at + 1) } else { None }
@@ -135,7 +135,7 @@ fn unequal(error: &csv::Error, skipped: usize) -> StageError {
     }
 }
 
-/// Tables with `;` or tabs would be read as one wide column.
+/// Refuses tables with `;` or tabs, which would be read as one column.
 fn separated_by_commas(heads: &[String]) -> Result<(), StageError> {
     let [head] = heads else { return Ok(()) };
     let Some(found) = [(';', "`;`"), ('\t', "tabs")].into_iter().find(|(sign, _)| head.contains(*sign)) else {

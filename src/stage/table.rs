@@ -1,16 +1,16 @@
 //! `kind = "table"`: a table of other stages' results for people: CSV, LaTeX (booktabs) and Markdown.
 //!
-//! `table` names the table inside the artifact (its main one when not given), `columns` which of its columns are
-//! printed and in which order, `where` which rows. Several stages are stacked, with a column `stage` in front. With
-//! `compare` the numbers of another stage stand beside ours, row by row with equal values in the columns `by`, and the
-//! deviation in per cent after them; with `published` those of a CSV file do. Columns that are factors or responses get
-//! their symbols. `pivot` spreads one column over two others.
+//! `table` names the table inside the artifact (by default its main one), `columns` its columns in the order of print, and
+//! `where` selects rows. Several stages are stacked, with a column `stage` in front. With `compare` the numbers of another
+//! stage follow ours in each row, matched by equal values in the columns `by`, and then the deviation in per cent; with
+//! `published` those of a CSV file do. Columns that are factors or responses get their symbols. `pivot` spreads one column
+//! over two others.
 //!
-//! `list` prints what the workflow itself states, instead of a table of a result: `factors` (what each sets, its range and
+//! `list` prints declarations of the workflow instead of a table of a result: `factors` (the values that each sets, range and
 //! levels), `materials` (microparameters of the named materials, in the units of the factors), `aggregate` (polygons of a
-//! specimen by the size classes given), `ranges` (of the named factors, and of the responses that surfaces were fitted to).
+//! specimen by size classes), `ranges` (of the named factors, and of the responses that surfaces were fitted to).
 //!
-//! The CSV has all digits; `digits` and `decimals` are for the two that people read.
+//! The CSV has all digits; `digits` and `decimals` are for LaTeX and Markdown.
 
 mod beside;
 mod list;
@@ -43,9 +43,9 @@ pub struct Table {
     /// The stages whose tables are printed.
     #[serde(default)]
     pub of: Names,
-    /// A list made from the workflow, instead of a table of a result.
+    /// A list of declarations of the workflow, instead of a table of a result.
     pub list: Option<List>,
-    /// The factors of a list; all when not given.
+    /// The factors of a list; all by default.
     #[serde(default)]
     pub factors: Vec<String>,
     /// The materials of a list.
@@ -54,34 +54,34 @@ pub struct Table {
     /// Bounds of the size classes of a list of aggregate.
     #[serde(default)]
     pub classes: Vec<Length>,
-    /// Which table of the artifact; its main one when not given.
+    /// The table of the artifact; by default its main one.
     pub table: Option<String>,
-    /// Columns in the order of print; all when not given.
+    /// Columns in the order of print; all by default.
     #[serde(default)]
     pub columns: Vec<String>,
-    /// Rows in which these columns have these values.
+    /// Prints only rows in which these columns have these values.
     #[serde(default, rename = "where")]
     pub only: BTreeMap<String, String>,
     /// One column spread over two others, instead of `columns`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pivot: Option<Pivot>,
-    /// A stage whose numbers stand beside ours.
+    /// A stage whose numbers are printed beside ours.
     pub compare: Option<String>,
-    /// A CSV file, beside the workflow, whose numbers stand beside ours.
+    /// A CSV file, beside the workflow, whose numbers are printed beside ours.
     pub published: Option<String>,
-    /// Columns by which rows of the two are matched.
+    /// Columns by which rows of the two tables are matched.
     #[serde(default)]
     pub by: Vec<String>,
-    /// Words above the table.
+    /// Caption above the table.
     #[serde(default)]
     pub caption: String,
     /// Label for references in LaTeX.
     #[serde(default)]
     pub label: String,
-    /// Remarks below the table.
+    /// Note below the table.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// Significant digits of numbers; 4 when not given.
+    /// Significant digits of numbers; 4 by default.
     pub digits: Option<usize>,
     /// Decimals of single columns, instead of significant digits.
     #[serde(default)]
@@ -89,12 +89,12 @@ pub struct Table {
     /// Symbols of single columns in LaTeX notation.
     #[serde(default)]
     pub symbols: BTreeMap<String, String>,
-    /// What becomes of runs that are not valid; shown and marked by default.
+    /// What to do with runs that are not valid; by default they are shown and marked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub invalid: Option<Invalid>,
 }
 
-/// Everything that decides a printed table besides the data.
+/// Parameters of the task: everything that decides a printed table besides the data.
 #[derive(Debug, Serialize, Deserialize)]
 struct Params {
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -116,7 +116,7 @@ struct Params {
     digits: usize,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     decimals: BTreeMap<String, usize>,
-    /// Symbols of the columns that are printed.
+    /// Symbols of the columns.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     symbols: BTreeMap<String, String>,
     /// The rows of a list.
@@ -125,7 +125,7 @@ struct Params {
     /// Names of the stages when several are stacked.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     stages: Vec<String>,
-    /// Units of responses, for quantities that stand in rows.
+    /// Units of responses, for tables that list quantities row by row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     units: Option<BTreeMap<String, String>>,
     #[serde(default = "keep", skip_serializing_if = "is_kept")]
@@ -233,7 +233,7 @@ impl Stage for Table {
             invalid: self.invalid.unwrap_or(Invalid::Keep),
         };
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
-        // A list is in the parameters: what it was made from may change without another list.
+        // The list itself is in the parameters, so a change elsewhere in the workflow does not print it anew.
         let ports: &[&str] = if self.list.is_some() { &["compare"] } else { &["of", "compare"] };
         for port in ports {
             for input in known.port(port) {
@@ -264,7 +264,7 @@ impl Kind for Table {
     const WORKS: &'static [Work] = &[Work { name: "table", version: 7, run: print }];
 }
 
-/// The table of that name, or the artifact's main one.
+/// The table of this name, or the artifact's main one.
 fn find<'a>(artifact: &'a Artifact, name: Option<&str>) -> Result<&'a artifact::Table, StageError> {
     let tables = artifact.tables();
     let wanted = name.or_else(|| super::artifact_kind(artifact)?.main_table());
@@ -320,7 +320,7 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     Ok(stored.to_artifact())
 }
 
-/// The chosen columns of the chosen rows among those that are allowed.
+/// The columns of the settings, in the rows of the settings among the allowed ones.
 fn chosen(
     table: &artifact::Table,
     params: &Params,
@@ -334,7 +334,7 @@ fn chosen(
     named(table, names, params, &chosen_rows(table, params, allowed)?)
 }
 
-/// The rows that the settings ask for, among those that are allowed.
+/// The rows of the settings among the allowed ones.
 fn chosen_rows(
     table: &artifact::Table,
     params: &Params,

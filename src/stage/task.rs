@@ -1,4 +1,4 @@
-//! The unit of work, and what runs it.
+//! The unit of work, and the function that computes it.
 
 use super::beside::plain;
 use super::cached::CachedRuns;
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Task {
     /// Name of its [`Work`].
     pub work: &'static str,
-    /// Parameters it really uses, SI numbers; read back by [`Job::params`].
+    /// Parameters that decide its result, in SI units; [`Job::params`] reads them.
     pub params: Packed,
     /// Its seed, when it draws random numbers.
     pub seed: Option<u64>,
@@ -25,13 +25,13 @@ pub struct Task {
     pub inputs: Vec<(Cow<'static, str>, Source)>,
     /// Files it reads, known by content.
     pub files: Vec<FileInput>,
-    /// Which design row (from 0) it computes; for people only, not part of its key.
+    /// The design row (from 0) that it computes; for readers only, not part of its key.
     pub row: Option<usize>,
     /// Seconds after which an external program is ended; not part of its key.
     pub time_limit: Option<f64>,
     /// Bound on how many tasks of its program run at once; not part of its key.
     pub at_once: Option<AtOnce>,
-    /// Those of its inputs that an earlier campaign made and that need not be read; not part of its key.
+    /// Those of its inputs whose summaries are cached, so that they need not be read; not part of its key.
     pub cached: Option<Arc<CachedRuns>>,
 }
 
@@ -51,21 +51,21 @@ impl Task {
         }
     }
 
-    /// Gives it a seed.
+    /// Sets its seed.
     #[must_use]
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = Some(seed);
         self
     }
 
-    /// Adds an artifact that is known already.
+    /// Adds an artifact as an input.
     #[must_use]
     pub fn input(mut self, name: impl Into<Cow<'static, str>>, content: ContentHash) -> Self {
         self.inputs.push((name.into(), Source::Content(content)));
         self
     }
 
-    /// Adds the result of another task.
+    /// Adds the result of another task as an input.
     #[must_use]
     pub fn after(mut self, name: impl Into<Cow<'static, str>>, task: Arc<Task>) -> Self {
         self.inputs.push((name.into(), Source::Task(task)));
@@ -83,16 +83,16 @@ impl Task {
 /// A bound on how many tasks run an external program at once, such as the number of its licences.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AtOnce {
-    /// The program: stages that run the same one share its licences.
+    /// The program; stages with the same program share its licences.
     pub program: String,
-    /// The most that may run.
+    /// Most runs at once.
     pub most: usize,
 }
 
-/// Where an input comes from.
+/// Source of an input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// An artifact that is known already.
+    /// An artifact that is in the store.
     Content(ContentHash),
     /// The result of another task.
     Task(Arc<Task>),
@@ -103,18 +103,18 @@ pub enum Source {
 pub struct FileInput {
     /// Its name in the task.
     pub name: String,
-    /// Where it lies now.
+    /// Its path now.
     pub path: PathBuf,
-    /// blake3 of its bytes; whoever reads it checks this.
+    /// blake3 of its bytes, checked by the reader.
     pub digest: [u8; 32],
 }
 
-/// What a stage wants next.
+/// The next step of a stage.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
     /// The result of this task is the stage's result.
     Finish(Task),
-    /// Outcomes it must see first, and where it stands in a few words.
+    /// Tasks whose outcomes it needs first, and its progress in a few words.
     Ask(Vec<Task>, String),
 }
 
@@ -129,7 +129,7 @@ pub struct Work {
     pub run: fn(&Job) -> Result<Artifact, Failure>,
 }
 
-/// A task at the moment it runs: its inputs are there.
+/// A task that runs, with its inputs.
 pub struct Job<'a> {
     /// Parameters of the task.
     pub params: &'a Value,
@@ -139,18 +139,18 @@ pub struct Job<'a> {
     pub inputs: &'a [(String, Arc<Artifact>)],
     /// Files it reads.
     pub files: &'a [FileInput],
-    /// Threads it may use at present; results do not depend on it. Long work asks again and again.
+    /// Number of threads that it may use at present; results do not depend on it. Long work calls this repeatedly.
     pub threads: &'a (dyn Fn() -> usize + Sync),
     /// Seconds after which an external program is ended.
     pub time_limit: Option<f64>,
-    /// Takes reports of progress.
+    /// Receives reports of progress.
     pub say: &'a (dyn Fn(Progress) + Sync),
     /// Set when the run is interrupted.
     pub stop: &'a AtomicBool,
 }
 
 impl Job<'_> {
-    /// The parameters as the type they were made from.
+    /// The parameters in their type.
     ///
     /// # Errors
     /// They do not fit, which happens when a task text was written by hand.
@@ -183,35 +183,35 @@ impl Job<'_> {
         Ok(bytes)
     }
 
-    /// Whether the run is being interrupted; long work asks now and then and returns [`Failure::Stopped`].
+    /// Whether the run is being interrupted; long work checks this repeatedly and then returns [`Failure::Stopped`].
     pub fn stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Whether to stop, in the form in which the engine and the packing ask.
+    /// Whether to stop, in the form that engine and packing take.
     pub fn watch(&self) -> Watch {
         if self.stopped() { Watch::Stop } else { Watch::Threads((self.threads)()) }
     }
 }
 
-/// Where a task stands.
+/// The progress of a task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Progress {
     /// Part done, 0 to 1, when it is known.
     pub fraction: Option<f64>,
     /// A few words, such as `ε 0.12 %, σ 23.1 MPa`.
     pub note: String,
-    /// Whether the words warn of what the task begins or has made, and must stay to be read.
+    /// Whether the words are a warning, which must stay visible.
     pub warning: bool,
 }
 
 impl Progress {
-    /// A few words on where the task stands.
+    /// Progress in a few words.
     pub fn note(note: String) -> Self {
         Self { note, ..Self::default() }
     }
 
-    /// A warning before the result is used, given as early as it is known.
+    /// A warning on the result, sent as early as possible.
     pub fn warning(words: &dyn std::fmt::Display) -> Self {
         Self { note: words.to_string(), warning: true, ..Self::default() }
     }

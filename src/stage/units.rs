@@ -1,15 +1,15 @@
 //! The units in which people of the field read quantities that are stored in SI units.
 //!
-//! What the workflow declares (`[response.NAME]`, `[factor.NAME]`) is shown in the declared unit. Anything else in pascal
-//! gets the prefix that leaves one to three digits before the point, a length below a decimetre millimetres, a force from
-//! a thousand newtons kilonewtons.
+//! A response or factor is shown in the unit that the workflow declares (`[response.NAME]`, `[factor.NAME]`). Any other
+//! quantity in pascal gets the prefix that leaves one to three digits before the point; lengths below a decimetre are shown
+//! in millimetres, forces from a thousand newtons on in kilonewtons.
 
 use super::Context;
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::unit::Conversion;
 
-/// The unit in which a column is shown whose largest value is `largest` in `unit`.
+/// The unit of the field for a column whose largest value is `largest` in `unit`.
 pub(super) fn field_unit(unit: &str, largest: f64) -> String {
     let shown = match unit {
         "Pa" if (1e3..1e6).contains(&largest) => "kPa",
@@ -25,7 +25,7 @@ pub(super) fn field_unit(unit: &str, largest: f64) -> String {
     shown.to_owned()
 }
 
-/// The unit to show one quantity in: that which the workflow declares for it, or the field's.
+/// The unit in which a quantity is shown: the one that the workflow declares, or that of the field.
 pub(super) fn shown_unit(declared: Option<&String>, unit: &str, value: f64) -> String {
     match declared {
         Some(wanted) if Conversion::between(unit, wanted).is_ok() => wanted.clone(),
@@ -33,11 +33,11 @@ pub(super) fn shown_unit(declared: Option<&String>, unit: &str, value: f64) -> S
     }
 }
 
-/// A result as people read it: every column and every number of its groups in the declared unit or the field's. Arrays
-/// stay as they are stored, for programs. What a single run gave has its verdict beside it, as the rows of many have.
+/// A result in the units of readers: every column and every number of its groups in the declared unit or that of the field.
+/// Arrays stay as stored, for programs. The responses of a single run get the columns of validity that tables of runs have.
 #[must_use]
 pub fn presented(artifact: &Artifact, context: &Context) -> Artifact {
-    // printed tables and the numbers of figures are in the units of print already
+    // printed tables and the numbers of figures are in the units of readers already
     if artifact.is(ArtifactKind::PICTURE) || artifact.is(ArtifactKind::TABLE) {
         return artifact.clone();
     }

@@ -1,14 +1,14 @@
-//! Stages whose settings a factor sets: the same stage, read again with the value of the point in its table.
+//! Factors that set numbers of a stage: the stage is read again with the value of the point in its table.
 //!
 //! A factor may set any number of a stage that makes specimens or runs tests (`sets = "disc.radius_ratio"`: stage and
-//! key). A value is put where the file would have it, in the factor's unit, and the kind of stage reads its table anew; so
-//! a factor can set every number that the kind can read, with the same units, ranges and faults.
+//! key). The value is written into the table in the factor's unit, as a file would have it, and the kind of stage reads the
+//! table; so a factor can set every number that the kind can read, with the same units, ranges and faults.
 
 use super::{Context, Factor, Point, Stage, StageError, Task};
 use crate::unit::Unit;
 use serde_json::{Map, Value};
 
-/// The table of a stage as the file and its overrides have it.
+/// The table of a stage from the file and its overrides.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Template {
     /// Kind of the stage.
@@ -17,10 +17,10 @@ pub struct Template {
     pub table: Value,
 }
 
-/// The stage `name` with the settings that factors of the point have; none when no factor sets any of it.
+/// The stage `name` with the values that factors of the point set; `None` when no factor sets one of its values.
 ///
 /// # Errors
-/// A setting that the stage does not have or a value that it does not take.
+/// A factor sets a key that the stage does not have, or a value that it does not accept.
 pub fn varied(context: &Context, name: &str, point: &Point) -> Result<Option<Box<dyn Stage>>, StageError> {
     let mut set = Vec::new();
     for (factor, value) in point {
@@ -69,7 +69,7 @@ pub fn with_values(template: &Template, set: &[(&str, &Factor, f64)]) -> Result<
     read(template.kind, &table).map_err(StageError::new)
 }
 
-/// How a file would write a value of a factor: as a quantity, or as a number.
+/// A value of a factor as a file would write it: a quantity, or a number.
 fn forms(factor: &Factor, value: f64) -> Vec<Value> {
     let number =
         |value: f64| if value.fract() == 0.0 && value.abs() < 1e15 { (value as i64).into() } else { value.into() };
@@ -80,7 +80,7 @@ fn forms(factor: &Factor, value: f64) -> Vec<Value> {
     vec![Value::String(format!("{value} {}", factor.unit)), number(value * factor_of)]
 }
 
-/// Puts a value at a path of keys, whose tables are made where they are not there.
+/// Sets the value at a path of keys, and makes tables that are missing.
 fn put(table: &mut Value, path: &str, value: Value) -> Option<()> {
     let (first, rest) = path.split_once('.').map_or((path, None), |(first, rest)| (first, Some(rest)));
     let table = table.as_object_mut()?;
@@ -97,7 +97,7 @@ fn read(kind: &str, table: &Value) -> Result<Box<dyn Stage>, String> {
         .map_err(|e| e.to_string())
 }
 
-/// The task that tries a point on replicate `number` with the simulator `name`, its own settings varied by the point.
+/// The task that runs a point on replicate `number` with the simulator `name`, whose own settings the point may set.
 ///
 /// # Errors
 /// As [`Stage::sample`] and [`varied`].
@@ -108,8 +108,8 @@ pub fn sample(stage: &dyn Stage, known: &super::Known, point: &Point, number: u6
     }
 }
 
-/// The task that makes replicate `number` of the stage that knows `known`, with settings of the point; none when the point
-/// sets none of them.
+/// The task that makes replicate `number` of a stage with the settings of the point; `None` when the point sets none of
+/// them.
 ///
 /// # Errors
 /// As [`varied`]; or the stage has no replicates, or refuses its settings.

@@ -1,4 +1,4 @@
-//! `kind = "verify"`: the calibrated parameters on fresh specimens.
+//! `kind = "verify"`: runs of the calibrated parameters on new specimens.
 //!
 //! Every set of a `solution` is run on n specimens that no design or calibration has used. Per set and response, with
 //! the mean m and the standard deviation s (divisor n − 1) of the runs that gave a value and the target t:
@@ -15,9 +15,10 @@ use super::notes::short;
 use super::{
     Class, Complaint, Context, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work,
 };
+use crate::artifact::calibration::{Answer, Prediction, Solution, Summary, Verification, VerifiedRuns};
 use crate::artifact::results::{Results, Verdicts};
 use crate::artifact::validity::NotValid;
-use crate::artifact::{Accepts, Artifact, ArtifactKind, Field, Group, Node, Table};
+use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
 use math::distribution::t_for_coverage;
 use optim::misfit::Target;
 use schemars::JsonSchema;
@@ -34,19 +35,19 @@ pub struct Verify {
     pub solution: String,
     /// The stage whose simulation is run: its specimen, material and test.
     pub simulator: Option<String>,
-    /// Several such stages, as the calibration has them.
+    /// Several such stages, as in the calibration.
     #[serde(default)]
     pub simulators: Vec<String>,
-    /// The simulator that a response is taken from, when several give it; the first that does when not given.
+    /// The simulator that gives a response, when several do; by default the first that does.
     #[serde(default)]
     pub from: BTreeMap<String, String>,
-    /// Fresh specimens per set.
+    /// New specimens per set.
     #[serde(default = "five")]
     pub replicates: u64,
-    /// What `flow run` makes of targets that lie outside the interval of the mean.
+    /// What `flow run` does when a target lies outside the interval of the mean.
     #[serde(default)]
     pub unmet: Unmet,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
 }
@@ -55,10 +56,10 @@ fn five() -> u64 {
     5
 }
 
-/// More specimens of one set are a slip of the pen: 10,000 give a standard deviation to 0.7 %.
+/// Most specimens of one set: 10,000 give a standard deviation to 0.7 %, and more are a typing error.
 const MOST_SPECIMENS: u64 = 10_000;
 
-/// Replicates of a verification are numbered from here, above all that designs and calibrations use.
+/// First replicate of a verification, above all that designs and calibrations use.
 const FRESH: u64 = 1_000_001;
 
 /// Parameters of the work `verify`.
@@ -96,7 +97,7 @@ impl Stage for Verify {
         let sets = (ahead.behind)("solution").first().and_then(|solution| solution.rows);
         let replicates = usize::try_from(self.replicates).unwrap_or(usize::MAX);
         let simulators = || ["simulator", "simulators"].into_iter().flat_map(|port| (ahead.behind)(port));
-        // The sets share the specimens, and so may the simulators.
+        // The sets share the specimens, and the simulators may.
         let specimens: usize = simulators().map(|simulator| simulator.per_run - 1).sum();
         let tasks = |sets: usize| {
             let runs = replicates.saturating_mul(sets.saturating_mul(simulators().count()).saturating_add(specimens));
@@ -129,8 +130,7 @@ impl Stage for Verify {
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let input = known.one("solution")?;
-        let artifact = known.load(input)?;
-        let table = artifact.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
+        let table = Solution::from_artifact(&*known.load(input)?)?.solution.point;
         let factors: Vec<String> =
             table.columns.iter().map(|c| c.name.clone()).filter(|n| known.context.factors.contains_key(n)).collect();
         let simulators: Vec<&Input<'_>> = known.port("simulator").chain(known.port("simulators")).collect();
@@ -146,7 +146,7 @@ impl Stage for Verify {
             let unit = |name: &String| known.context.factors.get(name).map_or("", |factor| factor.unit.as_str());
             let value = |name: &String| Ok((name.clone(), table.numbers(name, unit(name))?[set]));
             let mut point = factors.iter().map(value).collect::<Result<Point, StageError>>()?;
-            // What other sets hold and this one does not.
+            // Factors that other sets hold and this one does not.
             point.retain(|_, value| value.is_finite());
             for replicate in 0..self.replicates {
                 let index = set * self.replicates as usize + replicate as usize;
@@ -163,11 +163,13 @@ impl Stage for Verify {
         if self.unmet != Unmet::Fail {
             return None;
         }
-        let table = result.table("summary")?;
-        let (responses, inside) = (table.texts("response").ok()?, table.texts("target_inside").ok()?);
-        let (sets, means) = (table.ints("set").ok()?, table.numbers("mean", "").ok()?);
-        let missed = |i: usize| format!("set {}: the mean of `{}` is {}", sets[i], responses[i], short(means[i]));
-        let missed: Vec<String> = (0..inside.len()).filter(|&i| inside[i] != "yes").map(missed).collect();
+        let found = Verification::from_artifact(result).ok()?.summary;
+        let missed = |i: usize| match found.mean[i].is_nan() {
+            true => format!("set {}: no run gave a value of `{}`", found.set[i], found.response[i]),
+            false => format!("set {}: the mean of `{}` is {}", found.set[i], found.response[i], short(found.mean[i])),
+        };
+        let missed: Vec<String> =
+            (0..found.set.len()).filter(|&i| found.target_inside[i] != Answer::Yes).map(missed).collect();
         (!missed.is_empty()).then(|| format!("{}, and the target is not in its interval", missed.join("; ")))
     }
 }
@@ -177,11 +179,11 @@ impl Kind for Verify {
     const ABOUT: &'static str = "calibrated parameters on fresh specimens";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::VERIFICATION];
     const CLASS: Class = Class::Calibration;
-    // 2: runs that are not valid are left out
-    const WORKS: &'static [Work] = &[Work { name: "verify", version: 2, run: verify }];
+    // 3: no deviation without two values. 2: runs that are not valid are left out
+    const WORKS: &'static [Work] = &[Work { name: "verify", version: 3, run: verify }];
 }
 
-/// One target and what its runs gave; NaN where a run failed.
+/// One target and the values of its runs; NaN where a run failed.
 struct Verified {
     set: i64,
     response: String,
@@ -196,7 +198,7 @@ impl Verified {
         (value - self.target.nearest(value)).abs()
     }
 
-    /// The wanted value that others are measured by: the target, or the end of the band that is nearest.
+    /// The reference of a deviation: the target, or the nearest end of its band.
     fn wanted(&self, value: f64) -> f64 {
         let nearest = self.target.nearest(value);
         if nearest == value { self.target.value() } else { nearest }
@@ -205,9 +207,10 @@ impl Verified {
 
 fn verify(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
-    let solution = job.input("solution")?;
+    let Solution { solution, prediction, .. } =
+        Solution::from_artifact(job.input("solution")?).map_err(StageError::from)?;
     let runs: Vec<&Artifact> = job.inputs.iter().filter(|(name, _)| name == "run").map(|(_, run)| &**run).collect();
-    let mut verified = targets(solution)?;
+    let mut verified = targets(&prediction);
     let (mut verdicts, mut reasons, mut any) = (Verdicts::default(), Vec::new(), false);
     for (i, runs) in runs.chunks(params.simulators.len()).enumerate() {
         let set = (i / params.replicates) as i64 + 1;
@@ -222,7 +225,7 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
             .into());
         }
         for one in verified.iter_mut().filter(|one| one.set == set) {
-            // Of a run that is left out the table of runs shows what it gave.
+            // The table of runs shows the values of a run that is left out too.
             one.values.push(match read_response(&runs, &params.from, (&one.response, &one.unit), Invalid::Keep)? {
                 Ok(value) => value,
                 Err(reason) => {
@@ -237,15 +240,19 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
     }
     let without = vec![String::new(); reasons.len()];
     verdicts.checked = any.then_some((reasons, without));
-    let table = run_table(&params, solution, &verified)?;
+    let table = run_table(&params, &solution.point, &verified)?;
     let runs = Results::of(table, verdicts).runs;
-    let not_valid = leave_out(&runs, &params, &mut verified)?;
-    let mut root = Group::new().with("summary", Node::Table(summary(&verified))).with("runs", Node::Table(runs));
-    not_valid.some().put(&mut root, "not_valid", "", "");
-    Ok(Artifact::of(ArtifactKind::VERIFICATION, root))
+    let not_valid = leave_out(&runs, &params, &mut verified)?.some();
+    let rows = 0..runs.rows();
+    let runs = VerifiedRuns {
+        set: rows.clone().map(|row| (row / params.replicates) as i64 + 1).collect(),
+        specimen: rows.map(|row| row % params.replicates + 1).collect(),
+        runs,
+    };
+    Ok(Verification { summary: summary(&verified), runs, not_valid }.to_artifact())
 }
 
-/// Lists the runs that are not valid, and takes the values of those that are left out.
+/// Lists the runs that are not valid, and removes the values of those that are left out.
 fn leave_out(runs: &Table, params: &Params, verified: &mut [Verified]) -> Result<NotValid, StageError> {
     let judged = params.invalid.judge(runs)?;
     let mut list = NotValid::default();
@@ -264,81 +271,62 @@ fn leave_out(runs: &Table, params: &Params, verified: &mut [Verified]) -> Result
     Ok(list)
 }
 
-/// The targets of all sets, from the solution's table `prediction`.
-fn targets(solution: &Artifact) -> Result<Vec<Verified>, StageError> {
-    let wrong = || StageError::new("the solution holds no table `prediction` with the targets");
-    let table = solution.table("prediction").ok_or_else(wrong)?;
-    let (sets, values) = (table.ints("set")?, table.numbers("target", "")?);
-    let end = |name: &str, open: f64| match table.numbers(name, "") {
-        Ok(ends) => ends.into_iter().map(|end| if end.is_nan() { open } else { end }).collect(),
-        Err(_) => values.clone(),
-    };
-    let (low, high): (Vec<f64>, Vec<f64>) = (end("at_least", f64::NEG_INFINITY), end("at_most", f64::INFINITY));
-    let targets: Vec<[f64; 2]> = low.into_iter().zip(high).map(|(low, high)| [low, high]).collect();
-    let names = table.texts("response")?.iter().zip(table.texts("unit")?);
-    let one = |((&set, &ends), (response, unit)): ((&i64, &[f64; 2]), (&String, &String))| Verified {
-        set,
-        response: response.clone(),
-        unit: unit.clone(),
-        target: Target::band(response, ends, 1.0),
+/// The targets of all sets.
+fn targets(prediction: &Prediction) -> Vec<Verified> {
+    let one = |(row, ends): (usize, [f64; 2])| Verified {
+        set: prediction.set[row],
+        response: prediction.response[row].clone(),
+        unit: prediction.unit[row].clone(),
+        target: Target::band(&prediction.response[row], ends, 1.0),
         values: Vec::new(),
     };
-    Ok(sets.iter().zip(&targets).zip(names).map(one).collect())
+    prediction.bands().into_iter().enumerate().map(one).collect()
 }
 
-/// Mean, standard deviation and half the 95 % interval of the mean of the values there are, and their number.
+/// Mean, standard deviation, half the 95 % interval of the mean, and number of the values that are not missing.
 fn moments(values: &[f64]) -> (f64, f64, f64, usize) {
     let there: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let n = there.len() as f64;
     let mean = there.iter().sum::<f64>() / n;
+    if there.len() < 2 {
+        return (mean, f64::NAN, f64::NAN, there.len());
+    }
     let deviation = (there.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)).sqrt();
-    let half = if there.len() > 1 { t_for_coverage(0.95, n - 1.0) * deviation / n.sqrt() } else { f64::NAN };
-    (mean, deviation, half, there.len())
+    (mean, deviation, t_for_coverage(0.95, n - 1.0) * deviation / n.sqrt(), there.len())
 }
 
-fn summary(verified: &[Verified]) -> Table {
+fn summary(verified: &[Verified]) -> Summary {
     let moments: Vec<_> = verified.iter().map(|one| moments(&one.values)).collect();
     let all: Vec<_> = verified.iter().zip(&moments).collect();
     type Row<'a> = (&'a Verified, &'a (f64, f64, f64, usize));
-    let reals = |pick: fn(&Row) -> f64| all.iter().map(pick).collect::<Vec<_>>();
-    let inside = |(one, (mean, _, half, _)): &Row| {
-        let inside = one.off(*mean) <= *half;
-        let known = if inside { "yes" } else { "no" };
-        if half.is_nan() { "unknown".to_owned() } else { known.to_owned() }
+    let reals = |pick: fn(&Row) -> f64| all.iter().map(pick).collect();
+    let inside = |(one, (mean, _, half, _)): &Row| match one.off(*mean) <= *half {
+        _ if half.is_nan() => Answer::Unknown,
+        true => Answer::Yes,
+        false => Answer::No,
     };
-    Table { about: "calibrated sets on fresh specimens".to_owned(), columns: Vec::new() }
-        .ints_column("set", "target set, from 1", verified.iter().map(|one| one.set).collect())
-        .texts_column("response", "", verified.iter().map(|one| one.response.clone()).collect())
-        .texts_column("unit", "of the numbers beside it", verified.iter().map(|one| one.unit.clone()).collect())
-        .reals_column("target", "", "wanted", reals(|(one, _)| one.target.value()))
-        .reals_column("mean", "", "of the runs", reals(|(_, m)| m.0))
-        .reals_column("std", "", "standard deviation of a run", reals(|(_, m)| m.1))
-        .reals_column("cv_percent", "", "standard deviation over mean", reals(|(_, m)| 100.0 * m.1 / m.0.abs()))
-        .reals_column(
-            "relative_error_percent",
-            "",
-            "of the mean against the target",
-            reals(|(one, m)| 100.0 * one.off(m.0) / one.wanted(m.0).abs()),
-        )
-        .reals_column(
-            "error_of_mean_percent",
-            "",
-            "the same difference against the mean",
-            reals(|(one, m)| 100.0 * one.off(m.0) / m.0.abs()),
-        )
-        .reals_column("low", "", "lower end of the 95 % interval of the mean", reals(|(_, m)| m.0 - m.2))
-        .reals_column("high", "", "upper end", reals(|(_, m)| m.0 + m.2))
-        .texts_column("target_inside", "whether the interval holds the target", all.iter().map(inside).collect())
-        .ints_column("n", "runs with a value", moments.iter().map(|m| m.3 as i64).collect())
+    Summary {
+        set: verified.iter().map(|one| one.set).collect(),
+        response: verified.iter().map(|one| one.response.clone()).collect(),
+        unit: verified.iter().map(|one| one.unit.clone()).collect(),
+        target: reals(|(one, _)| one.target.value()),
+        mean: reals(|(_, m)| m.0),
+        std: reals(|(_, m)| m.1),
+        cv_percent: reals(|(_, m)| 100.0 * m.1 / m.0.abs()),
+        relative_error_percent: reals(|(one, m)| 100.0 * one.off(m.0) / one.wanted(m.0).abs()),
+        error_of_mean_percent: reals(|(one, m)| 100.0 * one.off(m.0) / m.0.abs()),
+        low: reals(|(_, m)| m.0 - m.2),
+        high: reals(|(_, m)| m.0 + m.2),
+        target_inside: all.iter().map(inside).collect(),
+        n: moments.iter().map(|m| m.3).collect(),
+    }
 }
 
-fn run_table(params: &Params, solution: &Artifact, verified: &[Verified]) -> Result<Table, StageError> {
-    let source = solution.table("solution").ok_or_else(|| StageError::new("there is no table `solution`"))?;
+/// The columns of factors and responses, a row for every set and specimen.
+fn run_table(params: &Params, source: &Table, verified: &[Verified]) -> Result<Table, StageError> {
     let n = params.replicates;
     let rows = 0..n * verified.iter().map(|one| one.set as usize).max().unwrap_or(0);
-    let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() }
-        .ints_column("set", "target set, from 1", rows.clone().map(|i| (i / n) as i64 + 1).collect())
-        .ints_column("specimen", "counted from 1", rows.clone().map(|i| (i % n) as i64 + 1).collect());
+    let mut table = Table::default();
     for name in &params.factors {
         let (values, unit) = source.shown(name)?;
         table = table.reals_column(name, unit, "", rows.clone().map(|i| values[i / n]).collect());
@@ -370,5 +358,14 @@ mod tests {
         assert!((mean - 30.0).abs() < 1e-12);
         assert!((deviation - 0.815_475_321_515_004_8).abs() < 1e-12, "{deviation}");
         assert!((half - 1.012_546_348_148_820_8).abs() < 1e-9, "{half}");
+    }
+
+    /// What is not known is no zero.
+    #[test]
+    fn fewer_than_two_values_have_no_deviation() {
+        for values in [&[][..], &[f64::NAN], &[3.0], &[3.0, f64::NAN]] {
+            let (_, deviation, half, n) = moments(values);
+            assert!(deviation.is_nan() && half.is_nan() && n < 2, "{values:?}");
+        }
     }
 }

@@ -18,7 +18,7 @@
 use super::columns::{Column, Matrix, Part};
 use super::diagnostics::{Residual, residuals};
 use super::error::{Fault, Faults};
-use super::fit::{Fit, PureError, Solution, is_small, ratio, squares_about_mean};
+use super::fit::{Fit, PureError, Solution, in_pairs, ratio, squares_about_mean};
 use super::number::{Real, Twofold};
 use super::range::level_faults;
 use super::sample::{Sample, Usable};
@@ -222,7 +222,7 @@ impl Job<'_> {
         if rows < columns {
             return Err(vec![Fault::TooFewRows { response, rows, missing, terms: columns }]);
         }
-        if is_small(rows, columns) { self.fit_in::<Twofold>(layout) } else { self.fit_in::<f64>(layout) }
+        if in_pairs(self.usable, columns) { self.fit_in::<Twofold>(layout) } else { self.fit_in::<f64>(layout) }
     }
 
     fn fit_in<T: Real>(&self, layout: &Layout) -> Result<Anova, Vec<Fault>> {

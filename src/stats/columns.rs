@@ -57,6 +57,14 @@ impl<'a> Matrix<'a> {
         if self.weighted { T::from(self.sample.weight(self.usable.rows[i])).sqrt() } else { T::from(1.0) }
     }
 
+    /// The sum of squares that the rounding of the responses can leave of an exact fit: two units in the last digit of the
+    /// largest, in every row.
+    pub(crate) fn rounding<T: Real>(&self) -> T {
+        let unit = T::from(2.0 * self.usable.last_digit());
+        let weights = self.usable.rows.iter().map(|&row| T::from(self.sample.weight(row)));
+        weights.fold(T::zero(), |sum, weight| sum + weight) * unit * unit
+    }
+
     fn multiply<T: Real>(&self, part: &Part, rows: Range<usize>, column: &mut [T]) {
         match *part {
             Part::Power { factor, power, centre, half } => {

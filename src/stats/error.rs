@@ -43,6 +43,21 @@ pub enum Fault {
         /// Its largest value, or its spread.
         size: String,
     },
+    /// The values of a response have almost all their digits in common.
+    #[error(
+        "`{response}` has values of the size {size} that differ by at most {spread}: {lost} of the 16 digits of a number are \
+         lost in what they have in common, and the rest is rounding; subtract a constant before the values are written"
+    )]
+    DigitsLost {
+        /// The response.
+        response: String,
+        /// Its largest value.
+        size: String,
+        /// Largest value minus smallest.
+        spread: f64,
+        /// Digits in common.
+        lost: String,
+    },
     /// A value is none of the declared levels of its factor.
     #[error(
         "row {row}: `{factor}` is {}, which is none of its levels {}; correct the row or add the level",

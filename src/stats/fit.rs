@@ -19,9 +19,14 @@ use serde::{Deserialize, Serialize};
 /// A table is computed in 31 digits as long as rows × columns² stays below this (some tens of milliseconds).
 const SMALL: usize = 2_000_000;
 
-/// Whether a fit of that size is computed in pairs of doubles.
-pub(crate) fn is_small(rows: usize, columns: usize) -> bool {
-    rows.saturating_mul(columns).saturating_mul(columns) <= SMALL
+/// Responses whose spread is below this share of their size are computed in 31 digits however large the table is: in
+/// doubles the reduction itself would cost as many digits as the responses have in common.
+const CLOSE: f64 = 1e-6;
+
+/// Whether a fit is computed in pairs of doubles.
+pub(crate) fn in_pairs(usable: &Usable, columns: usize) -> bool {
+    let small = usable.rows.len().saturating_mul(columns).saturating_mul(columns) <= SMALL;
+    small || usable.spread() < CLOSE * usable.largest()
 }
 
 /// A reduced table and its solution.
@@ -36,6 +41,8 @@ pub(crate) struct Solution<T> {
     pub constant: bool,
     /// Usable rows.
     pub rows: usize,
+    /// The sum of squares that rounding alone can leave of an exact fit.
+    rounding: T,
 }
 
 impl<T: Real> Solution<T> {
@@ -48,13 +55,14 @@ impl<T: Real> Solution<T> {
             return Err(faults);
         }
         let constant = matrix.columns.first().is_some_and(Vec::is_empty);
-        Ok(Self::solved(triangle, constant, super::triangle::Blocks::<T>::rows(matrix)))
+        Ok(Self::solved(triangle, constant, super::triangle::Blocks::<T>::rows(matrix), matrix.rounding()))
     }
 
     /// The solution of a reduced table of full rank.
-    pub(crate) fn solved(triangle: Triangle<T>, constant: bool, rows: usize) -> Self {
+    fn solved(triangle: Triangle<T>, constant: bool, rows: usize, rounding: T) -> Self {
         let terms = triangle.width() - 1;
-        Self { coefficients: triangle.solve(terms, terms), inverse: triangle.inverse(terms), constant, rows, triangle }
+        let (coefficients, inverse) = (triangle.solve(terms, terms), triangle.inverse(terms));
+        Self { coefficients, inverse, constant, rows, rounding, triangle }
     }
 
     /// The same response on fewer columns.
@@ -62,7 +70,7 @@ impl<T: Real> Solution<T> {
         let mut independent = columns.to_vec();
         independent.push(self.terms());
         let constant = self.constant && columns.first() == Some(&0);
-        Self::solved(self.triangle.with_columns(&independent), constant, self.rows)
+        Self::solved(self.triangle.with_columns(&independent), constant, self.rows, self.rounding)
     }
 
     /// Number of coefficients.
@@ -85,7 +93,7 @@ impl<T: Real> Solution<T> {
     /// Whether a sum of squares is more than the rounding of the responses.
     pub(crate) fn is_something(&self, squares: T) -> bool {
         let last = self.triangle.at(self.terms(), self.terms());
-        squares > T::from(T::EXACT * T::EXACT) * (self.squares(0, self.terms()) + last * last)
+        squares > self.rounding + T::from(T::EXACT * T::EXACT) * (self.squares(0, self.terms()) + last * last)
     }
 
     /// Sum of squares that the columns `from..to` add to those before them.

@@ -26,8 +26,8 @@ pub(crate) trait Real:
     /// A column whose part outside the earlier ones is smaller than this share of it counts as dependent on them.
     const DEPENDENT: f64;
 
-    /// A residual smaller than this share of the response is what rounding leaves of an exact fit: responses are
-    /// doubles, known to 10⁻¹⁶.
+    /// A residual smaller than this share of the response is what this arithmetic leaves of an exact fit. The rounding
+    /// of the responses themselves comes on top of it.
     const EXACT: f64;
 
     /// Rounded to a double.
@@ -196,7 +196,7 @@ impl Div for Twofold {
 
 impl Real for Twofold {
     const DEPENDENT: f64 = 1e-13;
-    const EXACT: f64 = 1e-15;
+    const EXACT: f64 = 1e-26;
 
     fn value(self) -> f64 {
         self.high + self.low

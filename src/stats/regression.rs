@@ -20,7 +20,7 @@ use super::categories::spread;
 use super::columns::{Column, Matrix, Part};
 use super::diagnostics::{Residual, residuals};
 use super::error::{Fault, Faults};
-use super::fit::{Estimate, Fit, PureError, Solution, is_small, squares_about_mean};
+use super::fit::{Estimate, Fit, PureError, Solution, in_pairs, squares_about_mean};
 use super::model::{Axis, Model};
 use super::number::{Real, Twofold};
 use super::sample::{Sample, Usable};
@@ -102,8 +102,7 @@ pub fn regress(sample: &Sample, response: &str, terms: &[Term], settings: &Setti
     }
     Faults::none_in(faults)?;
     let job = Job { sample, natural, usable: &usable, response, settings };
-    let fitted =
-        if is_small(usable.rows.len(), terms.len()) { job.fit::<Twofold>(terms) } else { job.fit::<f64>(terms) };
+    let fitted = if in_pairs(&usable, terms.len()) { job.fit::<Twofold>(terms) } else { job.fit::<f64>(terms) };
     fitted.map_err(Faults)
 }
 
@@ -152,8 +151,12 @@ fn without_logarithm(sample: &Sample, usable: &Usable, terms: &[Term]) -> Vec<Fa
     used_factors(sample, terms).iter().filter_map(first).collect()
 }
 
-/// Factors of the model that never change in the usable rows.
+/// Factors of the model that never change in the usable rows. Through the origin one level gives a slope: what is
+/// proportional needs no second one, and two such factors are aliased.
 fn flat_factors(sample: &Sample, usable: &Usable, terms: &[Term]) -> Vec<Fault> {
+    if terms.iter().all(|term| term.degree() > 0) {
+        return Vec::new();
+    }
     let flat = |&f: &usize| {
         let factor = &sample.factors[f];
         let mut values = usable.rows.iter().map(|&row| factor.values[row]);

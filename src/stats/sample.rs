@@ -107,6 +107,28 @@ pub(crate) struct Usable {
     pub missing: usize,
 }
 
+impl Usable {
+    /// The largest value by size.
+    pub(crate) fn largest(&self) -> f64 {
+        self.values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+    }
+
+    /// Largest value minus smallest.
+    pub(crate) fn spread(&self) -> f64 {
+        let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
+        self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+    }
+
+    /// One unit in the last digit of the largest value: doubles between it and the next one do not exist.
+    pub(crate) fn last_digit(&self) -> f64 {
+        let largest = self.largest();
+        largest.next_up() - largest
+    }
+}
+
+/// Fewer units of the last digit than this between the smallest and the largest response are no spread to analyse.
+const FEWEST_UNITS: f64 = 16.0;
+
 impl Sample {
     /// Number of rows.
     pub fn rows(&self) -> usize {
@@ -204,7 +226,7 @@ impl Sample {
         Usable { missing: all.len() - rows.len(), rows, values }
     }
 
-    /// A constant response or a table without rows.
+    /// A table without enough rows, a constant response, or one whose differences are but its rounding.
     pub(crate) fn check_response(&self, response: usize, usable: &Usable, terms: usize) -> Option<Fault> {
         let name = self.responses[response].name.clone();
         let (rows, missing) = (usable.rows.len(), usable.missing);
@@ -213,7 +235,14 @@ impl Sample {
         }
         let value = usable.values[0];
         let constant = usable.values.iter().all(|&v| v == value);
-        constant.then_some(Fault::ConstantResponse { response: name, value, rows })
+        if constant {
+            return Some(Fault::ConstantResponse { response: name, value, rows });
+        }
+        let (largest, spread) = (usable.largest(), usable.spread());
+        (spread < FEWEST_UNITS * usable.last_digit()).then(|| {
+            let lost = math::elementary::log10(largest / spread);
+            Fault::DigitsLost { response: name, size: format!("{largest:.0e}"), spread, lost: format!("{lost:.1}") }
+        })
     }
 
     /// The weight of a row.

@@ -1,4 +1,4 @@
-//! Artifacts lately read or written, so that a result with many readers is read once.
+//! Artifacts that were read or written recently, so that a result with many readers is read once.
 
 use crate::artifact::{Artifact, ContentHash};
 use std::collections::HashMap;
@@ -9,7 +9,8 @@ const ROOM: usize = 64 << 20;
 /// What the names, units and tables of an artifact take beside its values, about, bytes.
 const AROUND: usize = 2 << 10;
 
-/// Two generations: what is used moves to the young one; when that is full it becomes the old one, and the old goes.
+/// Two generations: an artifact that is used moves to the young one. When that is full it becomes the old one, and the
+/// artifacts of the old one are dropped.
 #[derive(Default)]
 pub(super) struct Cache {
     young: HashMap<ContentHash, Arc<Artifact>>,
@@ -28,7 +29,7 @@ impl Cache {
     }
 
     pub(super) fn put(&mut self, content: ContentHash, artifact: Arc<Artifact>) {
-        // What takes more than a generation would push out everything else.
+        // An artifact larger than a generation would displace all others.
         let bytes = artifact.bytes() + AROUND;
         if bytes > ROOM / 2 {
             return;

@@ -1,4 +1,5 @@
-//! Records of campaigns: what ran, when, where and by what, for `flow diff` and for a person who reads the file.
+//! Records of campaigns: what ran, when, on which machine and by which version, for `flow diff` and for a person who reads
+//! the file.
 //!
 //! Each campaign leaves one JSON file `runs/N.json`, numbered in the order in which they ended, with the user's mark in it.
 
@@ -11,16 +12,16 @@ use std::io::ErrorKind;
 
 /// Folder of the records.
 pub(super) const FOLDER: &str = "runs";
-/// The largest record of a run.
+/// The largest record of a campaign, bytes.
 const MOST: u64 = 1 << 28;
 
 /// One run of a workflow.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Campaign {
-    /// Number in this store, from 1; given when it is recorded.
+    /// Number in this store, from 1; assigned when the campaign is recorded.
     #[serde(skip)]
     pub number: u64,
-    /// The workflow file, as it was named.
+    /// The path of the workflow file, as the user typed it.
     pub workflow: String,
     /// The profile, `""` for none.
     pub profile: String,
@@ -30,19 +31,19 @@ pub struct Campaign {
     pub started: i64,
     /// Duration, seconds.
     pub seconds: f64,
-    /// Where and by what it ran.
+    /// Machine, version and commit.
     pub origin: Origin,
     /// Its stages in the order of the workflow.
     pub stages: Vec<StageRun>,
-    /// The mark of who recorded it, over all else.
+    /// The mark of the user who recorded it, taken over all other fields.
     #[serde(default)]
     pub mark: String,
-    /// Whether that is this user, and nothing was changed since.
+    /// Whether this user recorded it and nothing was changed since.
     #[serde(skip)]
     pub own: bool,
 }
 
-/// What became of a stage in one run.
+/// The outcome of a stage in one run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StageRun {
     /// Name in the workflow.
@@ -88,7 +89,7 @@ fn number(name: &str) -> Option<u64> {
 
 /// Whether a file among the records is one that flow wrote.
 pub(super) fn is_ours(folder: &Folder, name: &str) -> bool {
-    number(name).is_some() && super::memo::begins_with(folder, name, b"{\n  \"workflow\": ")
+    number(name).is_some() && folder.begins_with(name, b"{\n  \"workflow\": ")
 }
 
 /// Records a campaign under the next free number, which is returned.
@@ -116,7 +117,7 @@ fn with_mark(text: &str, old: &str, new: &str) -> String {
     text.strip_suffix(&field(old)).map_or_else(String::new, |body| body.to_owned() + &field(new))
 }
 
-/// The campaign with this number; nothing when there is none or its file is not readable.
+/// The campaign with this number; `None` when there is none or its file cannot be read.
 pub(super) fn read(disk: &Disk, mark: &Mark, number: u64) -> Result<Option<Campaign>, StoreError> {
     let name = format!("{number}.json");
     let bytes = match disk.folder(FOLDER).and_then(|folder| folder.read(&name, MOST)) {

@@ -1,4 +1,4 @@
-//! Who computes a task: one caller of all that share the store.
+//! Claims: of all processes that share the store, one computes a task.
 
 use super::{Guard, Record, Store, StoreError, Waiting, lock};
 use crate::artifact::Key;
@@ -15,7 +15,8 @@ pub enum Claim {
 }
 
 impl Store {
-    /// Claims a task: the caller's to compute, somebody else's, or finished by somebody else in the meantime.
+    /// Claims a task. The answer says whether the caller computes it, another process does, or it has been finished in the
+    /// meantime.
     ///
     /// # Errors
     /// The lock cannot be made or the journals cannot be read.
@@ -23,7 +24,7 @@ impl Store {
         self.claimed(key, false)
     }
 
-    /// Claims a task although it may be finished: its new result counts from then on.
+    /// Claims a task although it may be finished; the new result replaces the earlier one.
     ///
     /// # Errors
     /// As [`Store::claim`].
@@ -35,7 +36,7 @@ impl Store {
         match lock::take(&self.disk, &key.to_string(), &self.machine)? {
             lock::Taken::Theirs(waiting) => Ok(Claim::Theirs(waiting)),
             lock::Taken::Mine(guard) => {
-                // Its last holder recorded the result before it let go.
+                // Its last holder recorded the result before it released the lock.
                 self.refresh()?;
                 let found = if again { None } else { self.find(key)? };
                 Ok(found.map_or(Claim::Mine(guard), Claim::Done))

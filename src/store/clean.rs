@@ -1,24 +1,23 @@
-//! Keeping the store in order: what may go, what it takes.
+//! Garbage collection: what may be removed, and the room that the store takes.
 //!
-//! Only what flow has written is touched: a plain file of a name that flow gives, in a folder that flow makes, that begins
-//! as flow's files do. Folders are reached without links, so nothing outside of the store is reached at all.
+//! Only files that flow has written are removed: plain files with a name that flow gives, in a folder that flow makes, that
+//! begin as flow's files do. Folders are opened without following links, so nothing outside of the store can be reached.
 //!
 //! Nothing is removed from a store that another process uses: every process shares a lock while it has the store open,
-//! and gc wants it alone. Where the file system has no locks, objects younger than a day are kept.
+//! and gc takes that lock exclusively. Where the file system has no locks, objects younger than a day stay.
 
-use super::disk::{Disk, is_temporary};
-use super::folder::{Entry, Folder};
+use super::disk::is_temporary;
 use super::presence::{self, short_of_name};
-use super::{Store, StoreError, journal, lock, locked, memo, object, queue, root, verify};
+use super::{Store, StoreError, contents, journal, lock, locked, memo, object, queue};
 use crate::artifact::Key;
 use std::collections::HashSet;
 
-/// Files of one sort: how many, and their size together.
+/// Number and total size of files of one sort.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Amount {
-    /// How many.
+    /// Number of files.
     pub files: u64,
-    /// Their size together, bytes.
+    /// Total size, bytes.
     pub bytes: u64,
 }
 
@@ -29,7 +28,7 @@ impl Amount {
     }
 }
 
-/// What the store takes on the disk.
+/// Disk space that the store takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Usage {
     /// Results.
@@ -46,54 +45,32 @@ pub struct Usage {
     pub runs: Amount,
 }
 
-/// What gc removed, or would remove.
+/// Files that gc removed, or would remove.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Swept {
     /// Results that are reachable.
     pub kept: Amount,
-    /// Results that are not, and old memos.
+    /// Results that are not.
     pub removed: Amount,
+    /// Memos that rest on results that are not.
+    pub memos: Amount,
     /// Damaged files, and leftovers of processes that were killed.
     pub rubbish: Amount,
     /// Journal segments before.
     pub segments: u64,
 }
 
-/// Something that lies in the store.
-pub(super) struct Place<'a> {
-    /// Its folder, open.
-    pub(super) at: &'a Folder,
-    /// The folder below the root.
-    pub(super) folder: &'a str,
-    pub(super) name: &'a str,
-    pub(super) entry: Entry,
-}
-
-impl Place<'_> {
-    /// Whether flow has written it.
-    pub(super) fn is_ours(&self) -> bool {
-        verify::is_ours(self)
-    }
-
-    fn bytes(&self) -> u64 {
-        match self.entry {
-            Entry::File(bytes) => bytes,
-            Entry::Folder | Entry::Strange => 0,
-        }
-    }
-}
-
-/// Objects that were written this many seconds ago may belong to a run that goes on, where no lock tells.
+/// Where no lock shows it, objects that were written less than this many seconds ago may belong to a process that still runs.
 const GRACE: i64 = 86_400;
 
 impl Store {
-    /// What the store takes on the disk, of what flow has written.
+    /// Disk space that the files of flow take in the store.
     ///
     /// # Errors
     /// The store cannot be listed.
     pub fn usage(&self) -> Result<Usage, StoreError> {
         let mut usage = Usage::default();
-        walk(&self.disk, &mut |place| {
+        contents::walk(&self.disk, &mut |place| {
             if !place.is_ours() {
                 return;
             }
@@ -112,7 +89,7 @@ impl Store {
     }
 
     /// Removes the results of all tasks that are not in `reachable`, memos that rest on them, damaged files and
-    /// leftovers, and merges the journal. Without `really` it only says what it would remove.
+    /// leftovers, and merges the journal. Without `really` it removes nothing and returns what it would remove.
     ///
     /// # Errors
     /// [`StoreError::InUse`] when another process has the store open; the store cannot be read or written.
@@ -137,13 +114,13 @@ impl Store {
         let mut doomed: Vec<(String, String)> = Vec::new();
         // Names hold the first bytes of a key: an object goes only if no reachable key begins like that.
         let starts: HashSet<u64> = reachable.iter().map(|key| presence::first_word(&key.0)).collect();
-        // By the clock of the file system, on which the objects have their times.
+        // By the clock of the file system, as the times of the objects are.
         let now = if grace { self.disk.draft("", 0o444)?.file_time() } else { None };
-        let is_young = |place: &Place<'_>| {
+        let is_young = |place: &contents::Place<'_>| {
             let age = now.zip(place.at.modified(place.name)).map(|(now, written)| now.saturating_sub(written));
             grace && age.is_none_or(|age| age < GRACE)
         };
-        walk(&self.disk, &mut |place| {
+        contents::walk(&self.disk, &mut |place| {
             if !place.is_ours() {
                 return;
             }
@@ -154,7 +131,7 @@ impl Store {
                     _ => return swept.kept.add(place.bytes()),
                 },
                 object::ASIDE | lock::FOLDER | queue::FOLDER => &mut swept.rubbish,
-                memo::FOLDER if !self.memo_is_reachable(&place, reachable) => &mut swept.removed,
+                memo::FOLDER if !self.memo_is_reachable(&place, reachable) => &mut swept.memos,
                 journal::FOLDER => {
                     swept.segments += 1;
                     return;
@@ -175,7 +152,7 @@ impl Store {
     }
 
     /// Merges all segments into one per origin, without the records whose objects are gone. The new segments are
-    /// whole before the old ones go, so a kill in between costs nothing: a record that stands twice counts once.
+    /// complete before the old ones are removed, so a kill in between loses nothing: a record that stands twice counts once.
     fn compact(&self) -> Result<(), StoreError> {
         let mut segments = locked(&self.segments);
         let mut index = self.new_index();
@@ -198,8 +175,8 @@ impl Store {
         Ok(())
     }
 
-    /// Whether all that a memo rests on stays; another user's memo stays, because only that user can read it.
-    fn memo_is_reachable(&self, place: &Place<'_>, reachable: &HashSet<Key>) -> bool {
+    /// Whether all objects that a memo names stay. Another user's memo stays, because only that user can read it.
+    fn memo_is_reachable(&self, place: &contents::Place<'_>, reachable: &HashSet<Key>) -> bool {
         if !place.name.ends_with(&format!("-{}", self.mark.name())) {
             return place.name.contains('-');
         }
@@ -207,28 +184,4 @@ impl Store {
         let memo = memo.and_then(|(key, bytes)| memo::unpack(&self.mark, &key, &bytes));
         memo.is_some_and(|memo| memo.objects.iter().all(|object| reachable.contains(&object.key)))
     }
-}
-
-/// Calls `visit` with all that lies in the folders that flow makes; other folders are not entered.
-pub(super) fn walk(disk: &Disk, visit: &mut impl FnMut(Place<'_>)) -> Result<(), StoreError> {
-    let fail = |error| disk.fail("list", &disk.root, error);
-    enter(&disk.folder("").map_err(fail)?, "", visit).map_err(fail)
-}
-
-fn enter(at: &Folder, folder: &str, visit: &mut impl FnMut(Place<'_>)) -> std::io::Result<()> {
-    let mut names = Vec::new();
-    at.list(|name, _| names.push(name.to_owned()))?;
-    names.sort_unstable();
-    for name in names {
-        let Ok(entry) = at.entry(&name) else { continue };
-        if entry == Entry::Folder && root::is_folder(folder, &name) {
-            let inside = if folder.is_empty() { name } else { format!("{folder}/{name}") };
-            if let Ok(inner) = at.inner(inside.rsplit('/').next().unwrap_or_default()) {
-                enter(&inner, &inside, visit)?;
-            }
-        } else {
-            visit(Place { at, folder, name: &name, entry });
-        }
-    }
-    Ok(())
 }

@@ -16,7 +16,7 @@ pub(super) struct Disk {
     pub(super) read_only: bool,
 }
 
-/// A new file that has no name of its own yet; dropped, it goes.
+/// A new file under a temporary name; it is removed when dropped.
 #[derive(Debug)]
 pub(super) struct Draft {
     pub(super) folder: Folder,
@@ -26,7 +26,7 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Gives it a name in its folder that nothing has; an error of kind `AlreadyExists` when something has.
+    /// Gives it its name in its folder; an error of kind `AlreadyExists` when the name is taken.
     pub(super) fn persist_new(&mut self, name: &str) -> std::io::Result<()> {
         self.folder.rename_new(&self.name, &self.folder, name)?;
         self.named = true;
@@ -59,7 +59,7 @@ impl Drop for Draft {
 }
 
 impl Disk {
-    /// The path of what a folder of the store holds under a name.
+    /// The path of the file called `name` in a folder of the store.
     pub(super) fn path(&self, folder: &str, name: &str) -> PathBuf {
         self.root.join(folder).join(name)
     }
@@ -75,7 +75,7 @@ impl Disk {
         inside.split('/').filter(|part| !part.is_empty()).try_fold(root, |folder, part| folder.inner(part))
     }
 
-    /// The same, or nothing when there is none.
+    /// As [`Disk::folder`], but `None` when there is no such folder.
     pub(super) fn find_folder(&self, inside: &str) -> Result<Option<Folder>, StoreError> {
         match self.folder(inside) {
             Ok(folder) => Ok(Some(folder)),
@@ -84,7 +84,7 @@ impl Disk {
         }
     }
 
-    /// The same, made when there is none; a store that has vanished is not made anew.
+    /// As [`Disk::folder`], but makes the folder when there is none; a store that has vanished is not made anew.
     pub(super) fn make_folder(&self, inside: &str) -> Result<Folder, StoreError> {
         match self.folder(inside) {
             Err(error) if error.kind() == ErrorKind::NotFound => {}
@@ -116,7 +116,7 @@ impl Disk {
     }
 
     /// As [`Disk::write_new`], but into a file that is open and has the name `draft`; the new name becomes its second.
-    /// Nothing when that file has lost its name, or cannot get a second one: then it is to be written anew.
+    /// `None` when that file has lost its name or cannot get a second one: the caller writes a new file then.
     pub(super) fn link_new(
         &self,
         draft: (&Folder, &str, &mut File),
@@ -126,7 +126,7 @@ impl Disk {
     ) -> Result<Option<bool>, StoreError> {
         let (at, draft, file) = draft;
         let path = self.path(folder, name);
-        // What stands there is shorter than any image as a rule, and cutting a file costs more than asking for its size.
+        // The claim in the file is shorter than almost any image, and truncating a file costs more than asking for its size.
         let size = bytes.len() as u64;
         let longer = file.metadata().is_ok_and(|data| data.len() > size);
         let cut = if longer { file.set_len(0) } else { Ok(()) };
@@ -138,7 +138,7 @@ impl Disk {
             return Ok(None);
         }
         match self.read_back(at, draft, &path, bytes) {
-            // Another node has just taken the claim for one left behind.
+            // Another node has just taken over the claim, since it looked abandoned.
             Err(_) if !at.names(draft, file) => return Ok(None),
             other => other?,
         }
@@ -149,7 +149,7 @@ impl Disk {
             // A file system without links.
             Err(_) => return Ok(None),
         }
-        // Between the look and the link the name may have come to stand for another file.
+        // Between check and link the name may have become that of another file.
         if !to.names(name, file) {
             to.remove(name).map_err(|error| self.fail("remove", &path, error))?;
             return Ok(None);
@@ -164,13 +164,13 @@ impl Disk {
         Ok(Some(true))
     }
 
-    /// As [`Disk::write_new`], but puts the file in place of an older one: for notes that can be made anew, not objects.
+    /// As [`Disk::write_new`], but replaces an older file: for memos and listings, which can be made anew, never for objects.
     pub(super) fn replace(&self, folder: &str, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let written = self.written(folder, name, bytes, false)?.persist(name);
         written.map_err(|error| self.fail("rename to", &self.path(folder, name), error))
     }
 
-    /// A new file under a temporary name; its readers are those whom the user's umask admits.
+    /// A new file under a temporary name; the user's umask decides who may read it.
     pub(super) fn draft(&self, folder: &str, mode: u32) -> Result<Draft, StoreError> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         self.writable(folder)?;
@@ -204,7 +204,7 @@ impl Disk {
         Ok(draft)
     }
 
-    /// Reads a file that was just written, `path` to be, and compares.
+    /// Reads a file that was just written and will get the name `path`, and compares.
     fn read_back(&self, folder: &Folder, written: &str, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
         let same = folder.open(written, false).and_then(|file| holds(file, bytes));
         match same.map_err(|error| self.fail("read back", path, error))? {
@@ -226,7 +226,7 @@ impl Disk {
     }
 }
 
-/// Differs between processes with equal numbers on two machines.
+/// A number that differs between processes with equal process ids on two machines.
 fn seed() -> u32 {
     use std::hash::{BuildHasher, RandomState};
     use std::sync::OnceLock;
@@ -234,7 +234,7 @@ fn seed() -> u32 {
     *SEED.get_or_init(|| RandomState::new().hash_one(0) as u32)
 }
 
-/// Whether a file holds these bytes and no more.
+/// Whether a file holds exactly these bytes.
 fn holds(mut file: File, mut bytes: &[u8]) -> std::io::Result<bool> {
     let mut block = vec![0; (bytes.len() + 1).min(1 << 16)];
     loop {
@@ -250,7 +250,7 @@ fn holds(mut file: File, mut bytes: &[u8]) -> std::io::Result<bool> {
     }
 }
 
-/// How temporary names begin; what a killed process leaves behind is removed by gc.
+/// Prefix of temporary names; gc removes the files that a killed process leaves behind.
 const TEMPORARY: &str = ".flow-writing-";
 
 /// Whether a name is one that [`Disk::draft`] gives.

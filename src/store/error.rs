@@ -1,4 +1,4 @@
-//! What can go wrong with a store, each fault with its path and its remedy.
+//! Errors of a store, each with its path and its remedy.
 
 use super::folder::Strange;
 use super::hdf5::Hdf5Error;
@@ -42,9 +42,9 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// The user may not do that here.
+    /// The user has no permission for that.
     #[error(
-        "no permission to {doing} {}; have its owner give it, or name another store with `--store`", path.display()
+        "no permission to {doing} {}; ask its owner for it, or name another store with `--store`", path.display()
     )]
     Denied {
         /// What was being done.
@@ -52,7 +52,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// The folder is not there any more.
+    /// The folder no longer exists.
     #[error("the store {} has vanished; bring it back (is its disk still mounted?) and run again", root.display())]
     Vanished {
         /// The store.
@@ -72,7 +72,7 @@ pub enum StoreError {
         /// The store.
         root: PathBuf,
     },
-    /// Something in the store that flow has not made: a link, a pipe, a device, a file larger than any of its own.
+    /// A file in the store that flow cannot have made: a link, a pipe, a device, or a file larger than any of flow's.
     #[error("could not {doing} {}: {why}; move it out of the store and run again", path.display())]
     Strange {
         /// What was being done.
@@ -112,12 +112,12 @@ pub enum StoreError {
     Newer {
         /// The object.
         path: PathBuf,
-        /// What the reader says.
+        /// The error of the reader.
         why: Hdf5Error,
     },
 }
 
-/// A file of the store that is not what was written.
+/// A file of the store that differs from what was written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{} is damaged: {why}; {}; the next run computes it again", path.display(),
@@ -128,7 +128,7 @@ pub struct Damage {
     pub path: PathBuf,
     /// How it differs from what was written.
     pub why: String,
-    /// Where it was moved; nothing when the store cannot be written.
+    /// Where it was moved; `None` when the store cannot be written.
     pub aside: Option<PathBuf>,
 }
 
@@ -151,7 +151,7 @@ impl StoreError {
         }
     }
 
-    /// Whether the result asked for has to be computed again, rather than the store mended.
+    /// Whether to compute the result again is the remedy; other errors need the store to be repaired.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::Missing { .. } | Self::Damaged { .. })
     }

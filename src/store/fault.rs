@@ -1,6 +1,6 @@
-//! Faults of the disk, for the tests of the store: every operation asks here first.
+//! Faults of the disk, for the tests of the store: every operation calls this module first.
 //!
-//! A test says what goes wrong and after how many operations ([`plan`]); outside of the tests nothing ever does.
+//! A test plans which operation fails and how ([`plan`]); outside of the tests nothing fails here.
 
 use std::io;
 
@@ -42,7 +42,7 @@ mod disk {
     use super::{Step, io};
     use std::cell::RefCell;
 
-    /// What goes wrong.
+    /// How an operation fails.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub(in crate::store) enum Fault {
         /// An operation fails with this error number.
@@ -56,9 +56,9 @@ mod disk {
     #[derive(Default)]
     struct Plan {
         fault: Option<Fault>,
-        /// Operations until it happens.
+        /// Operations that still succeed before it.
         left: usize,
-        /// From then on always, as on a full disk; else once.
+        /// Whether every later operation fails too, as on a full disk.
         stays: bool,
         met: usize,
     }

@@ -1,16 +1,18 @@
 //! How a result enters the store: its object first, then its record.
 
+use super::disk::Disk;
 use super::object::Seal;
 use super::record::milliseconds;
-use super::{Guard, ObjectId, Origin, Record, Store, StoreError, Timing, hdf5, journal, locked, object};
+use super::{Guard, ObjectId, Origin, Record, Store, StoreError, Timing, hdf5, journal, locked, object, prove};
 use crate::artifact::{Artifact, Key};
+use std::io::ErrorKind;
 use std::sync::Arc;
 
 impl Store {
     /// Stores the result of a claimed task and releases it. When the function returns, the result can be found.
     ///
     /// # Errors
-    /// The result cannot be held by a file, or the disk refuses it.
+    /// No file can hold the result, or the disk refuses it.
     pub fn finish(
         &self,
         mut claim: Guard,
@@ -45,7 +47,7 @@ impl Store {
         let id = ObjectId { content: artifact.content_hash(), key: Key::of(&task_text) };
         let image = hdf5::encode(&artifact, task_text).map_err(StoreError::Unstorable)?;
         let durable = timing.seconds >= object::SYNC_FROM;
-        let seal = object::write(&self.disk, &id, &image, durable, claim)?;
+        let seal = write(&self.disk, &id, &image, durable, claim)?;
         let record = self.marked(&id, seal, timing, Arc::clone(&self.origin));
         locked(&self.segments).append(&self.disk, &record, durable)?;
         if let Some(index) = self.index.get() {
@@ -57,7 +59,7 @@ impl Store {
         Ok((record, artifact))
     }
 
-    /// Moves other results of a task that was computed again out of the way: that they differ is why it was.
+    /// Sets aside the other results of a task that was computed again because its results differed.
     fn settle(&self, record: &Record) -> Result<(), StoreError> {
         let others = self.index.get().map(|index| locked(index).of_task(&record.key)).unwrap_or_default();
         for other in others.iter().filter(|other| other.content != record.content) {
@@ -84,4 +86,40 @@ impl Store {
         let record = Record { key, content, started, seconds, origin, seal, mark: Default::default(), own: true };
         journal::seal(&self.mark, record)
     }
+}
+
+/// Writes an object, into the file of its claim if there is one; returns the seal of the file under the object's name.
+pub(super) fn write(
+    disk: &Disk,
+    id: &ObjectId,
+    image: &[u8],
+    durable: bool,
+    mut claim: Option<&mut Guard>,
+) -> Result<Seal, StoreError> {
+    let (folder, name) = (id.folder(), id.file_name());
+    let seal = Seal::of(image);
+    for _ in 0..3 {
+        let linked = match claim.as_mut().and_then(|claim| claim.draft()) {
+            Some(draft) => disk.link_new(draft, (&folder, &name), image, durable)?,
+            None => None,
+        };
+        let written = match linked {
+            Some(written) => written,
+            // The claim's file belongs to another process now, or there was none.
+            None => {
+                claim = None;
+                disk.write_new(&folder, &name, image, durable)?
+            }
+        };
+        if written {
+            return Ok(seal);
+        }
+        match prove::object(disk, id, None) {
+            // Another version of flow may describe the same values differently.
+            Ok(proven) => return Ok(proven.seal),
+            Err(error) if error.is_missing() => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(disk.fail("write", &disk.path(&folder, &name), ErrorKind::AlreadyExists.into()))
 }

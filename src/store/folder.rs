@@ -1,9 +1,9 @@
-//! A folder of the store, held open: the only way by which the store reaches a file.
+//! A folder of the store as an open descriptor: the only way by which the store reaches a file.
 //!
-//! Others may write to a shared store, so what lies in it is looked at before it is used. Folders below the root are
-//! opened one by one without following links, and files are opened in their folder by name, so no link leads out, also
-//! none that is put there between two looks. A file is opened without waiting and counts only when it is a plain file:
-//! no pipe, device or link. What is read has a bound ([`Folder::read`]).
+//! Others may write to a shared store, so every file is checked before it is used. Folders below the root are opened one by
+//! one without following links, and files are opened relative to their folder, so no link leads out of the store, not even
+//! one that is put there between check and use. A file is opened without blocking and is accepted only if it is a plain
+//! file: no pipe, device or link. The number of bytes read has a bound ([`Folder::read`]).
 
 use super::fault::{self, Step};
 use rustix::fs::{AtFlags, Dir, FileType, Mode, OFlags, RenameFlags, Stat};
@@ -14,10 +14,10 @@ use std::path::Path;
 
 /// Files shorter than this may have holes: file systems that pack small files report odd sizes on the disk.
 const SMALL: u64 = 1 << 20;
-/// A packing file system makes files so many times smaller at most; what claims more is a sparse giant.
+/// A compressing file system makes files smaller by this factor at most; a file that claims more is sparse.
 const MOST_PACKED: u64 = 1 << 10;
 
-/// What stands under a name that is not a plain file or folder.
+/// The error of a name that is neither a plain file nor a folder.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub(super) struct Strange(&'static str);
@@ -27,7 +27,7 @@ impl Strange {
         io::Error::other(Self(what))
     }
 
-    /// Whether an error of this module says that something else than a plain file or folder was found.
+    /// Whether an error says that neither a plain file nor a folder was found.
     pub(super) fn is(error: &io::Error) -> bool {
         error.get_ref().is_some_and(|inner| inner.is::<Self>())
     }
@@ -37,10 +37,10 @@ impl Strange {
 #[derive(Debug)]
 pub(super) struct Folder(OwnedFd);
 
-/// What a name stands for, of what the store cares about.
+/// What a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Entry {
-    /// A plain file of so many bytes.
+    /// A plain file and its size, bytes.
     File(u64),
     /// A folder.
     Folder,
@@ -83,7 +83,7 @@ impl Folder {
     pub(super) fn open(&self, name: &str, write: bool) -> io::Result<File> {
         fault::meet(Step::Open)?;
         let access = if write { OFlags::RDWR } else { OFlags::RDONLY };
-        // Without waiting: a pipe has no writer that would come.
+        // Non-blocking: opening a pipe would wait for a writer that never comes.
         let flags = INSIDE | access | OFlags::NONBLOCK | OFlags::NOCTTY;
         match rustix::fs::openat(&self.0, name, flags, Mode::empty()) {
             Ok(file) => plain(File::from(file)),
@@ -106,12 +106,18 @@ impl Folder {
         let file = self.open(name, false)?;
         let size = bounded(&file, most)?;
         let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(0));
-        // What grows meanwhile is not read.
+        // Bytes that are appended meanwhile are not read.
         file.take(size).read_to_end(&mut bytes)?;
         Ok(bytes)
     }
 
-    /// What a name stands for; an error of kind `NotFound` when for nothing.
+    /// Whether a plain file begins with these bytes.
+    pub(super) fn begins_with(&self, name: &str, head: &[u8]) -> bool {
+        let mut found = vec![0; head.len()];
+        self.open(name, false).is_ok_and(|mut file| file.read_exact(&mut found).is_ok() && found == head)
+    }
+
+    /// What a name stands for; an error of kind `NotFound` when there is no such name.
     pub(super) fn entry(&self, name: &str) -> io::Result<Entry> {
         let stat = rustix::fs::statat(&self.0, name, AtFlags::SYMLINK_NOFOLLOW)?;
         Ok(match FileType::from_raw_mode(stat.st_mode) {
@@ -126,7 +132,7 @@ impl Folder {
         rustix::fs::statat(&self.0, name, AtFlags::SYMLINK_NOFOLLOW).ok().map(|stat| stat.st_mtime)
     }
 
-    /// Whether the name still stands for this open file.
+    /// Whether the name is still that of this open file.
     pub(super) fn names(&self, name: &str, file: &File) -> bool {
         let named = rustix::fs::statat(&self.0, name, AtFlags::SYMLINK_NOFOLLOW);
         let open = rustix::fs::fstat(file);
@@ -142,7 +148,7 @@ impl Folder {
         }
     }
 
-    /// The state of the folder itself, asked anew where a network file system remembers it.
+    /// The state of the folder itself; a network file system asks its server for it.
     pub(super) fn stat(&self) -> io::Result<Stat> {
         ask_anew(&self.0);
         Ok(rustix::fs::fstat(&self.0)?)
@@ -157,7 +163,7 @@ impl Folder {
             if let Ok(name) = entry.file_name().to_str()
                 && !matches!(name, "." | "..")
             {
-                // Some file systems do not say with the name what it stands for.
+                // Some file systems do not tell the type of an entry with its name.
                 let folder = match entry.file_type() {
                     FileType::Unknown => matches!(self.entry(name), Ok(Entry::Folder)),
                     kind => kind == FileType::Directory,
@@ -174,17 +180,17 @@ impl Folder {
         Ok(rustix::fs::linkat(&self.0, name, &to.0, new, AtFlags::empty())?)
     }
 
-    /// Moves a name into another folder, in place of what has it there.
+    /// Moves a name into another folder and replaces a file of that name there.
     pub(super) fn rename(&self, name: &str, to: &Self, new: &str) -> io::Result<()> {
         fault::meet(Step::Name)?;
         Ok(rustix::fs::renameat(&self.0, name, &to.0, new)?)
     }
 
-    /// Moves a name into another folder; an error of kind `AlreadyExists` when something has it there.
+    /// Moves a name into another folder; an error of kind `AlreadyExists` when the name is taken there.
     pub(super) fn rename_new(&self, name: &str, to: &Self, new: &str) -> io::Result<()> {
         fault::meet(Step::Name)?;
         match rustix::fs::renameat_with(&self.0, name, &to.0, new, RenameFlags::NOREPLACE) {
-            // A file system that cannot: look first.
+            // A file system without this operation: check first, then rename.
             Err(rustix::io::Errno::INVAL | rustix::io::Errno::NOSYS) => match to.entry(new) {
                 Ok(_) => Err(ErrorKind::AlreadyExists.into()),
                 Err(_) => self.rename(name, to, new),
@@ -232,9 +238,9 @@ pub(super) fn bounded(file: &File, most: u64) -> io::Result<u64> {
     Ok(size)
 }
 
-/// Lets a network file system ask its server for the state of a file, which it may remember for seconds.
+/// Lets a network file system ask its server for the state of a file, which it may cache for seconds.
 pub(super) fn ask_anew(file: impl std::os::fd::AsFd) {
-    // Where this is not known, what is remembered is taken.
+    // Where the system does not support this, the cached state is taken.
     let flags = AtFlags::EMPTY_PATH | AtFlags::STATX_FORCE_SYNC;
     let _ = rustix::fs::statx(file, "", flags, rustix::fs::StatxFlags::BASIC_STATS);
 }

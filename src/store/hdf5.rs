@@ -17,8 +17,8 @@
 //! **Reading is bounded**: depth, number of nodes, and the bytes a shape asks for are checked against the size of the
 //! image before anything is allocated, so a damaged file costs an error and not the memory of the machine.
 //!
-//! **Older layouts**: [`decode`] reads `layout` first and hands over to the reader of that layout; a new layout adds a
-//! reader and leaves the old one as it is.
+//! **Older layouts**: [`decode`] reads `layout` first and calls the reader of that layout. A new layout adds a reader and
+//! does not change the old one.
 
 mod read;
 mod write;
@@ -34,7 +34,7 @@ const LAYOUT: i64 = 1;
 /// Deepest nesting of groups, written or read.
 const MAX_DEPTH: usize = 32;
 
-/// Why an artifact could not become a file image or the other way round.
+/// Why an artifact could not be encoded as a file image, or an image not be decoded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Hdf5Error {
     /// The value cannot be held by an HDF5 file.
@@ -51,14 +51,14 @@ pub enum Hdf5Error {
         /// The layout of the image.
         found: i64,
     },
-    /// The image does not hold what an artifact holds.
+    /// The image is not that of an artifact.
     #[error("`{place}`: wanted {wanted}, found {found}")]
     Unexpected {
         /// Path of the node or attribute.
         place: String,
-        /// What an artifact has there.
+        /// What is expected there.
         wanted: &'static str,
-        /// What stands there.
+        /// What was found.
         found: String,
     },
     /// A shape asks for more than such a file can hold.
@@ -91,7 +91,7 @@ fn link_name(name: &str) -> String {
     }
 }
 
-/// The node's name of a link name.
+/// The name of the node that a link name stands for.
 fn node_name(link: &str) -> String {
     match link {
         "%" => String::new(),

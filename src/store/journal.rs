@@ -1,13 +1,14 @@
-//! The journal: which task has which result. Append-only, one segment per writing process, merged on read.
+//! The journal: which task has which result. It is append-only, has one segment per writing process, and is merged on
+//! reading.
 //!
 //! A segment is a head of [`HEAD`] bytes, readable with `head -1`, that says on what machine and by what version its
 //! records were made, followed by records of [`RECORD`] bytes each (`journal/record.rs`). Records have one length, so the
-//! frame of a record is its place: a torn tail is shorter than a record, a damaged record is skipped, and neither hides
-//! those behind it. A process writes only to its own segment, at places it counts itself, so a write that failed halfway
-//! is overwritten by the next.
+//! offset of a record follows from its index: a torn tail is shorter than a record, a damaged record is skipped, and neither
+//! hides those after it. A process writes only to its own segment, at offsets that it counts itself, so a write that failed
+//! halfway is overwritten by the next.
 //!
-//! Nothing here depends on the order of records or on a clock: of the records of one task all are handed out, and the
-//! store decides by their marks and by the objects.
+//! Nothing here depends on the order of records or on a clock: all records of a task are returned, and the store decides by
+//! their marks and by the objects.
 
 mod index;
 mod record;
@@ -18,7 +19,6 @@ pub(super) use record::{RECORD, pack, seal, unpack};
 use super::disk::{Disk, Draft};
 use super::folder::{self, Folder};
 use super::lock::Held;
-use super::memo::begins_with;
 use super::{Origin, Record, StoreError};
 use std::fs::File;
 use std::io::{Seek, SeekFrom};
@@ -35,12 +35,12 @@ const MAGIC: &str = "flow journal 2 ";
 const MAGIC_1: &str = "flow journal 1 ";
 /// The largest segment: more records than an index can number.
 const MOST: u64 = 1 << 38;
-/// The segment is synced as often, so that other nodes see its records soon.
+/// Interval between syncs of a segment, so that other nodes see its records soon.
 const SYNC_EACH: Duration = Duration::from_secs(1);
 
 /// Whether a file among the segments is one that flow wrote.
 pub(super) fn is_ours(folder: &Folder, name: &str) -> bool {
-    is_name(name) && begins_with(folder, name, b"flow journal ")
+    is_name(name) && folder.begins_with(name, b"flow journal ")
 }
 
 fn is_name(name: &str) -> bool {
@@ -73,7 +73,7 @@ struct Segment {
     name: String,
     path: PathBuf,
     end: u64,
-    /// Whether its head and its name would survive a power cut; a record that must survive one sees to it.
+    /// Whether its head and its name would survive a power cut; the first record that must survive one makes it so.
     safe: bool,
     synced: Instant,
 }
@@ -118,14 +118,14 @@ impl Segment {
     }
 }
 
-/// A new segment: locked and with its head before it has its name, so that no reader takes it for a finished one.
+/// A new segment. It is locked and has its head before it has its name, so that no reader takes it for a finished one.
 fn create(disk: &Disk, origin: &Arc<Origin>) -> Result<Segment, StoreError> {
     let mut draft = disk.draft(FOLDER, 0o644)?;
     let fail = |error| disk.fail("create a file in", &disk.root.join(FOLDER), error);
     let _ = draft.file.try_lock();
     folder::write(&draft.file, &head(origin)).map_err(fail)?;
     let unique = draft.name.rsplit('-').next().unwrap_or_default();
-    // The time is for readers of the folder only.
+    // The time in the name is for persons who read the folder.
     let name = format!("{:013}-{}-{unique}.journal", super::now_ms(), std::process::id());
     draft.persist_new(&name).map_err(fail)?;
     let file: File = Draft::into_file(draft).map_err(fail)?;

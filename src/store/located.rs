@@ -1,11 +1,11 @@
-//! The store for a process that reads no journal: a worker is told where its inputs lie and what their files are.
+//! The store for a process that reads no journal: the list of a worker names the objects of its inputs and their digests.
 
 use super::object::{ObjectId, Seal};
 use super::{Guard, Store, StoreError, lock, locked, prove};
 use crate::artifact::{Artifact, ContentHash, Key};
 use std::sync::Arc;
 
-/// An object with what its file must be: it needs no record to be read.
+/// An object with the digest and size of its file, so that it can be read without a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Located {
     /// The object.
@@ -20,7 +20,7 @@ impl Located {
         format!("{}:{}:{digest:032x}:{}", self.object.key, self.object.content, self.seal.size)
     }
 
-    /// What such a text says; none when it is not one.
+    /// Reads such a text; `None` when it is not one.
     pub fn from_text(text: &str) -> Option<Self> {
         let parts: Vec<&str> = text.split(':').collect();
         let [key, content, digest, size] = parts[..] else { return None };
@@ -31,8 +31,8 @@ impl Located {
 }
 
 impl Store {
-    /// As [`Store::claim`], without a look at the journals: for a worker, whose list says that the task is not finished.
-    /// None when somebody else computes it.
+    /// As [`Store::claim`], without reading the journals: for a worker, whose list holds unfinished tasks only.
+    /// `None` when another process computes it.
     ///
     /// # Errors
     /// The lock cannot be made.
@@ -43,7 +43,7 @@ impl Store {
         }
     }
 
-    /// Where the artifact with this content lies and what its file is, for a process that reads no journal.
+    /// The object of the artifact with this content, with digest and size of its file, for a process that reads no journal.
     ///
     /// # Errors
     /// As [`Store::get`].
@@ -56,7 +56,7 @@ impl Store {
         Err(StoreError::Missing { content: *content })
     }
 
-    /// The artifact that [`Store::locate`] found, its size and digest compared before a byte is decoded.
+    /// The artifact that [`Store::locate`] found; size and digest are compared before a byte is decoded.
     ///
     /// # Errors
     /// As [`Store::get`].

@@ -2,38 +2,37 @@
 //!
 //! A claim is a locked file `locks/<key>.lock` with the process and the machine of its holder inside. The kernel
 //! releases the lock when the process ends, however it ends, so there is no stale lock and nothing to unlock by hand.
-//! The holder removes the name before it lets go. Whoever gets the lock of a file that somebody left behind removes it
-//! and begins anew, and whoever gets the lock of a file that is no longer the one in the folder tries again.
+//! The holder removes the file before it releases the lock. A process that gets the lock of an abandoned file removes the
+//! file and tries again, as does one that gets the lock of a file that is no longer the one in the folder.
 //!
 //! The result is written into this very file, which then gets its name among the objects as a second link: a task
-//! costs one new file and not two. (ext4 does not hand out an inode again that was freed within the last seconds, and
+//! costs one new file and not two. (ext4 does not reuse an inode that was freed within the last seconds, and
 //! searches past all of these for each new file, so ten thousand lock files that come and go cost seconds.)
 //!
-//! **Locks that do not reach all nodes** (some network file systems have them for each node alone) let a file look left
-//! behind whose holder is at work. So a file whose lock is free counts as held while its holder may be alive: a process of
-//! this machine that is there, or one of another machine. Others take other tasks meanwhile, and after [`PATIENCE`] by
-//! their own watch, in which a result would have come to be seen, the file counts as left behind.
+//! **Locks that do not reach all nodes** (on some network file systems a lock holds on one node only) make a file look
+//! abandoned whose holder is at work. So a file whose lock is free counts as held while its holder may be alive: a process
+//! of this machine that exists, or one of another machine. Other processes take other tasks meanwhile. After [`PATIENCE`] by
+//! their own clock, in which a result would have become visible, the file counts as abandoned.
 //!
-//! Locks only save work. Without them two
-//! runs may compute the same task, and each may find that the other took its file for one left behind and removed it:
-//! it then writes its result anew, and the store holds one of the two equal results.
+//! Locks only save work. Without them two runs may compute the same task, and each may find that the other took its file
+//! for an abandoned one and removed it: it then writes its result anew, and the store holds one of the two equal results.
 
 use super::disk::Disk;
 use super::folder::{Folder, Strange};
 use super::object::is_hex;
-use super::{StoreError, memo, object};
+use super::{StoreError, object};
 use std::fs::{File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::time::{Duration, Instant};
 
-/// Longer than network file systems show old names, and than most tasks that are worth waiting for by nobody.
+/// Longer than network file systems show old names, and longer than most short tasks take.
 const PATIENCE: Duration = Duration::from_secs(12);
-/// A claim's file that holds a result already is about to be let go of.
+/// A claim's file of this size or more already holds a result, and its lock is about to be released.
 const WRITING: Duration = Duration::from_secs(1);
 
 /// Folder of the claims.
 pub(super) const FOLDER: &str = "locks";
-/// The file that every process with an open store shares a lock of.
+/// The file on which every process with an open store holds a shared lock.
 pub(super) const IN_USE: &str = "in-use.lock";
 
 /// The process that computes a task.
@@ -43,7 +42,7 @@ pub struct Holder {
     pub process: u32,
     /// Machine.
     pub machine: String,
-    /// Whether that is this one.
+    /// Whether that is this machine.
     here: bool,
 }
 
@@ -56,8 +55,8 @@ impl std::fmt::Display for Holder {
     }
 }
 
-/// An open file that may be locked; dropped, it is unlocked. To close it would not do: a child that another thread has
-/// forked and that has not yet begun its program holds the same open file, and with it the lock.
+/// An open file that may be locked; dropping it unlocks it. Closing it is not enough: a child that another thread has forked
+/// and that has not yet started its program shares the open file, and with it the lock.
 #[derive(Debug)]
 pub(super) struct Held(pub(super) File);
 
@@ -67,7 +66,7 @@ impl Drop for Held {
     }
 }
 
-/// The right to compute a task; dropped, it is free again.
+/// The right to compute a task; dropping it releases the task.
 #[derive(Debug)]
 pub struct Guard(Option<Claimed>);
 
@@ -79,7 +78,7 @@ struct Claimed {
 }
 
 impl Guard {
-    /// The claim's file, to write the result into: its folder, its name, the file. None where there is no such file.
+    /// The claim's file, to write the result into: its folder, its name, the file. `None` where there is no such file.
     pub(super) fn draft(&mut self) -> Option<(&Folder, &str, &mut File)> {
         let Claimed { folder, name, held } = self.0.as_mut()?;
         Some((folder, name, &mut held.0))
@@ -88,8 +87,8 @@ impl Guard {
 
 impl Drop for Claimed {
     fn drop(&mut self) {
-        // While the lock is still held, so that nobody takes a file that is about to vanish. Where locks do not reach
-        // all nodes, another one may have taken the name meanwhile, and its file stays.
+        // While the lock is still held, so that no process claims a file that is about to be removed. Where locks do not
+        // reach all nodes, another node may have taken the name meanwhile, and its file stays.
         if self.folder.names(&self.name, &self.held.0) {
             let _ = self.folder.remove(&self.name);
         }
@@ -102,14 +101,14 @@ pub struct Waiting {
     folder: Folder,
     name: String,
     file: File,
-    /// Since when its lock is known to be free though its holder may be alive.
+    /// Since when its lock is known to be free although its holder may be alive.
     unsure: Option<(Instant, Duration)>,
     /// Who computes it.
     pub holder: Holder,
 }
 
 impl Waiting {
-    /// Whether the other process has let go of the task, finished or dead. Claim it again to know.
+    /// Whether the other process has released the task, because it finished it or ended. Claim the task again to find out.
     pub fn is_over(&self) -> bool {
         if let Some((since, patience)) = self.unsure {
             let gone = !self.folder.names(&self.name, &self.file);
@@ -128,7 +127,7 @@ impl Waiting {
         }
     }
 
-    /// Waits until the other process lets go or `stop` says so; returns whether it let go.
+    /// Waits until the other process releases the task (true) or `stop` returns true (false).
     pub fn wait(&self, stop: impl Fn() -> bool) -> bool {
         let mut pause = Duration::from_millis(1);
         while !self.is_over() {
@@ -147,7 +146,7 @@ pub(super) enum Taken {
     Theirs(Waiting),
 }
 
-/// Takes the lock of the task `key`, or says who has it.
+/// Takes the lock of the task `key`, or returns its holder.
 pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, StoreError> {
     let name = format!("{key}.lock");
     let path = disk.path(FOLDER, &name);
@@ -169,7 +168,7 @@ pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, Store
                     return Ok(Taken::Theirs(Waiting { folder, name, file, unsure, holder }));
                 }
                 Ok(None) => {}
-                // A link or a pipe in its place says nothing about the task, and no lock is better than none of its work.
+                // A link or a pipe of that name says nothing about the task: compute it without a lock.
                 Err(error) if Strange::is(&error) => return Ok(Taken::Mine(Guard(None))),
                 Err(error) => return Err(disk.fail("open the lock", &path, error)),
             },
@@ -178,10 +177,10 @@ pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, Store
     }
 }
 
-/// A lock that may be held: its file, since when and for how long that is not sure, who holds it.
+/// A lock that may be held: its file, since when that is uncertain, and its holder.
 type Found = (File, Option<(Instant, Duration)>, Holder);
 
-/// Who holds an existing lock; nobody when it was left behind, and it is removed.
+/// The holder of an existing lock; `None` when the file was abandoned, and it is removed.
 fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<Found>> {
     let mut file = match folder.open(name, true).or_else(|_| folder.open(name, false)) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -190,7 +189,7 @@ fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<Fo
     let free = !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
     let mut holder = read_holder(&mut file, machine);
     for _ in 0..5 {
-        // Its maker may be about to say who it is.
+        // Its maker may be about to write who it is.
         if !free || holder.process != 0 || file.metadata()?.len() > 0 {
             break;
         }
@@ -201,7 +200,7 @@ fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<Fo
         return Ok(Some((file, None, holder)));
     }
     let patience = match holder.process {
-        0 if memo::begins_with(folder, name, object::HEAD) => Some(WRITING),
+        0 if folder.begins_with(name, object::HEAD) => Some(WRITING),
         _ => may_live(&holder).then_some(PATIENCE),
     };
     if let Some(patience) = patience.filter(|_| folder.names(name, &file)) {
@@ -215,10 +214,10 @@ fn held(folder: &Folder, name: &str, machine: &str) -> std::io::Result<Option<Fo
     Ok(None)
 }
 
-/// Whether the holder of a file whose lock is free may be at work where the lock does not reach.
+/// Whether the holder of a file whose lock is free may be at work on a node that the lock does not reach.
 fn may_live(holder: &Holder) -> bool {
     match holder.process {
-        // Not yet said, or overwritten by the result.
+        // Not yet written, or overwritten by the result.
         0 => false,
         process if holder.here => is_alive(process),
         _ => true,
@@ -230,7 +229,7 @@ fn is_dead(holder: &Holder) -> bool {
     holder.process != 0 && !may_live(holder)
 }
 
-/// Whether another process of this machine with this number is there.
+/// Whether another process of this machine has this process id.
 pub(super) fn is_alive(process: u32) -> bool {
     let pid = i32::try_from(process).ok().and_then(rustix::process::Pid::from_raw);
     let there = |pid| !matches!(rustix::process::test_kill_process(pid), Err(rustix::io::Errno::SRCH));
@@ -242,8 +241,8 @@ pub(super) fn is_name(name: &str) -> bool {
     name.strip_suffix(".lock").is_some_and(|key| key.len() == 64 && is_hex(key))
 }
 
-/// Says that this process uses the store, until the lock is dropped; nothing is removed from a store in use. A store
-/// that cannot be written, or a file system without locks, gives none.
+/// Marks the store as in use until the lock is dropped; nothing is removed from a store in use. `None` where the store
+/// cannot be written or the file system has no locks.
 pub(super) fn share(disk: &Disk) -> Option<Held> {
     let root = disk.folder("").ok()?;
     // Open for writing: some file systems give the lock that gc needs for such files only.

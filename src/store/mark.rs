@@ -1,11 +1,11 @@
-//! The user's mark: how the store tells what this user's own `flow` has written from what anybody else has.
+//! The user's mark: how the store tells what this user's own `flow` has written from what others have.
 //!
-//! Whoever can write to a shared store can write a record or a memo with a right checksum. So each record and each
-//! note that spares work carries a mark: a keyed blake3 under a secret of 32 bytes that lies outside of every store, in
+//! Anybody who can write to a shared store can write a record or a memo with a right checksum. So each record, memo and
+//! listing carries a mark: a keyed blake3 under a secret of 32 bytes that lies outside of every store, in
 //! the user's own state folder (`$XDG_STATE_HOME/flow/mark`, else `~/.local/state/flow/mark`), readable by the user
-//! alone. What carries the own mark is believed. What does not is proven from the objects (`prove.rs`) or counts as
-//! missing. Without a home folder the secret lives as long as the process: nothing is believed the next time, and all is
-//! proven again, which costs time only.
+//! alone. A file with the user's own mark is believed. Any other is proven from the objects (`prove.rs`) or counts as
+//! missing. Without a home folder the secret lasts as long as the process: the next one believes nothing and proves all
+//! objects again, which costs time only.
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 /// Length of the mark in a record, bytes.
 pub(super) const SHORT: usize = 16;
 
-/// What marks are made with.
+/// The keys with which marks are made.
 #[derive(Clone)]
 pub struct Mark {
     record: [u8; 32],
@@ -43,24 +43,24 @@ impl Mark {
         }
     }
 
-    /// What tells the files of this user's notes from those of others: eight digits.
+    /// Eight digits in the names of this user's memos and listings, which tell them from those of others.
     pub(super) fn name(&self) -> String {
         format!("{:08x}", u32::from_be_bytes(self.name))
     }
 
-    /// Of a record.
+    /// The mark of a record.
     pub(super) fn record(&self, bytes: &[u8]) -> [u8; SHORT] {
         let mut mark = [0; SHORT];
         mark.copy_from_slice(&blake3::keyed_hash(&self.record, bytes).as_bytes()[..SHORT]);
         mark
     }
 
-    /// The secret of a queue: whoever has it can write lists that the workers of this queue believe.
+    /// The secret of a queue. Who has it can write lists that the workers of this queue believe.
     pub(super) fn queue(&self, name: &str) -> [u8; 32] {
         self.note(b"queue", name.as_bytes())
     }
 
-    /// Of a note called `name`, so that none can stand in for another.
+    /// The mark of a memo, listing or campaign called `name`, so that none can replace another.
     pub(super) fn note(&self, name: &[u8], bytes: &[u8]) -> [u8; 32] {
         let mut hash = blake3::Hasher::new_keyed(&self.note);
         hash.update(&(name.len() as u64).to_le_bytes()).update(name).update(bytes);
@@ -83,7 +83,7 @@ fn secret(folder: &Path) -> io::Result<[u8; 32]> {
         other => return other,
     }
     fs::create_dir_all(folder)?;
-    // Whole before it has its name; of two processes that make one, both read that of the first.
+    // It is complete before it has its name; of two processes that make one, both read that of the first.
     let mut file = tempfile::Builder::new().prefix(".mark-").tempfile_in(folder)?;
     file.write_all(&fresh())?;
     file.as_file().sync_all()?;
@@ -93,7 +93,7 @@ fn secret(folder: &Path) -> io::Result<[u8; 32]> {
     }
 }
 
-/// A secret that others can read or change is none.
+/// Whether nobody else can read or change the file of a secret.
 fn read(path: &Path) -> io::Result<[u8; 32]> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt};
     let data = fs::symlink_metadata(path)?;
@@ -105,7 +105,7 @@ fn read(path: &Path) -> io::Result<[u8; 32]> {
     bytes.try_into().map_err(|_| ErrorKind::InvalidData.into())
 }
 
-/// Bytes that nobody can guess: from the system's source, through the hash maps' seeds where that cannot be opened.
+/// Bytes that nobody can guess: from the system's random source, or from the seeds of hash maps where that cannot be opened.
 fn fresh() -> [u8; 32] {
     let mut bytes = [0; 32];
     let read = fs::File::open("/dev/urandom").and_then(|mut source| io::Read::read_exact(&mut source, &mut bytes));

@@ -1,15 +1,15 @@
-//! Memos: what a stage came to, so that an unchanged campaign is recognised without looking at each of its tasks.
+//! Memos: the outcome of a stage, so that an unchanged campaign is recognised without looking at each of its tasks.
 //!
-//! A memo is a file `memo/ab/<key of the stage>-<user>`: a note in the caller's words, and the objects it speaks of. It can
-//! always be made anew from the objects, so a damaged one counts as missing and a later one takes its place. It carries
-//! the user's mark over its own key and all of its bytes: one that another user made, or that was changed or put under
+//! A memo is a file `memo/ab/<key of the stage>-<user>`: a text in the caller's format, and the objects that it names. It
+//! can always be made anew from the objects, so a damaged one counts as missing and a later one replaces it. It carries
+//! the user's mark over its own key and all of its bytes: a memo that another user made, or that was changed or put under
 //! another key, counts as missing too.
 //!
 //! | bytes | field |
 //! |---|---|
 //! | 0–7 | `flowmem3` |
-//! | 8–15, 16–23 | length of the note, length of the data, little-endian |
-//! | … | the note, UTF-8; the data |
+//! | 8–15, 16–23 | length of the text, length of the data, little-endian |
+//! | … | the text, UTF-8; the data |
 //! | … | 64 bytes per object: content hash, key |
 //! | last 32 | the mark |
 
@@ -23,19 +23,19 @@ use crate::artifact::{ContentHash, Key};
 /// Folder of the memos.
 pub(super) const FOLDER: &str = "memo";
 const MAGIC: &[u8; 8] = b"flowmem3";
-/// How memos of all versions begin.
+/// The first bytes of memos of all versions.
 const HEAD: &[u8] = b"flowmem";
 /// The largest memo: one of ten million tasks.
 pub(super) const MOST: u64 = 1 << 30;
 
-/// What a stage came to.
+/// The outcome of a stage.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Memo {
-    /// Whatever the caller needs to know again.
+    /// A text in the caller's format.
     pub note: String,
-    /// Numbers in the caller's form.
+    /// Numbers in the caller's format.
     pub data: Vec<u8>,
-    /// The objects it rests on; none of them is removed while the memo is reachable, and it is void without them.
+    /// The objects that it names; none of them is removed while the memo is reachable, and without them it is invalid.
     pub objects: Vec<ObjectId>,
 }
 
@@ -64,18 +64,12 @@ pub(super) fn write(disk: &Disk, mark: &Mark, key: &Key, memo: &Memo) -> Result<
     disk.replace(&folder, &name, &pack(mark, key, memo))
 }
 
-/// Whether a file below the folder of memos is one that flow wrote: by its place, its name and how it begins.
+/// Whether a file below the folder of memos is one that flow wrote: by its folder, its name and its first bytes.
 pub(super) fn is_ours(at: &folder::Folder, shard: &str, name: &str) -> bool {
     // Earlier versions had no user in the name.
     let (key, user) = name.split_once('-').unwrap_or((name, "00000000"));
     let named = key.len() == 64 && is_hex(key) && user.len() == 8 && is_hex(user) && key.starts_with(shard);
-    named && begins_with(at, name, HEAD)
-}
-
-/// Whether a plain file begins with these bytes.
-pub(super) fn begins_with(at: &folder::Folder, name: &str, head: &[u8]) -> bool {
-    let mut found = vec![0; head.len()];
-    at.open(name, false).is_ok_and(|mut file| std::io::Read::read_exact(&mut file, &mut found).is_ok() && found == head)
+    named && at.begins_with(name, HEAD)
 }
 
 pub(super) fn pack(mark: &Mark, key: &Key, memo: &Memo) -> Vec<u8> {

@@ -1,32 +1,33 @@
-//! The store: the folder that keeps results, and the only code that knows HDF5 and the disk.
+//! The store: the folder of results, and the only code that knows HDF5 and the disk.
 //!
 //! ```text
 //! store/
 //!   flow.store                  says that flow made this folder                         root.rs
 //!   objects/ab/abcd…-0123….h5   one immutable file per task, named by content           object.rs, hdf5.rs
 //!   journal/*.journal           task → object, digest, size, provenance                 journal.rs
-//!   memo/ab/abcd…               what a stage came to                                    memo.rs
-//!   runs/N.json                 what a campaign did                                     campaign.rs
+//!   memo/ab/abcd…               the outcome of a stage                                  memo.rs
+//!   runs/N.json                 the record of a campaign                                campaign.rs
 //!   locks/*.lock                tasks being computed now                                lock.rs
 //!   queue/ID/…                  tasks for the workers of a cluster, and their reports    queue.rs
-//!   aside/                      damaged files that were found and replaced
+//!   aside/                      damaged files, set aside
 //!   listing-…                   names of the objects, so that the folders need not be listed    presence.rs
 //! ```
 //!
-//! **What holds at any moment**, also after a process was killed: an object has its name only when it is complete; a
+//! **Invariants**, also after a process was killed: an object has its name only when it is complete; a
 //! record is in the journal only when its object has its name. Nothing is overwritten, and nothing is deleted but by gc.
 //!
-//! **A store is somebody else's until proven** (the README says what is left to an attacker). Files are reached by
-//! `folder.rs` alone: plain ones, no links, bounded sizes. Records and notes that this user's own flow wrote carry a mark
-//! (`mark.rs`) and are believed; what does not is proven from the object (`prove.rs`), whose task text must give the key
-//! and whose values the content hash. A lost record is found again by the names of the objects. Of two different results
-//! of one task none is believed: it is computed again, and the other goes aside. So whatever is lost, damaged or forged is
-//! found, computed again or refused, and no clock decides anything.
+//! **Nothing in a store is believed unproven** (the README says what is left to an attacker). Only `folder.rs` opens files:
+//! plain ones, no links, bounded sizes. Records and memos that this user's own flow wrote carry a mark (`mark.rs`) and are
+//! believed. Any other is proven from the object (`prove.rs`), whose task text must give the key and whose values the
+//! content hash. A lost record is restored from the names of the objects. Of two different results of one task neither is
+//! believed: the task is computed again, and the other result is set aside. So a lost, damaged or forged file is restored,
+//! computed again or refused, and no clock decides anything.
 
 mod cache;
 mod campaign;
 mod claim;
 mod clean;
+mod contents;
 mod disk;
 mod error;
 mod fault;
@@ -88,21 +89,21 @@ pub struct Store {
     cache: Mutex<Cache>,
     presence: Mutex<Presence>,
     damages: Mutex<Vec<Damage>>,
-    /// Tasks with two different results, each said once.
+    /// Tasks with two different results, each reported once.
     contradictions: Mutex<HashSet<Key>>,
     in_use: Option<lock::Held>,
 }
 
 impl Store {
-    /// Opens the store in the folder `root`, which is made if there is none.
+    /// Opens the store in the folder `root`, and makes it if there is none.
     ///
     /// # Errors
-    /// The path is no folder, or one that flow has not made; it cannot be made or read.
+    /// The path is not a folder, or is one that flow has not made; the folder cannot be made or read.
     pub fn open(root: &Path) -> Result<Self, StoreError> {
         Self::open_as(root, Mark::of_user())
     }
 
-    /// As [`Store::open`], for the user with this mark.
+    /// As [`Store::open`], for a user with another mark.
     ///
     /// # Errors
     /// As [`Store::open`].
@@ -137,7 +138,7 @@ impl Store {
         })
     }
 
-    /// Makes the folder of an earlier flow, which has no marker yet, a store.
+    /// Makes a store of the folder of an earlier flow, which has no marker yet.
     ///
     /// # Errors
     /// It holds what flow does not make, or nothing that flow made; it cannot be written.
@@ -145,14 +146,15 @@ impl Store {
         root::adopt(&Disk { root: root.to_owned(), read_only: false })
     }
 
-    /// Says where and by what results are computed, asked when the first is; without it [`Origin::here`] is taken.
+    /// Sets the function that gives the origin of results, called when the first result is stored; the default is
+    /// [`Origin::here`].
     #[must_use]
     pub fn with_origin(mut self, origin: impl FnOnce() -> Origin + Send + 'static) -> Self {
         self.origin = LazyLock::new(Box::new(|| Arc::new(origin())));
         self
     }
 
-    /// Where and by what results are computed now.
+    /// The origin of results that are computed now.
     pub fn origin(&self) -> &Origin {
         &self.origin
     }
@@ -163,7 +165,7 @@ impl Store {
     }
 
     /// The record of a finished task whose object is in the store: one that this user's own flow wrote, or one that the
-    /// object proves. None of a task with two different results, which is to be computed again.
+    /// object proves. `None` for a task with two different results, which is to be computed again.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -198,7 +200,7 @@ impl Store {
         }
     }
 
-    /// How long a task took, as its record says: for estimates, so nothing is proven.
+    /// How long a task took, seconds, as its record says: for estimates, so nothing is proven.
     ///
     /// # Errors
     /// The journals cannot be read.
@@ -207,7 +209,7 @@ impl Store {
         Ok(records.iter().max_by_key(|record| record.own).map(|record| record.seconds))
     }
 
-    /// Whether all these objects are in the store; that they are sound is seen when they are read.
+    /// Whether all these objects are in the store; damage is found when they are read.
     ///
     /// # Errors
     /// The folders cannot be listed.
@@ -237,7 +239,7 @@ impl Store {
                 Err(error) => failure = error,
             }
         }
-        // Its record may be lost, or not be read yet: its name says what it is.
+        // Its record may be lost, or not be read yet: the name of the object holds the content.
         for name in object::with_content(&self.disk, content) {
             if let Some(proven) = self.if_sound(prove::named(&self.disk, &name))? {
                 self.record_again(&proven.id, proven.seal);
@@ -261,7 +263,7 @@ impl Store {
         Ok(self.read(record)?.text)
     }
 
-    /// The memo of a stage that this user's own flow made. Its objects may be gone: ask [`Store::has_all`].
+    /// The memo of a stage that this user's own flow made. Its objects may have been removed: ask [`Store::has_all`].
     ///
     /// # Errors
     /// The store cannot be read.
@@ -269,7 +271,7 @@ impl Store {
         memo::read(&self.disk, &self.mark, stage)
     }
 
-    /// Keeps the memo of a stage, in place of an earlier one.
+    /// Writes the memo of a stage, which replaces an earlier one.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -293,7 +295,7 @@ impl Store {
         campaign::numbers(&self.disk)
     }
 
-    /// A recorded campaign; whether this user's own flow recorded it is said in it.
+    /// A recorded campaign; its field `own` says whether this user's own flow recorded it.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -309,7 +311,7 @@ impl Store {
         Ok(locked(self.index()?).records())
     }
 
-    /// The file of an object, whether it is there or not.
+    /// The path of an object's file, which need not exist.
     pub fn path(&self, object: &ObjectId) -> PathBuf {
         object::path(&self.disk, object)
     }
@@ -319,32 +321,32 @@ impl Store {
         std::mem::take(&mut locked(&self.damages))
     }
 
-    /// The object of a record, proven.
+    /// Reads and proves the object of a record.
     fn read(&self, record: &Record) -> Result<Proven, StoreError> {
         let id = record.object();
         let seal = record.own.then_some(&record.seal);
         self.noted(&id, prove::object(&self.disk, &id, seal))
     }
 
-    /// The record of somebody else, as one's own when its object proves it.
+    /// Another user's record as an own one, if its object proves it.
     fn proven(&self, record: &Record) -> Result<Option<Record>, StoreError> {
         Ok(self.if_sound(self.read(record))?.map(|proven| self.own(record, proven.seal)))
     }
 
-    /// The record of somebody else, whose object was proven just now, as one's own.
+    /// Another user's record, whose object was proven just now, as an own one.
     fn own(&self, record: &Record, seal: Seal) -> Record {
         let timing = Timing { started: moment(record.started), seconds: record.seconds };
         self.remember(self.marked(&record.object(), seal, &timing, record.origin.clone()))
     }
 
-    /// A record of an object that had none.
+    /// A new record of an object that had none.
     fn record_again(&self, id: &ObjectId, seal: Seal) -> Record {
         let timing = Timing { started: UNIX_EPOCH, seconds: 0.0 };
         self.remember(self.marked(id, seal, &timing, Arc::default()))
     }
 
-    /// Records what was proven, so that it need not be proven again. Where the store cannot be written, it is known to
-    /// this process alone.
+    /// Records what was proven, so that it need not be proven again. Where the store cannot be written, only this process
+    /// knows it.
     fn remember(&self, record: Record) -> Record {
         let _ = locked(&self.segments).append(&self.disk, &record, false);
         if let Some(index) = self.index.get() {
@@ -354,7 +356,7 @@ impl Store {
         record
     }
 
-    /// Notes the damage that reading an object has met.
+    /// Collects the damage that was found when an object was read.
     fn noted<T>(&self, id: &ObjectId, result: Result<T, StoreError>) -> Result<T, StoreError> {
         if let Err(error) = &result {
             if let StoreError::Damaged { fault } = error {
@@ -365,7 +367,7 @@ impl Store {
         result
     }
 
-    /// What is missing or was damaged is nothing; any other error stays.
+    /// `None` for an object that is missing or damaged; any other error is passed on.
     fn if_sound<T>(&self, result: Result<T, StoreError>) -> Result<Option<T>, StoreError> {
         match result {
             Ok(sound) => Ok(Some(sound)),
@@ -374,12 +376,12 @@ impl Store {
         }
     }
 
-    /// The journals, read when they are first asked for.
+    /// The journals, read at the first call.
     fn index(&self) -> Result<&Mutex<Index>, StoreError> {
         if let Some(index) = self.index.get() {
             return Ok(index);
         }
-        // Records that this process appends meanwhile are read from its own segment, or added twice, which is the same.
+        // Records that this process appends meanwhile are read from its own segment or added twice, with the same result.
         let mut index = self.new_index();
         index.refresh(&self.disk, &locked(&self.segments))?;
         Ok(self.index.get_or_init(|| Mutex::new(index)))
@@ -400,7 +402,7 @@ impl Store {
     }
 }
 
-/// Locks; a thread that panicked while it held the lock has left the value as it was before or after one change.
+/// Locks, also after a thread panicked with the lock: each change is complete, so the value is valid.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

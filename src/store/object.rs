@@ -5,8 +5,8 @@
 //! the task text inside it does not depend on which of two tasks with equal results ended first, and two runs on two
 //! empty stores leave the same files. The name is a claim that the file itself proves: see `prove.rs`.
 //!
-//! **Writing.** The image is made in memory, written under another name, read back, and only then given its name,
-//! without replacing. If the name exists, the file there is kept when it is sound, and set aside when not.
+//! **Writing.** The image is made in memory, written under another name, read back, and only then gets its name; it replaces
+//! nothing. If the name is taken, the file there stays when it is sound, and is set aside when it is not.
 //!
 //! **Durability.** A result that took [`SYNC_FROM`] seconds or longer is synced before it is recorded; a shorter one
 //! is left to the kernel (30 s on Linux), because three syncs of about 0.4 ms each would cost more than the task. A
@@ -15,7 +15,7 @@
 
 use super::disk::Disk;
 use super::folder::{Entry, Folder};
-use super::{Damage, Guard, StoreError, prove};
+use super::{Damage, StoreError};
 use crate::artifact::{ContentHash, Key};
 use std::io::ErrorKind;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ use std::path::PathBuf;
 /// Results of tasks that took this many seconds or more are synced to the disk.
 pub(super) const SYNC_FROM: f64 = 0.1;
 
-/// Names one object: the result of one task. Written as it is in file names, content first.
+/// Identifies one object, the result of one task. As text it is written as in file names, content first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectId {
     /// The content.
@@ -34,7 +34,7 @@ pub struct ObjectId {
 
 /// Folder of damaged files.
 pub(super) const ASIDE: &str = "aside";
-/// How the file of an object begins.
+/// The first bytes of an object's file.
 pub(super) const HEAD: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Length of the name of an object's file.
 const NAME: usize = 64 + 1 + KEY_DIGITS + 3;
@@ -52,7 +52,7 @@ impl ObjectId {
     }
 }
 
-/// The folder of objects whose names begin like this.
+/// The folder of the objects whose names begin with these digits.
 fn shard(name: &str) -> String {
     format!("objects/{}", &name[..2])
 }
@@ -73,7 +73,7 @@ pub(super) fn is_name(shard: &str, name: &str) -> bool {
 
 /// Whether a file in a folder of objects is one that flow wrote.
 pub(super) fn is_ours(at: &Folder, shard: &str, name: &str) -> bool {
-    is_name(shard, name) && super::memo::begins_with(at, name, HEAD)
+    is_name(shard, name) && at.begins_with(name, HEAD)
 }
 
 /// Lower-case hexadecimal digits.
@@ -84,8 +84,8 @@ pub(super) fn is_hex(text: &str) -> bool {
 /// Digest and size of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Seal {
-    /// First bytes of the blake3 of the file: it finds damage before the file is decoded; what a file proves is its
-    /// content hash.
+    /// First bytes of the blake3 of the file. It shows damage before the file is decoded; the content hash is what proves
+    /// the result.
     pub(super) digest: [u8; 16],
     pub(super) size: u64,
 }
@@ -97,7 +97,7 @@ impl Seal {
         Self { digest, size: bytes.len() as u64 }
     }
 
-    /// What differs between this seal and the file found.
+    /// How the file that was found differs from this seal; `None` when it does not.
     pub(super) fn difference(&self, found: &Self) -> Option<String> {
         if self.size != found.size {
             return Some(format!("it has {} bytes instead of {}", found.size, self.size));
@@ -106,53 +106,17 @@ impl Seal {
     }
 }
 
-/// Where an object lies, or would lie.
+/// The path of an object, which need not exist.
 pub(super) fn path(disk: &Disk, id: &ObjectId) -> PathBuf {
     disk.path(&id.folder(), &id.file_name())
 }
 
-/// Whether something stands under the object's name.
+/// Whether the object's name is taken, by a file or anything else.
 pub(super) fn is_there(disk: &Disk, id: &ObjectId) -> bool {
     disk.folder(&id.folder()).is_ok_and(|folder| matches!(folder.entry(&id.file_name()), Ok(Entry::File(_))))
 }
 
-/// Writes an object, into the file of its claim if there is one; returns the seal of the file that now has its name.
-pub(super) fn write(
-    disk: &Disk,
-    id: &ObjectId,
-    image: &[u8],
-    durable: bool,
-    mut claim: Option<&mut Guard>,
-) -> Result<Seal, StoreError> {
-    let (folder, name) = (id.folder(), id.file_name());
-    let seal = Seal::of(image);
-    for _ in 0..3 {
-        let linked = match claim.as_mut().and_then(|claim| claim.draft()) {
-            Some(draft) => disk.link_new(draft, (&folder, &name), image, durable)?,
-            None => None,
-        };
-        let written = match linked {
-            Some(written) => written,
-            // The claim's file is not ours any more, or was none.
-            None => {
-                claim = None;
-                disk.write_new(&folder, &name, image, durable)?
-            }
-        };
-        if written {
-            return Ok(seal);
-        }
-        match prove::object(disk, id, None) {
-            // Another version of flow may describe the same values differently.
-            Ok(proven) => return Ok(proven.seal),
-            Err(error) if error.is_missing() => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Err(disk.fail("write", &disk.path(&folder, &name), ErrorKind::AlreadyExists.into()))
-}
-
-/// Moves what stands under an object's name to `aside/`, under a name of its own. A link is moved as a link.
+/// Moves the file under an object's name to `aside/`, under a unique name. A link is moved as a link.
 pub(super) fn set_aside(disk: &Disk, folder: &str, name: &str, why: &str) -> Result<Damage, StoreError> {
     let path = disk.path(folder, name);
     let damage = |aside| Damage { path: path.clone(), why: why.to_owned(), aside };
@@ -165,7 +129,7 @@ pub(super) fn set_aside(disk: &Disk, folder: &str, name: &str, why: &str) -> Res
         match from.rename_new(name, &aside, &target) {
             Ok(()) => return Ok(damage(Some(disk.path(ASIDE, &target)))),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            // Somebody else was faster.
+            // Another process was faster.
             Err(error) if error.kind() == ErrorKind::NotFound => break,
             Err(_) => break,
         }
@@ -193,7 +157,7 @@ pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Folder, &str, &str, u64))
     Ok(())
 }
 
-/// The folder of objects, and the names of the folders in it that they lie in.
+/// The folder of objects, and the names of the folders inside it.
 pub(super) fn shards(disk: &Disk) -> Result<Option<(Folder, Vec<String>)>, StoreError> {
     let Some(objects) = disk.find_folder("objects")? else { return Ok(None) };
     let mut names = Vec::new();
@@ -206,7 +170,7 @@ pub(super) fn shards(disk: &Disk) -> Result<Option<(Folder, Vec<String>)>, Store
 /// Names of objects in one of these folders.
 pub(super) fn names(folder: &Folder, shard: &str) -> Vec<String> {
     let mut names = Vec::new();
-    // A folder that cannot be listed holds nothing that can be used.
+    // Nothing can be used from a folder that cannot be listed.
     let _ = folder.list(|name, _| names.extend(is_name(shard, name).then(|| name.to_owned())));
     names
 }

@@ -1,16 +1,15 @@
-//! Where results come from: machine, version, commit.
+//! The origin of results: machine, version, commit.
 
 use serde::{Deserialize, Serialize};
 
-/// Where and by what results were computed; kept with them, and never part of a key or a result.
+/// Machine, version and commit that computed a result; recorded with it, and never part of a key or a result.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Origin {
     /// Name of the machine.
     pub machine: String,
     /// Version of flow.
     pub version: String,
-    /// Git commit of the folder of the workflow, with `-dirty` behind it when files were changed since; `""` when it is not
-    /// known.
+    /// Git commit of the folder of the workflow, followed by `-dirty` when files were changed since; `""` when unknown.
     pub commit: String,
 }
 
@@ -32,7 +31,7 @@ impl Origin {
         machine.or_else(|| std::env::var("HOSTNAME").ok()).unwrap_or_else(|| "unknown".to_owned())
     }
 
-    /// With every text short enough for the journal.
+    /// The origin with every text cut to what the journal can hold.
     pub(super) fn shortened(&self) -> Self {
         let short = |text: &str| {
             let plain = text.chars().filter(|c| c.is_ascii_graphic() && !matches!(c, '"' | '\\')).take(LONGEST);

@@ -1,11 +1,11 @@
 //! Which objects are on the disk, without asking for each of them.
 //!
-//! A few objects are asked for one by one. When many are, the folders are listed, and the listing is kept in the file
+//! A few objects are looked up one by one. For many, the folders are listed, and the listing is stored in the file
 //! `listing-…` under the user's mark: of each folder its state (inode, times of change), then the names found in it. A
-//! folder whose state is still the same holds the same names, so ten thousand objects cost 256 questions. The time of
-//! change of an inode cannot be set by hand: whatever is added, removed or restored shows. Times move in steps, so what
-//! changed less than [`SETTLED`] before it was listed, by the clock of the file system itself, is listed again. The file
-//! is a short cut: damaged, somebody else's or missing, the folders are listed.
+//! folder whose state is still the same holds the same names, so ten thousand objects cost 256 look-ups. The time of
+//! change of an inode cannot be set by hand, so it shows whatever is added, removed or restored. File times have a
+//! resolution, so a folder that changed less than [`SETTLED`] before it was listed, by the clock of the file system itself,
+//! is listed again. The file only saves time: when it is damaged, missing or another user's, the folders are listed.
 //!
 //! | bytes | field |
 //! |---|---|
@@ -29,16 +29,16 @@ const MAGIC: &[u8; 8] = b"flowlst2";
 /// The largest listing: one of ten million objects.
 const MOST: u64 = 1 << 29;
 
-/// Longer than the step of any file system's times, seconds.
+/// Longer than the resolution of any file system's times, seconds.
 const SETTLED: i64 = 2;
 
-/// From this many questions on the folders are listed.
+/// From this many look-ups on the folders are listed.
 const LIST_FROM: usize = 500;
 
-/// First bytes of content and key, which tell all objects apart.
+/// First bytes of content and key, which identify an object.
 type Short = [u64; 2];
 
-/// What is known about the objects on the disk.
+/// Which objects are known to be on the disk.
 #[derive(Default)]
 pub(super) struct Presence {
     asked: usize,
@@ -50,7 +50,7 @@ pub(super) struct Presence {
 type Listed = HashSet<Short, BuildHasherDefault<FirstBytes>>;
 
 impl Presence {
-    /// Announces that `count` objects will be asked for.
+    /// Announces that `count` objects will be looked up.
     pub(super) fn expect(&mut self, disk: &Disk, mark: &Mark, count: usize) -> Result<(), StoreError> {
         self.asked += count;
         if self.asked >= LIST_FROM {
@@ -67,8 +67,8 @@ impl Presence {
         Ok(self.listed.insert(listed))
     }
 
-    /// Whether the object is there; call [`Presence::expect`] first. Objects of other processes that came after the
-    /// listing are found by asking for the very file.
+    /// Whether the object is there; call [`Presence::expect`] first. An object that another process added after the
+    /// listing is found by looking up its file.
     pub(super) fn contains(&mut self, disk: &Disk, id: &ObjectId) -> bool {
         if self.listed.as_ref().is_some_and(|listed| listed.contains(&short(id))) {
             return true;
@@ -80,7 +80,7 @@ impl Presence {
         found
     }
 
-    /// Names of the objects of a task that were there when this was first asked for any task.
+    /// Names of the objects of a task that existed when this was first called for any task.
     pub(super) fn names_of_task(&mut self, disk: &Disk, mark: &Mark, key: &Key) -> Result<Vec<String>, StoreError> {
         if self.of_tasks.is_none() {
             let mut of_tasks: HashMap<u64, Vec<u64>, _> = HashMap::default();
@@ -111,12 +111,12 @@ impl Presence {
 
 /// A folder of objects as it was listed.
 struct Shard<'a> {
-    /// Inode, seconds and nanoseconds of its last change; nothing when they say nothing.
+    /// Inode, seconds and nanoseconds of its last change; `None` when that change is too recent.
     state: Option<[u64; 3]>,
     names: Cow<'a, [Short]>,
 }
 
-/// What an earlier listing says: all names, and which of them each folder holds that is still in the same state.
+/// The content of an earlier listing: all names, and those of each folder whose state is still the same.
 #[derive(Debug, Default, PartialEq)]
 struct Known {
     names: Vec<Short>,
@@ -133,7 +133,7 @@ pub(super) fn is_listing(name: &str) -> bool {
     name.strip_prefix("listing-").is_some_and(|user| user.len() == 8 && is_hex(user))
 }
 
-/// The objects of all folders; what is new in the listing is kept for the next time.
+/// The objects of all folders; a new listing is stored for the next time.
 fn list(disk: &Disk, mark: &Mark) -> Result<Listed, StoreError> {
     let Some((objects, names)) = object::shards(disk)? else { return Ok(Listed::default()) };
     let file = file_name(mark);
@@ -145,7 +145,7 @@ fn list(disk: &Disk, mark: &Mark) -> Result<Listed, StoreError> {
         let old = known.folders.get(&state(&stat));
         let state = match old {
             Some(_) => Some(state(&stat)),
-            // The time by the file system's own clock, of a file made after the first folder was looked at.
+            // The time by the file system's own clock: that of a file made after the first folder was looked at.
             None => clock
                 .get_or_insert_with(|| disk.draft("", 0o444).ok()?.file_time())
                 .is_some_and(|now: i64| now - stat.st_ctime > SETTLED)
@@ -166,7 +166,7 @@ fn list(disk: &Disk, mark: &Mark) -> Result<Listed, StoreError> {
     Ok(listed)
 }
 
-/// The objects in a folder that are plain files, or that the file system does not tell from such.
+/// The objects in a folder that are plain files as far as the file system tells.
 fn short_names(objects: &Folder, shard: &str) -> Vec<Short> {
     let Ok(folder) = objects.inner(shard) else { return Vec::new() };
     object::names(&folder, shard).iter().filter_map(|name| short_of_name(name)).collect()

@@ -1,8 +1,8 @@
 //! An object proves itself: the text of its task gives the key, its values give the content hash, and both give its name.
 //!
-//! A record of this user's own is compared first: size and digest of the file, before a byte of it is decoded. A record
-//! of somebody else, or none, says nothing: the file is read within a bound, decoded within bounds, and must come to the
-//! name that it has. What does not is moved to `aside/`, reported, and counts as missing. Nothing is deleted here.
+//! With a record of the user's own, size and digest of the file are compared before a byte of it is decoded. Without one, or
+//! with another user's, the file is read within a bound, decoded within bounds, and must give the name that it has. A file
+//! that does not is moved to `aside/`, reported, and counts as missing. Nothing is deleted here.
 
 use super::StoreError;
 use super::disk::Disk;
@@ -12,10 +12,10 @@ use super::object::{self, ObjectId, Seal};
 use crate::artifact::{Artifact, ContentHash, Key};
 use std::io::ErrorKind;
 
-/// The largest object that is opened without an own record of its size.
+/// The largest object that is opened without an own record of its size, bytes.
 const MOST_UNRECORDED: u64 = 1 << 32;
 
-/// An object that is what its name says.
+/// An object whose content is that of its name.
 pub(super) struct Proven {
     pub(super) id: ObjectId,
     pub(super) seal: Seal,
@@ -26,7 +26,7 @@ pub(super) struct Proven {
 /// Reads and proves an object; `seal` is what an own record says of its file.
 ///
 /// # Errors
-/// [`StoreError::Missing`] when there is none, [`StoreError::Damaged`] when it was something else and was set aside.
+/// [`StoreError::Missing`] when there is none, [`StoreError::Damaged`] when its content was another and it was set aside.
 pub(super) fn object(disk: &Disk, id: &ObjectId, seal: Option<&Seal>) -> Result<Proven, StoreError> {
     let (folder, name) = (id.folder(), id.file_name());
     let image = image(disk, (&folder, &name), &id.content, seal)?;
@@ -57,7 +57,7 @@ pub(super) fn image_of(disk: &Disk, id: &ObjectId, seal: Option<&Seal>) -> Resul
     image(disk, (&id.folder(), &id.file_name()), &id.content, seal)
 }
 
-/// Proves an object that lies in no store yet; what is wrong with it, in words.
+/// Proves an object that lies in no store yet; the error says in words what is wrong with it.
 pub(super) fn bytes(id: &ObjectId, image: Vec<u8>) -> Result<(), String> {
     let (artifact, text) = hdf5::decode(image).map_err(|error| error.to_string())?;
     match (artifact.content_hash() == id.content, Key::of(&text) == id.key) {
@@ -83,7 +83,7 @@ fn image(
         other => other.map_err(|error| disk.fail("read", &disk.path(folder, name), error)),
     };
     let Some(seal) = seal else { return read(MOST_UNRECORDED) };
-    // A file of another size is not even read: it may be huge.
+    // A file of another size is not read: it may be huge.
     if let Ok(super::folder::Entry::File(size)) = found.entry(name)
         && size != seal.size
     {

@@ -1,21 +1,21 @@
-//! Tasks on their way to the workers of a cluster, and what those report.
+//! Queues: tasks for the workers of a cluster, and the workers' reports.
 //!
 //! ```text
 //! queue/ID/tasks-0001.jsonl   a list of tasks, sealed                      written once by the submitter
 //! queue/ID/round-0001.json   which job was submitted, sealed               written once by the submitter
 //! queue/ID/begun/000017       somebody has begun task 17                   made once, by whoever begins it
-//! queue/ID/worker-….jsonl     what a worker reports, locked while it lives  appended to by that worker
-//! queue/ID/closed             nothing more is to be begun                  made once by the submitter
+//! queue/ID/worker-….jsonl     the report of a worker, locked while it lives  appended to by that worker
+//! queue/ID/closed             no more tasks are to be begun                 made once by the submitter
 //! queue/ID/submitter.lock     locked by the process that looks after it
 //! queue/ID/job-1.sh           what was submitted, for the user alone
 //! queue/ID/log-….txt          what the workers print, written by the scheduler
 //! ```
 //!
-//! **The right to begin a task** is a file that can be made only once, which every shared file system sees to, also
-//! one whose locks do not reach other nodes. It stays, so nobody needs to read what others have done before beginning.
+//! **The right to begin a task** is a file that can be made only once; every shared file system guarantees that, also
+//! one whose locks do not reach other nodes. The file stays, so a worker need not read the reports of others before it begins.
 //!
 //! **A list is sealed**: it begins with a keyed blake3 of itself under a secret that the submitter hands to its workers
-//! inside the job script, and that the next submitter of the same user derives again. Whoever else can write to a shared
+//! inside the job script, and that the next submitter of the same user derives again. So another person who can write to the
 //! store cannot make a worker run a program. Reports carry no results, so a forged one costs time only.
 
 use super::disk::Disk;
@@ -36,7 +36,7 @@ const SUBMITTER: &str = "submitter.lock";
 const MOST_LIST: u64 = 1 << 32;
 /// Bytes of a report that are read at once.
 const MOST_NEWS: u64 = 1 << 22;
-/// Room that a report has from the start, so that it can say that the disk is full.
+/// Room that a report reserves at the start, so that it can report a full disk, bytes.
 const ROOM: u64 = 1 << 14;
 
 /// Whether flow makes a folder of this name in this folder of a store.
@@ -77,7 +77,7 @@ impl Store {
         Ok(Queue { disk: self.disk.clone(), inside, name: name.to_owned(), secret: self.mark.queue(name) })
     }
 
-    /// The queue of this name; `secret` is what its submitter handed over, for another user's state folder or none.
+    /// The queue of this name. `secret` is the one in the job script, for a worker that cannot read its submitter's state folder.
     pub fn queue(&self, name: &str, secret: Option<[u8; 32]>) -> Queue {
         let secret = secret.unwrap_or_else(|| self.mark.queue(name));
         Queue { disk: self.disk.clone(), inside: format!("{FOLDER}/{name}"), name: name.to_owned(), secret }
@@ -116,7 +116,7 @@ pub struct Queue {
     secret: [u8; 32],
 }
 
-/// A lock that says that somebody looks after a queue.
+/// The lock of the process that looks after a queue.
 pub struct LookedAfter(#[expect(dead_code, reason = "it is held, and let go when it is dropped")] Held);
 
 impl Queue {
@@ -125,7 +125,7 @@ impl Queue {
         &self.name
     }
 
-    /// What its workers are handed, as hexadecimal digits.
+    /// The secret for its workers, as hexadecimal digits.
     pub fn secret(&self) -> String {
         blake3::Hash::from_bytes(self.secret).to_hex().to_string()
     }
@@ -144,7 +144,7 @@ impl Queue {
         self.disk.folder(&self.inside).map_err(|error| self.fail("open the folder", "", error))
     }
 
-    /// Writes list number `number`, which nobody has written before.
+    /// Writes list number `number`, which must be new.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -152,7 +152,7 @@ impl Queue {
         self.put(list_name(number), text)
     }
 
-    /// Notes submission number `number`, for whoever looks after the queue next.
+    /// Writes the note on submission number `number`, for the process that looks after the queue next.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -168,7 +168,7 @@ impl Queue {
         }
     }
 
-    /// List number `number`; none when there is none yet, an error when its seal is not that of this queue.
+    /// List number `number`; `None` when there is none yet, an error when its seal is not that of this queue.
     ///
     /// # Errors
     /// The store cannot be read, or the list was not written by the submitter.
@@ -176,7 +176,7 @@ impl Queue {
         self.sealed(list_name(number))
     }
 
-    /// The note on submission number `number`; none when there is none.
+    /// The note on submission number `number`; `None` when there is none.
     ///
     /// # Errors
     /// As [`Queue::list`].
@@ -219,7 +219,7 @@ impl Queue {
         Ok(self.path().join(name))
     }
 
-    /// Begins a task, once and for all; whether nobody has begun it before.
+    /// Begins a task; false when it has been begun before.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -248,7 +248,7 @@ impl Queue {
         Ok(begun)
     }
 
-    /// Says that nothing more is to be begun.
+    /// Closes the queue: no more tasks are to be begun.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -256,12 +256,12 @@ impl Queue {
         self.disk.write_new(&self.inside, CLOSED, b"", false).map(|_| ())
     }
 
-    /// Whether nothing more is to be begun; also when the queue is gone.
+    /// Whether the queue is closed or removed.
     pub fn is_closed(&self) -> bool {
         self.folder().is_ok_and(|folder| folder.entry(CLOSED).is_ok()) || !self.path().is_dir()
     }
 
-    /// Looks after the queue, unless another process of the same node, or of all nodes where locks reach those, does.
+    /// Takes the lock of the process that looks after the queue; `None` while another process holds it.
     pub fn look_after(&self) -> Option<LookedAfter> {
         let folder = self.folder().ok()?;
         let file = folder.open(SUBMITTER, true).or_else(|_| folder.create(SUBMITTER, 0o600)).ok()?;
@@ -278,9 +278,9 @@ impl Queue {
     pub fn report(&self, name: &str) -> Result<ReportFile, StoreError> {
         let name = format!("worker-{name}.jsonl");
         let file = self.folder()?.create(&name, 0o644).map_err(|error| self.fail("create", &name, error))?;
-        // Readers hold it for a moment only. An error: a file system without locks.
+        // Readers hold the lock for a moment only. It fails on a file system without locks.
         let _ = file.lock();
-        // A file system that cannot sets nothing aside.
+        // Some file systems cannot reserve room.
         let _ = rustix::fs::fallocate(&file, rustix::fs::FallocateFlags::KEEP_SIZE, 0, ROOM);
         Ok(ReportFile {
             file: Held(file),
@@ -302,14 +302,14 @@ impl Queue {
         Ok(names)
     }
 
-    /// The whole lines that a report has from byte `from` on, their length, and whether its worker holds its lock.
+    /// The complete lines of a report from byte `from` on, their length in bytes, and whether its worker holds its lock.
     ///
     /// # Errors
     /// The store cannot be read.
     pub fn news(&self, report: &str, from: u64) -> Result<(String, u64, bool), StoreError> {
         let read = |file: &mut File| -> std::io::Result<(String, u64, bool)> {
             folder::ask_anew(&*file);
-            // Asked before reading: what a dead worker has written is all there is.
+            // Asked before reading: a worker that has ended writes no more.
             let held = matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock));
             if !held {
                 let _ = file.unlock();
@@ -327,7 +327,7 @@ impl Queue {
         }
     }
 
-    /// The last line of what a job has printed, for the reader of an error.
+    /// The last line that a job has printed, for the reader of an error.
     pub fn last_words(&self, log: &str) -> Option<String> {
         let text = self.folder().ok()?.read(log, MOST_NEWS).ok()?;
         let text = String::from_utf8_lossy(&text);

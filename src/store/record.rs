@@ -1,4 +1,4 @@
-//! What is recorded of a finished task.
+//! The record of a finished task.
 
 use super::mark;
 use super::object::Seal;
@@ -7,7 +7,7 @@ use crate::artifact::{ContentHash, Key};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// What the journal says about a finished task.
+/// A line of the journal: a finished task and its result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// The task.
@@ -18,12 +18,12 @@ pub struct Record {
     pub started: i64,
     /// Duration of the task, seconds.
     pub seconds: f64,
-    /// Where and by what it was computed.
+    /// Machine, version and commit that computed it.
     pub origin: Arc<Origin>,
     pub(super) seal: Seal,
     /// The mark of the user who wrote it.
     pub(super) mark: [u8; mark::SHORT],
-    /// Whether that is this user.
+    /// Whether this user wrote it.
     pub(super) own: bool,
 }
 

@@ -1,4 +1,5 @@
-//! Results on their way to others: a remote holds objects and lists of them, and nothing in it is believed unseen.
+//! Remotes: folders through which users share results. A remote holds objects and lists of them, and nothing in it is
+//! believed unchecked.
 //!
 //! ```text
 //! REMOTE/flow.remote                 says that flow made this folder
@@ -7,13 +8,13 @@
 //! REMOTE/segments/HASH.sig           who pushed it: an SSH signature of it                         sign.rs
 //! ```
 //!
-//! **Pushing** writes the objects that no segment lists, then one segment: a push that is torn leaves objects that nobody
-//! looks at. Nothing is replaced or deleted. **Pulling** lists the segments alone, never the objects.
+//! **Pushing** writes the objects that no segment lists, then one segment: an interrupted push leaves objects that no segment
+//! lists. Nothing is replaced or deleted. **Pulling** lists the segments alone, never the objects.
 //!
 //! **What is checked, in this order**: the segment against its name; its signature against those whom the user allows; the
 //! object's size and digest against its record, before a byte of it is decoded; its values and the text of its task against
-//! content hash and key. So an object proves what it is; that its values are what the task gives is the word of the signer,
-//! and `flow store audit` computes some of them again, which equal bits make a proof.
+//! content hash and key. So an object proves which task and which values it holds. That the task gives these values is the
+//! signer's claim; `flow store audit` computes some of them again, and equal bits prove it.
 
 mod place;
 mod segment;
@@ -22,9 +23,9 @@ mod sign;
 pub use sign::{Signing, Trust};
 
 use super::object::{self, Seal};
-use super::prove;
 use super::record::moment;
 use super::{ObjectId, Record, Store, StoreError, Timing, locked};
+use super::{finish, prove};
 use crate::artifact::Key;
 use place::Place;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -34,31 +35,31 @@ use std::sync::Arc;
 /// The largest segment that is read: one of ten million records.
 const MOST_SEGMENT: u64 = 1 << 31;
 
-/// What became of a push.
+/// The outcome of a push.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pushed {
     /// Results that were copied and listed.
     pub pushed: usize,
     /// Results that the remote lists already.
     pub there: usize,
-    /// The new segment; none when nothing was new.
+    /// The new segment; `None` when nothing was new.
     pub segment: Option<String>,
 }
 
-/// What became of a pull.
+/// The outcome of a pull.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pulled {
     /// Results that are new here.
     pub pulled: usize,
-    /// Results that were here.
+    /// Results that were here before.
     pub here: usize,
-    /// What was refused, and why.
+    /// The segments and results that were refused, each with the reason.
     pub refused: Vec<String>,
-    /// Who signed what was taken, and how many results each.
+    /// The signers of the results that were taken, and the number of results of each.
     pub signers: BTreeMap<String, usize>,
 }
 
-/// What became of a mirror.
+/// The outcome of a mirror.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mirrored {
     /// Segments that were copied.
@@ -67,7 +68,7 @@ pub struct Mirrored {
     pub objects: usize,
 }
 
-/// What can go wrong with a remote as a whole.
+/// Errors of a remote as a whole.
 #[derive(Debug, thiserror::Error)]
 pub enum RemoteError {
     /// The remote or the store cannot be read or written.
@@ -84,7 +85,7 @@ pub enum RemoteError {
     /// Signing failed.
     #[error("the push cannot be signed: {0}")]
     Signing(String),
-    /// What a mirror copies is not what it should be.
+    /// A file of the remote is damaged.
     #[error("{name} of the remote is damaged: {why}; nothing more was copied")]
     Damaged {
         /// The file.
@@ -114,7 +115,7 @@ impl Store {
                 pushed.there += 1;
                 continue;
             }
-            // A record of somebody else says nothing about the file, and a damaged object is not passed on.
+            // Another user's record does not prove the file, and a damaged object is not passed on.
             let Some(record) = self.find(&record.key)?.filter(|found| found.object() == id) else { continue };
             let Ok(image) = prove::image_of(&self.disk, &id, Some(&record.seal)) else { continue };
             remote.put(&id.folder(), &id.file_name(), &image)?;
@@ -124,7 +125,7 @@ impl Store {
             let bytes = segment::write(new.clone());
             let name = blake3::hash(&bytes).to_hex().to_string();
             let signature = signing.sign(&bytes).map_err(RemoteError::Signing)?;
-            // The signature first: nobody sees a segment that is to be signed and is not.
+            // The signature first, so that no reader finds the segment unsigned.
             if let Some(signature) = signature {
                 remote.put_signature(&name, &signature)?;
             }
@@ -135,14 +136,14 @@ impl Store {
         Ok(pushed)
     }
 
-    /// Takes the results that the remote at `path` lists and this store has not, from those who are trusted.
+    /// Takes the results that the remote at `path` lists and this store lacks, if their signers are trusted.
     ///
     /// # Errors
     /// The remote cannot be read or the store cannot be written.
     pub fn pull(&self, path: &Path, trust: &Trust) -> Result<Pulled, RemoteError> {
         let remote = Place::open(path)?;
         let mut pulled = Pulled::default();
-        // Which contents this store has of each task, to see contradictions.
+        // The contents that this store has of each task, to find contradictions.
         let mut here: HashMap<Key, ObjectId> = HashMap::new();
         for record in self.records()? {
             if object::is_there(&self.disk, &record.object()) {
@@ -200,12 +201,12 @@ impl Store {
         let image = remote.object(&id, record.seal.size).map_err(Untaken::Store)?;
         let image = image.ok_or_else(|| refused("its object is not there".to_owned()))?;
         if let Some(why) = record.seal.difference(&Seal::of(&image)) {
-            // Nothing was read of what is larger, a link, a pipe or a device.
+            // A larger file, a link, a pipe and a device are not read.
             let why = if image.is_empty() { "it is no plain file of the recorded size".to_owned() } else { why };
             return Err(refused(format!("{why}; it is computed again when it is needed")));
         }
         prove::bytes(&id, image.clone()).map_err(refused)?;
-        let seal = object::write(&self.disk, &id, &image, false, None).map_err(Untaken::Store)?;
+        let seal = finish::write(&self.disk, &id, &image, false, None).map_err(Untaken::Store)?;
         let timing = Timing { started: moment(record.started), seconds: record.seconds };
         let own = self.marked(&id, seal, &timing, Arc::clone(&record.origin));
         locked(&self.segments).append(&self.disk, &own, false).map_err(Untaken::Store)?;
@@ -223,10 +224,11 @@ enum Untaken {
     Store(StoreError),
 }
 
-/// Copies what one remote lists and the other does not, signatures with it, so that the signers stay who they were.
+/// Copies the segments and objects that one remote lists and the other does not, with their signatures, so that the signers
+/// stay the same.
 ///
 /// # Errors
-/// One of them cannot be read or written, or holds something else than it lists.
+/// One of them cannot be read or written, or holds other objects than it lists.
 pub fn mirror(from: &Path, to: &Path) -> Result<Mirrored, RemoteError> {
     let (from, to) = (Place::open(from)?, Place::make(to)?);
     let known: HashSet<String> = to.segments()?.into_iter().collect();

@@ -1,7 +1,7 @@
-//! Which folder is a store: one with the file `flow.store` that flow made when it made the store.
+//! The root of a store: a folder with the file `flow.store`, which flow wrote when it made the store.
 //!
-//! A folder that is not there, or is empty but for notes for its readers, becomes a store when it is first opened. Any
-//! other folder without the marker is refused, so that nobody's files are taken for results: not read, moved or removed.
+//! A folder that does not exist, or holds nothing but notes for its readers, becomes a store when it is first opened. Any
+//! other folder without the marker is refused, so that no other files are taken for results, and read, moved or removed.
 //! A store of an earlier flow has no marker; [`adopt`] makes one when nothing but what flow makes lies in the folder.
 
 use super::StoreError;
@@ -25,8 +25,8 @@ const FOLDERS: &[&str] = &["objects", "journal", "memo", "runs", "locks", "aside
 /// Files that flow makes in the root of a store.
 const FILES: &[&str] = &[MARKER, super::lock::IN_USE, "listing"];
 
-/// How long another node's marker may be listed before it can be read: shared file systems remember for up to ten seconds that
-/// a file was not there.
+/// How long another node's marker may be listed before it can be read: shared file systems cache for up to ten seconds that
+/// a file does not exist.
 const LATE: Duration = Duration::from_secs(15);
 const PAUSE: Duration = Duration::from_millis(100);
 
@@ -42,7 +42,7 @@ pub(super) fn open(disk: &Disk) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Opens the folder of a store; returns false when its marker came in this moment and cannot be read yet.
+/// Opens the folder of a store; false when its marker has just been written and cannot be read yet.
 fn opened(disk: &Disk) -> Result<bool, StoreError> {
     let root = &disk.root;
     if !root.is_dir() {
@@ -92,12 +92,12 @@ pub(super) fn adopt(disk: &Disk) -> Result<(), StoreError> {
         return Err(refuse(&disk.root, format!("it holds `{other}`, which flow does not make; move that away first")));
     }
     if !journal::is_there(disk)? {
-        return Err(refuse(&disk.root, "it holds no journal that a flow has written".to_owned()));
+        return Err(refuse(&disk.root, "it holds no journal that flow has written".to_owned()));
     }
     mark(disk)
 }
 
-/// What lies in the root besides notes and files that are being written.
+/// The first entry of the root that is neither a note nor a file that is being written.
 fn other_names(disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> {
     let mut names = Vec::new();
     let passing = |name: &str| is_note(name) || is_temporary(name) || is_unlinked(name);
@@ -107,7 +107,7 @@ fn other_names(disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> 
     Ok(names)
 }
 
-/// Whether a file system shared over a network left this in place of a file that was removed while somebody read it.
+/// Whether a network file system left this in place of a file that was removed while it was open.
 fn is_unlinked(name: &str) -> bool {
     [".nfs", ".fuse_hidden"].iter().any(|prefix| name.starts_with(prefix))
 }
@@ -132,7 +132,7 @@ pub(super) fn is_folder(folder: &str, name: &str) -> bool {
 }
 
 fn mark(disk: &Disk) -> Result<(), StoreError> {
-    // Of two that make it, one is first, and both write the same.
+    // Of two processes that make it, both write the same.
     disk.write_new("", MARKER, TEXT.as_bytes(), true)?;
     Ok(())
 }
@@ -143,7 +143,7 @@ fn create(disk: &Disk) -> Result<(), StoreError> {
     std::fs::create_dir_all(root).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => refuse(root, "it is not a folder".to_owned()),
         ErrorKind::NotADirectory => refuse(root, "a part of the path is a file".to_owned()),
-        // The folder that is missing cannot have vanished.
+        // A folder that is missing is made here, so it has not vanished.
         _ => StoreError::io("make the folder", root, Path::new("/"), error),
     })?;
     disk.write_new("", ".gitignore", b"*\n", false)?;

@@ -1,21 +1,20 @@
-//! Reading everything: what is sound, what is not, what flow has not written.
+//! Verification: reads every file and tells sound, damaged and foreign ones apart.
 
-use super::folder::Entry;
 use super::object::{self, ObjectId};
-use super::{Amount, Damage, Record, Store, StoreError, campaign, clean, journal, locked, memo, prove, root};
+use super::{Amount, Damage, Record, Store, StoreError, contents, locked, memo, prove};
 use crate::artifact::{ContentHash, Key};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
-/// What verify found.
+/// The outcome of a verification.
 #[derive(Clone, Debug, Default)]
 pub struct Verdict {
-    /// Results that prove themselves.
+    /// Sound results.
     pub sound: Amount,
-    /// Objects that were not, and were set aside.
+    /// Objects that were not sound, and were set aside.
     pub damages: Vec<Damage>,
-    /// Tasks with a record whose object is not there, and with no other.
+    /// Tasks with records whose objects are all missing.
     pub missing: Vec<Key>,
     /// Sound objects without a record, which have been recorded again.
     pub adopted: Vec<Key>,
@@ -23,17 +22,17 @@ pub struct Verdict {
     pub proven: Vec<Key>,
     /// Records of the journal that could not be read.
     pub lost_records: usize,
-    /// Tasks with two different results that are both sound: they depend on something that is not in their key, or one is
-    /// forged. Neither is believed; the next run computes them again.
+    /// Tasks with two different sound results: the task depends on something that is not in its key, or one result is
+    /// forged. Neither is believed; the next run computes the task again.
     pub contradictions: Vec<(Key, ContentHash, ContentHash)>,
-    /// Memos and records of runs that others have made, or that were changed: they are not believed.
+    /// Memos and campaign records that others have made or that were changed: they are not believed.
     pub not_own: usize,
-    /// What lies in the store and was not written by flow; it is not touched.
+    /// Files in the store that flow has not written; they are not touched.
     pub strangers: Vec<PathBuf>,
 }
 
 impl Verdict {
-    /// Whether all that flow wrote is what it was, and nothing contradicts.
+    /// Whether every file is as flow wrote it, and no two results contradict each other.
     pub fn is_sound(&self) -> bool {
         self.damages.is_empty() && self.contradictions.is_empty()
     }
@@ -49,7 +48,7 @@ impl Store {
         self.refresh()?;
         let mut verdict = Verdict { lost_records: locked(self.index()?).damaged(), ..Verdict::default() };
         let records = self.records()?;
-        // Of what was read only its seal is kept: all results of a store together may be larger than memory.
+        // Only the seals stay in memory: all results of a store together may be larger than it.
         let check = |record| (record, self.read(record).map(|proven| proven.seal));
         let checked: Vec<_> = records.par_iter().map(check).collect();
         let (mut sound, mut lost): (Vec<ObjectId>, Vec<Key>) = Default::default();
@@ -80,7 +79,7 @@ impl Store {
         Ok(verdict)
     }
 
-    /// Records the objects again that no record knows.
+    /// Records the objects again that have no record.
     fn adopt_strays(
         &self,
         records: &[Record],
@@ -111,13 +110,13 @@ impl Store {
         Ok(())
     }
 
-    /// Finds notes that are not this user's, and what flow has not written.
+    /// Finds memos and campaign records that are not this user's, and files that flow has not written.
     fn look_around(&self, verdict: &mut Verdict) -> Result<(), StoreError> {
         for number in self.campaigns()? {
             verdict.not_own += usize::from(!self.campaign(number)?.is_some_and(|campaign| campaign.own));
         }
         let (mark, disk) = (&self.mark, &self.disk);
-        clean::walk(disk, &mut |place| {
+        contents::walk(disk, &mut |place| {
             if place.folder.starts_with(memo::FOLDER) && place.is_ours() {
                 let memo = memo::key_of(place.name).zip(place.at.read(place.name, memo::MOST).ok());
                 let own = memo.is_some_and(|(key, bytes)| memo::unpack(mark, &key, &bytes).is_some());
@@ -128,26 +127,5 @@ impl Store {
         })?;
         verdict.strangers.sort();
         Ok(())
-    }
-}
-
-/// Whether flow writes what has this name in this folder of the store.
-pub(super) fn is_ours(place: &clean::Place<'_>) -> bool {
-    let clean::Place { at, folder, name, entry } = place;
-    if !matches!(entry, Entry::File(_)) {
-        return false;
-    }
-    let (top, shard) = folder.split_once('/').unwrap_or((folder, ""));
-    match (top, shard) {
-        _ if super::disk::is_temporary(name) => true,
-        ("", "") => root::is_ours(name) || root::is_note(name),
-        ("objects", shard) => object::is_shard(shard) && object::is_ours(at, shard, name),
-        (memo::FOLDER, shard) => object::is_shard(shard) && memo::is_ours(at, shard, name),
-        (journal::FOLDER, "") => journal::is_ours(at, name),
-        (campaign::FOLDER, "") => campaign::is_ours(at, name),
-        (super::lock::FOLDER, "") => super::lock::is_name(name),
-        (object::ASIDE, "") => object::is_aside(name),
-        (super::queue::FOLDER, inside) => super::queue::is_ours(inside, name),
-        _ => false,
     }
 }

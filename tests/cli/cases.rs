@@ -202,6 +202,10 @@ fn what_a_killed_campaign_left_is_ended_removed_and_told() {
     child.kill().expect("killing flow");
     child.wait().expect("flow");
     assert_eq!(folders(&space.path("scratch")).len(), 1);
+    // Other tests kill campaigns at the same time.
+    let dry = told(&space.flow(&["store", "gc", "w.toml"]));
+    assert!(dry.contains("would end what"), "{dry}");
+    assert_eq!(folders(&space.path("scratch")).len(), 1, "a dry run removes nothing");
     let swept = space.flow(&["store", "gc", "w.toml", "--yes"]);
     assert!(told(&swept).contains("a campaign that was killed left"), "{}", told(&swept));
     assert_eq!(folders(&space.path("scratch")), Vec::<PathBuf>::new());

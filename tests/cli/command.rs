@@ -53,7 +53,7 @@ fn a_changed_template_parameter_or_command_runs_again_and_a_changed_limit_does_n
 fn each_way_to_fail_is_told_and_not_kept() {
     for (script, more, message) in [
         ("echo broken beam >&2; exit 3", "", "exit status: 3"),
-        ("exit 3", "", "it said nothing"),
+        ("exit 3", "", "it printed nothing"),
         ("sleep 60", "time_limit = \"0.2 s\"", "longer than its limit of 0.2 s"),
         ("echo nothing", "", "the program left no file `out.csv`"),
         ("echo '{' > out.csv", "", "no column `UCS`"),

@@ -177,8 +177,11 @@ fn gc_keeps_what_the_workflow_reaches_and_asks_first() {
     let before = space.objects().len();
     space.stdout(&["store", "gc", "w.toml"]);
     assert_eq!(space.objects().len(), before, "a dry run removes nothing");
-    space.stdout(&["store", "gc", "w.toml", "--yes"]);
-    assert!(space.objects().len() < before);
+    let said = space.stdout(&["store", "gc", "w.toml", "--yes"]);
+    let gone = before - space.objects().len();
+    assert!(gone > 0 && said.contains(&format!("removed {gone} results")), "{said}");
+    let memos = |word: &str| said.lines().any(|line| line.starts_with("removed") && line.contains(word));
+    assert!(memos("memos"), "{said}");
     space.run(&[]).expect(&[]);
     assert!(space.stdout(&["store", "verify"]).contains("are sound"));
 }

@@ -176,3 +176,125 @@ fn a_verdict_that_cannot_be_read_is_no_valid_run() {
     let runs = space.stdout(&["show", "w.toml", "runs", "--table", "runs", "--csv", "--quiet"]);
     assert!(runs.contains("\n3,100,,,\n"), "{runs}");
 }
+
+/// A calibration that runs the program itself: y = 2 x, and between 3 and 4 the disc turns and shows 100.
+const LOOP: &str = r#"
+[workflow]
+seed = 7
+[factor]
+x = { sets = "m.x", range = [1, 5] }
+[response]
+y = { unit = "MPa" }
+[material.base]
+m = { x = 4 }
+[stage.runs]
+kind = "command"
+material = "base"
+run = ["sh", "engine.sh"]
+templates = { "engine.sh" = "engine.sh" }
+read.y = { file = "out.json", pointer = "/y", unit = "MPa" }
+validity = { file = "out.json", pointer = "/checks" }
+[stage.found]
+kind = "calibrate"
+simulator = "runs"
+factors = ["x"]
+targets = [{ y = "8.4 MPa" }]
+method = "genetic"
+[stage.found.genetic]
+population = 6
+generations = 4
+[stage.verified]
+kind = "verify"
+solution = "found"
+simulator = "runs"
+replicates = 3
+"#;
+
+fn in_a_loop(turns: &str) -> Space {
+    let space = Space::new();
+    space.write(
+        "engine.sh",
+        &format!(
+            "awk 'BEGIN {{ x = {{{{m.x}}}}; turns = ({turns}); v = turns ? \"\\\"rotation\\\"\" : \"null\";\n\
+             printf \"{{\\\"y\\\": %.17g, \\\"checks\\\": %s}}\\n\", turns ? 100 : 2 * x, v > \"out.json\" }}'\n"
+        ),
+    );
+    space.write("w.toml", LOOP);
+    space
+}
+
+/// The cells of a column of a table.
+fn cells(space: &Space, more: &[&str], table: &str, column: &str) -> Vec<Value> {
+    let text = space.stdout(&[&["show", "w.toml", "found", "--table", table, "--json", "--quiet"], more].concat());
+    let shown: Value = serde_json::from_str(&text).expect("JSON");
+    let columns = shown["columns"].as_array().expect("columns");
+    let found = columns.iter().find(|own| own["name"] == column);
+    found.map(|own| own["values"].as_array().expect("values").clone()).unwrap_or_default()
+}
+
+#[test]
+fn a_calibration_that_runs_the_program_leaves_out_keeps_or_refuses_runs_that_are_not_valid() {
+    let space = in_a_loop("x > 3 && x < 4");
+    let output = space.flow(&["run", "w.toml"]);
+    assert!(output.status.success(), "{}", told(&output));
+    let texts =
+        |values: Vec<Value>| values.into_iter().map(|v| v.as_str().unwrap_or("").to_owned()).collect::<Vec<_>>();
+    let failures = texts(cells(&space, &[], "history", "failure"));
+    let left = failures.iter().filter(|failure| *failure == "not valid: rotation").count();
+    assert!(left > 0, "no run was in the range: {failures:?}");
+    assert_eq!(failures.iter().filter(|failure| !failure.is_empty()).count(), left);
+    let notes = texts(cells(&space, &[], "notes", "note")).join("\n");
+    let counted = format!("{left} of {} evaluations gave no result: not valid: rotation ({left})", failures.len());
+    assert!(notes.contains(&counted), "{notes}");
+    let xs: Vec<f64> = cells(&space, &[], "history", "x").iter().filter_map(Value::as_f64).collect();
+    for (x, failure) in xs.iter().zip(&failures) {
+        assert_eq!(*x > 3.0 && *x < 4.0, !failure.is_empty(), "{x}");
+    }
+    // None of them is among what the solution rests on.
+    let best = cells(&space, &[], "solution", "x")[0].as_f64().expect("a solution");
+    assert!(!(3.0..4.0).contains(&best) && (best - 4.2).abs() < 0.5, "{best}");
+
+    let keep = ["--set", "stage.found.invalid=keep"];
+    assert!(space.flow(&[&["run", "w.toml", "found"], &keep[..]].concat()).status.success());
+    let marks = texts(cells(&space, &keep, "history", "validity"));
+    let kept = marks.iter().filter(|mark| *mark == "rotation").count();
+    assert!(kept > 0);
+    let responses: Vec<f64> = cells(&space, &keep, "history", "y").iter().filter_map(Value::as_f64).collect();
+    assert_eq!(responses.iter().filter(|y| **y == 100.0).count(), kept, "kept runs have their responses");
+
+    let refused = space.flow(&["run", "w.toml", "found", "--set", "stage.found.invalid=refuse"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(told(&refused).contains("found: a run is not valid: rotation"), "{}", told(&refused));
+}
+
+/// With proportional corrections one run in the range is passed by, and two good ones meet the target.
+#[test]
+fn proportional_corrections_go_on_after_a_run_that_is_not_valid() {
+    let space = in_a_loop("x > 2.9 && x < 3.1");
+    let method = ["--set", "stage.found.method=proportional"];
+    let text = LOOP.split("[stage.found.genetic]").next().expect("the first stages");
+    space.write("w.toml", text);
+    let output = space.flow(&[&["run", "w.toml", "found"], &method[..]].concat());
+    assert!(output.status.success(), "{}", told(&output));
+    let xs: Vec<f64> = cells(&space, &method, "history", "x").iter().filter_map(Value::as_f64).collect();
+    assert!(xs.len() == 3 && (xs[1] - 3.3).abs() < 1e-9 && (xs[2] - 4.2).abs() < 1e-9, "{xs:?}");
+    let space = in_a_loop("1");
+    space.write("w.toml", text);
+    let output = space.flow(&[&["run", "w.toml", "found"], &method[..]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told(&output).contains("all 7 simulations failed; the first: not valid: rotation"), "{}", told(&output));
+}
+
+#[test]
+fn a_verification_of_which_no_run_is_valid_knows_no_mean_and_no_deviation() {
+    let space = space(CALIBRATION);
+    space.write("engine.sh", &ENGINE.replace("r % 4 == 3", "r > 0"));
+    let output = space.flow(&["run", "w.toml"]);
+    let left = "4 of 4 runs are not valid and were left out: rotation of the disc (4)";
+    assert!(told(&output).contains(left), "{}", told(&output));
+    let shown = space.stdout(&["show", "w.toml", "verified", "--table", "summary", "--csv", "--quiet"]);
+    assert!(shown.contains("\n1,y,MPa,8.4,,,,,,,,unknown,0\n"), "{shown}");
+    let failed = space.flow(&["run", "w.toml", "verified", "--set", "stage.verified.unmet=fail"]);
+    assert_eq!(failed.status.code(), Some(1));
+    assert!(told(&failed).contains("set 1: no run gave a value of `y`"), "{}", told(&failed));
+}

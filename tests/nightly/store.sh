@@ -11,4 +11,5 @@ FLOW_TEST_KILLS=$kills cargo test --release --test cli kill:: -- --nocapture
 FLOW_TEST_FLIPS=$flips cargo test --release --test cli trust::flips -- --nocapture
 FLOW_FUZZ=$inputs cargo test --release --lib store::tests::fuzz -- --nocapture
 FLOW_FUZZ=$inputs cargo test --release --test workflows texts -- --nocapture
+FLOW_FUZZ=$inputs cargo test --release --test workflows bytes -- --nocapture
 FLOW_FUZZ=$inputs cargo test --release --test workflows fuzz:: -- --nocapture

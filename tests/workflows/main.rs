@@ -1,7 +1,8 @@
-//! Workflow files: good ones run, bad ones say what is wrong with them, the schema agrees, and no text makes the parser panic.
+//! Workflow files: good ones run, bad ones say what is wrong with them, the schema agrees, and no bytes make a reader panic.
 
 #![allow(clippy::unwrap_used)]
 
+mod bytes;
 mod corpus;
 mod files;
 mod fuzz;

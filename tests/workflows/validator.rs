@@ -1,6 +1,6 @@
 //! As much of JSON Schema 2020-12 as the schema of workflows uses; a keyword that is not known here is a fault of the test.
 
-use regex::Regex;
+use regex_lite::Regex;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 

@@ -37,6 +37,11 @@ const SPAN: f64 = 0.9;
 /// Radius within which balls mark a point of the beam, over the mean diameter.
 const MARK: f64 = 1.5;
 
+/// Distance of the supports of a beam of this length (m).
+pub(super) fn span(test: &Loading, width: f64) -> f64 {
+    test.particulars.span.unwrap_or(SPAN * width)
+}
+
 pub(super) fn run<S: Space>(
     test: &Loading,
     piece: &Piece<S>,
@@ -45,7 +50,7 @@ pub(super) fn run<S: Space>(
     watch: Watcher<'_>,
 ) -> Result<TestRecord<S>, TestError> {
     let [width, height, _] = piece.outline.extents();
-    let span = test.particulars.span.unwrap_or(SPAN * width);
+    let span = span(test, width);
     if !(span > height && span < width) {
         let wanted = "more than the height of the beam and less than its length";
         return Err(Faults(vec![Fault::Setting { quantity: "span", value: span, wanted }]).into());
@@ -57,7 +62,7 @@ pub(super) fn run<S: Space>(
     let balls = cut.radii.len();
     let mut mounted = mount(&cut, material, Vec::new(), rollers, (&test.platens, &test.machine), seed)?;
     let engine = &mut mounted.engine;
-    let schedule = test.schedule(&mounted.scales, height, (6.0 * height, span * span), engine.time_step())?;
+    let schedule = test.schedule(&mounted.scales, &piece.outline, engine.time_step())?;
     let down = Vector::<S>::build(|k| if k == 1 { -schedule.speed } else { 0.0 });
     set_velocities(engine, |x| beam.settling::<S>(x, schedule.speed))?;
     for roller in [balls, balls + 1] {

@@ -69,7 +69,7 @@ pub(super) fn run<S: Space>(
     let [diameter, _, thickness] = piece.outline.extents();
     let (mut mounted, platens) = between_platens(test, piece, material, seed)?;
     let engine = &mut mounted.engine;
-    let schedule = test.schedule(&mounted.scales, diameter, (2.0, diameter), engine.time_step())?;
+    let schedule = test.schedule(&mounted.scales, &piece.outline, engine.time_step())?;
     let rest = settle(engine, AT_REST, || watch(&super::curve::Sample::default()));
     platens.approach(engine, schedule.speed)?;
     let gauges = Gauges::new::<S>(0.4 * diameter, &piece.centres, &piece.radii);

@@ -93,7 +93,7 @@ pub(super) fn run<S: Space>(
     let mut vessel = Vessel::mount(test, piece, material, stress, seed)?;
     let schedule = {
         let Mounted { engine, scales, .. } = &vessel.mounted;
-        test.schedule(scales, piece.outline.height(), (2.0, piece.outline.height()), engine.time_step())?
+        test.schedule(scales, &piece.outline, engine.time_step())?
     };
     let ended = vessel.compress(watch)?;
     if ended == Isotropic::Reached {

@@ -1,6 +1,6 @@
 //! Starts the test of each kind, on a piece whose outline suits it.
 
-use super::judgement::{LoadingWarning, rate_warnings};
+use super::judgement::LoadingWarning;
 use super::kind::TestKind;
 use super::material::Material;
 use super::piece::{Outline, Piece};
@@ -28,7 +28,7 @@ impl Loading {
         if !faults.is_empty() {
             return Err(Faults(faults).into());
         }
-        self.suits(piece)?;
+        self.kind.suits(&piece.outline, S::DIMENSION)?;
         match self.kind {
             TestKind::Uniaxial => uniaxial::run(self, piece, material, seed, watch),
             TestKind::Brazilian => brazilian::run(self, piece, material, seed, watch),
@@ -43,21 +43,41 @@ impl Loading {
     /// # Errors
     /// An outline that does not suit the test, a test that would not end within its bound on steps, or all faults of the
     /// input that the engine finds.
-    pub fn warnings<S: Space>(&self, piece: &Piece<S>, material: &Material) -> Result<Vec<LoadingWarning>, TestError> {
-        self.suits(piece)?;
+    pub fn warning<S: Space>(
+        &self,
+        piece: &Piece<S>,
+        material: &Material,
+    ) -> Result<Option<LoadingWarning>, TestError> {
+        self.kind.suits(&piece.outline, S::DIMENSION)?;
         let (mounted, _) = between_platens(self, piece, material, 0)?;
-        let (height, time_step) = (piece.outline.height(), mounted.engine.time_step());
-        let schedule = self.schedule(&mounted.scales, height, (2.0, height), time_step)?;
-        let speed_ratio = schedule.speed / mounted.scales.wave_speed();
-        Ok(rate_warnings(schedule.speed, schedule.rate * time_step, speed_ratio))
+        let schedule = self.schedule(&mounted.scales, &piece.outline, mounted.engine.time_step())?;
+        Ok(LoadingWarning::of(schedule.speed, schedule.transits))
     }
 
-    /// Whether the outline suits the test.
-    fn suits<S: Space>(&self, piece: &Piece<S>) -> Result<(), TestError> {
-        let solid = S::DIMENSION == 3;
-        let upright = !matches!(piece.outline, Outline::Disc { .. });
+    /// How the strain grows with the way of a platen, grip or roller: by the first number times the way over the second (m).
+    pub(super) fn stretch(&self, outline: &Outline) -> (f64, f64) {
+        let [width, height, _] = outline.extents();
+        match self.kind {
+            TestKind::Uniaxial | TestKind::Brazilian | TestKind::Biaxial | TestKind::Triaxial => (2.0, height),
+            TestKind::Tension => (1.0, tension::half_free(height)),
+            TestKind::Bending => {
+                let span = bending::span(self, width);
+                (6.0 * height, span * span)
+            }
+        }
+    }
+}
+
+impl TestKind {
+    /// Whether a piece of this outline, in 2 or 3 dimensions, can be put to this test.
+    ///
+    /// # Errors
+    /// It cannot; the error says what the test needs.
+    pub fn suits(self, outline: &Outline, dimension: usize) -> Result<(), TestError> {
+        let solid = dimension == 3;
+        let upright = !matches!(outline, Outline::Disc { .. });
         let block = if solid { "width, depth and height, or diameter and height" } else { "width and height" };
-        let (fits, wanted, remedy) = match self.kind {
+        let (fits, wanted, remedy) = match self {
             TestKind::Uniaxial | TestKind::Tension if solid => (upright, "box or standing cylinder", block),
             TestKind::Uniaxial | TestKind::Tension => (upright, "rectangle", block),
             TestKind::Brazilian if solid => (!upright, "lying cylinder", "a diameter and a depth"),
@@ -73,7 +93,7 @@ impl Loading {
         if fits {
             return Ok(());
         }
-        let found = piece.outline.name(S::DIMENSION);
-        Err(TestError::Outline { test: self.kind.name(), wanted, found, remedy })
+        let found = outline.name(dimension);
+        Err(TestError::Outline { test: self.name(), wanted, found, remedy })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::kind::TestKind;
 use super::pace::Pace;
+use super::piece::Outline;
 use super::rig::{Machine, Platens, Scales};
 use super::speed::{Speed, Threshold};
 use crate::words::Number;
@@ -258,27 +259,21 @@ impl Loading {
         rules
     }
 
-    /// The numbers of the test on a piece of `height` (m) with these scales, whose strain grows by `ends` times the speed
-    /// over `length` (m).
+    /// The numbers of the test on a piece of this outline and these scales.
     ///
     /// # Errors
     /// It would take more steps of `time_step` (s) than its bound, or more samples than can be stored.
-    pub fn schedule(
-        &self,
-        scales: &Scales,
-        height: f64,
-        (ends, length): (f64, f64),
-        time_step: f64,
-    ) -> Result<Schedule, TestError> {
+    pub fn schedule(&self, scales: &Scales, outline: &Outline, time_step: f64) -> Result<Schedule, TestError> {
         let rule = &self.rule;
-        let speed = self.speed.of(height, scales);
+        let (height, (ends, length)) = (outline.height(), self.stretch(outline));
+        let speed = self.speed.of(length / ends, scales);
         let rate = ends * speed / length;
         let schedule = Schedule {
             speed,
             pace: self.pace,
             localised: self.kind.localised(),
             transit: height / scales.wave_speed(),
-            transits: 0.5 * scales.strain() * scales.wave_speed() / speed,
+            transits: self.speed.transits(speed, scales),
             rate,
             sample_strain: rule.sample_strain.of(scales.strain()),
             seating: rule.seating.of(scales.stress()),

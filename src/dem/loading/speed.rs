@@ -3,7 +3,7 @@
 //! | given as | speed of each platen |
 //! |---|---|
 //! | speed v | v |
-//! | strain rate ε̇ | ε̇ H / 2: both platens move |
+//! | strain rate ε̇ | ε̇ L: on the way L the strain grows by 1; H / 2 where both platens move |
 //! | transits N | ε_r c / (2 N) |
 //!
 //! N is the quasi-static number: how many times a wave of speed c = √(E*/ρ) runs through the height H while the strain
@@ -27,12 +27,21 @@ pub enum Speed {
 }
 
 impl Speed {
-    /// Speed of each platen (m/s) for a piece of `height` (m).
-    pub fn of(&self, height: f64, scales: &Scales) -> f64 {
+    /// Speed of each platen (m/s); on the way `length` (m) of a platen the strain grows by 1.
+    pub fn of(&self, length: f64, scales: &Scales) -> f64 {
         match *self {
             Self::Each(speed) => speed,
-            Self::StrainRate(rate) => 0.5 * rate * height,
+            Self::StrainRate(rate) => rate * length,
             Self::Transits(transits) => 0.5 * scales.strain() * scales.wave_speed() / transits,
+        }
+    }
+
+    /// Wave transits of the height within the reference strain when each platen moves at `speed` (m/s): the number that was
+    /// given, where it was.
+    pub fn transits(&self, speed: f64, scales: &Scales) -> f64 {
+        match *self {
+            Self::Transits(transits) => transits,
+            Self::Each(_) | Self::StrainRate(_) => 0.5 * scales.strain() * scales.wave_speed() / speed,
         }
     }
 
@@ -82,7 +91,7 @@ mod tests {
         let scales = Scales { modulus: 20e9, strength: 20e6, density: 2000.0 };
         let speed = Speed::Transits(100.0).of(0.2, &scales);
         assert!((speed - 0.015_811_388).abs() < 1e-8, "{speed}");
-        assert_eq!(Speed::StrainRate(2.0 * speed / 0.2).of(0.2, &scales), speed);
+        assert_eq!(Speed::StrainRate(2.0 * speed / 0.2).of(0.1, &scales), speed);
         assert_eq!(Speed::Each(0.02).of(0.2, &scales), 0.02);
         // The same number at twice the height, and a piece four times as stiff and strong goes twice as fast.
         assert_eq!(Speed::Transits(100.0).of(0.4, &scales), speed);

@@ -31,6 +31,11 @@ const GRIP: f64 = 0.1;
 /// Least share of cracks that lie between the grips.
 const LEAST_BETWEEN: f64 = 0.5;
 
+/// Half of the height between the grips (m).
+pub(super) fn half_free(height: f64) -> f64 {
+    (0.5 - GRIP) * height
+}
+
 pub(super) fn run<S: Space>(
     test: &Loading,
     piece: &Piece<S>,
@@ -41,8 +46,8 @@ pub(super) fn run<S: Space>(
     let (height, section) = (piece.outline.height(), piece.outline.section());
     let mut mounted = mount(piece, material, Vec::new(), Vec::new(), (&test.platens, &test.machine), seed)?;
     let engine = &mut mounted.engine;
-    let half = (0.5 - GRIP) * height;
-    let schedule = test.schedule(&mounted.scales, height, (1.0, half), engine.time_step())?;
+    let half = half_free(height);
+    let schedule = test.schedule(&mounted.scales, &piece.outline, engine.time_step())?;
     let stretch = |x: Vector<S>| schedule.speed * (x.at(1) / half).clamp(-1.0, 1.0);
     set_velocities(engine, |x| Vector::<S>::build(|k| if k == 1 { stretch(x) } else { 0.0 }))?;
     let grips = grips(piece, half);

@@ -93,7 +93,11 @@ fn a_random_specimen_fails_with_a_record_and_the_same_bits_every_time() {
     assert!(a.run.cracks.windows(2).all(|pair| pair[0].strain <= pair[1].strain));
     let books = a.run.energies.last().unwrap().1;
     assert!(books.imbalance().abs() < 0.02 && books.boundary > 0.0, "{books:?}");
-    assert!(a.judgement.warnings().len() == 2, "{:?}", a.judgement);
+    let (least, warning) = (super::judgement::LEAST_TRANSITS, a.judgement.warning().unwrap());
+    assert!(a.judgement.transits < least && warning.found == a.judgement.transits);
+    let slower = Loading { speed: Speed::Each(0.999 * warning.remedy), ..test };
+    let slower = run(&slower, &specimen, &material).judgement;
+    assert!(slower.warning().is_none() && slower.transits < 1.01 * least, "{slower:?}");
 }
 
 /// The trace of the stress is Σ f_n l / A over all contacts, and there is nothing across the load. The outermost branches,
@@ -154,6 +158,25 @@ fn a_test_without_a_peak_is_a_result_with_a_reason() {
         "no peak up to a strain of 2e-9: the largest stress is 34.5 kPa; raise strain_limit, or check the strengths of \
          the bonds"
     );
+}
+
+/// Tension stretches 0.8 of the height between grips, bending strains the outer fibre by 6 h w/L²: a rate of strain that is
+/// asked for is that of the piece in each test.
+#[test]
+fn a_rate_of_strain_is_that_of_the_piece_in_every_kind_of_test() {
+    let scales = super::rig::Scales { modulus: 20e9, strength: 20e6, density: 2000.0 };
+    let outline = Region::Rectangle { width: 0.2, height: 0.04 }.into();
+    for kind in super::kind::KINDS {
+        let test = Loading { speed: Speed::StrainRate(0.25), ..Loading::new(kind) };
+        let schedule = test.schedule(&scales, &outline, 1e-7).unwrap();
+        assert!((schedule.rate - 0.25).abs() < 1e-15, "{kind:?}: {}", schedule.rate);
+        let speed = match kind {
+            TestKind::Tension => 0.25 * 0.4 * 0.04,
+            TestKind::Bending => 0.25 * 0.18 * 0.18 / (6.0 * 0.04),
+            _ => 0.25 * 0.02,
+        };
+        assert!((schedule.speed - speed).abs() < 1e-12 * speed, "{kind:?}: {}", schedule.speed);
+    }
 }
 
 #[test]

@@ -38,7 +38,7 @@ pub(super) fn run<S: Space>(
     let (mut mounted, platens) = between_platens(test, piece, material, seed)?;
     let (height, section) = (piece.outline.height(), piece.outline.section());
     let engine = &mut mounted.engine;
-    let schedule = test.schedule(&mounted.scales, height, (2.0, height), engine.time_step())?;
+    let schedule = test.schedule(&mounted.scales, &piece.outline, engine.time_step())?;
     platens.approach(engine, schedule.speed)?;
     set_velocities(engine, |x| Vector::<S>::build(|k| if k == 1 { -schedule.rate * x.at(1) } else { 0.0 }))?;
     let gauges = Gauges::new::<S>(height, &piece.centres, &piece.radii);

@@ -21,10 +21,8 @@ pub enum Reason {
     NotAtRest,
     /// Too few particles across.
     FewParticles,
-    /// Strain in a step.
-    StrainPerStep,
-    /// Platen speed over wave speed.
-    PlatenSpeed,
+    /// Too few wave transits before failure.
+    Transits,
     /// The disc turned.
     Rotation,
     /// Cracks away from the loaded diameter.
@@ -42,7 +40,7 @@ pub enum Reason {
 impl Reason {
     /// Whether a run that does not meet the check is invalid; a caution otherwise, to be read beside the result.
     pub fn invalidates(self) -> bool {
-        !matches!(self, Self::StrainPerStep | Self::PlatenSpeed | Self::FewParticles | Self::ShearOnDiameter)
+        !matches!(self, Self::Transits | Self::FewParticles | Self::ShearOnDiameter)
     }
 
     /// Name in tables.
@@ -54,8 +52,7 @@ impl Reason {
             Self::Confinement => "confining stress",
             Self::NotAtRest => "rest before loading",
             Self::FewParticles => "particles across",
-            Self::StrainPerStep => "strain per step",
-            Self::PlatenSpeed => "platen speed over wave speed",
+            Self::Transits => "wave transits before failure",
             Self::Rotation => "rotation",
             Self::OffDiameter => "cracks near the loaded diameter",
             Self::ShearOnDiameter => "tensile cracks on the diameter",
@@ -74,8 +71,7 @@ impl Reason {
             Self::Confinement => "largest deviation of the confining stress from its target, over the target",
             Self::NotAtRest => "mean unbalanced force over mean contact force before loading",
             Self::FewParticles => "narrowest extent over the mean diameter",
-            Self::StrainPerStep => "axial strain in one step",
-            Self::PlatenSpeed => "platen speed over the wave speed √(E*/ρ)",
+            Self::Transits => "wave transits of the height until the bonds can be expected to fail",
             Self::Rotation => "least-squares rotation of all balls up to the peak",
             Self::OffDiameter => "share of the cracks up to the peak within a tenth of the diameter of the loaded one",
             Self::ShearOnDiameter => "share of tensile cracks among those near the loaded diameter, up to the peak",
@@ -103,7 +99,7 @@ impl Reason {
             Self::Confinement => "load slower, so that the side walls can follow",
             Self::NotAtRest => "make the packing with a smaller unbalanced ratio",
             Self::FewParticles => "reduce the mean radius",
-            Self::StrainPerStep | Self::PlatenSpeed => "lower the platen speed",
+            Self::Transits => "lower the platen speed",
             Self::Rotation => "use a smaller ratio of radii, smaller particles, or curved jaws",
             Self::OffDiameter | Self::CrackPath => "use smaller particles or curved jaws, or load slower",
             Self::ShearOnDiameter => "raise the shear strength of the bonds over their tensile strength",

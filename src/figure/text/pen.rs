@@ -1,4 +1,4 @@
-//! Setting one label: reads the markup from left to right and puts glyphs down as it goes.
+//! Typesetting of one label: reads the markup from left to right and places the glyphs.
 
 use super::{Glyph, LabelError};
 use crate::font::Face;
@@ -137,7 +137,7 @@ impl<'a> Pen<'a> {
         }
     }
 
-    /// One atom with the scripts that follow it; a subscript and a superscript stand one over the other.
+    /// One atom with the scripts that follow it; a subscript and a superscript are stacked.
     fn atom_with_scripts(&mut self) {
         if !matches!(self.rest.peek(), Some('_' | '^')) {
             self.atom();

@@ -4,7 +4,8 @@
 //! standard error s each differ by less than t s √2 in 95 of 100 cases, t being Student's on the residual degrees of freedom.
 
 use super::{Compared, Finding, Verdict, listed, rounded};
-use crate::artifact::statistics::{Coefficients, Fits, Surfaces};
+use crate::artifact::statistics::Fits;
+use crate::artifact::surfaces::{Coefficients, Surfaces};
 use crate::report::table::{Cell, Judged, Judgements};
 use math::distribution::t_for_coverage;
 use maud::{Markup, html};

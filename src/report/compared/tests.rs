@@ -1,10 +1,9 @@
 //! Verdicts on made-up tables.
 
 use super::*;
-use crate::artifact::statistics::{
-    Anova, Coefficients, Domains, Fits, NoteTable, Paths, PrincipalAxes, Residuals, Selections, Stationary, Surfaces,
-    Variances,
-};
+use crate::artifact::notes::NoteTable;
+use crate::artifact::statistics::{Anova, Fits, Residuals, Variances};
+use crate::artifact::surfaces::{Coefficients, Domains, Paths, PrincipalAxes, Selections, Stationary, Surfaces};
 use crate::artifact::{ContentHash, Group, Node};
 use crate::report::{Cost, Outcome, State};
 use crate::stage::{Class, Response};

@@ -1,5 +1,6 @@
-//! The settings of a calibration, and all that decides its result.
+//! The settings of a calibration, and the parameters of its task.
 
+use super::constraint::Constraint;
 use super::curve::Curve;
 use super::goal::Goal;
 use super::params::{FactorParam, Params};
@@ -26,22 +27,22 @@ pub struct Calibrate {
     pub surfaces: Option<String>,
     /// The stage whose simulation is run: its specimen, material and test.
     pub simulator: Option<String>,
-    /// Several such stages, all run at every point, such as a compression and a splitting test.
+    /// Several stages, all run at every point, such as a compression and a splitting test.
     pub simulators: Vec<String>,
-    /// The simulator that a response is taken from, when several give it; the first that does when not given.
+    /// The simulator that gives a response, when several do; by default the first that does.
     pub from: BTreeMap<String, String>,
-    /// Cheaper twins of the simulators, one or in their order: they are searched, and the simulators themselves run only
-    /// to correct the solution.
+    /// Cheaper twins of the simulators, one or in their order: the search runs these, and the simulators themselves only
+    /// correct the solution.
     pub coarse: Names,
-    /// Most runs of the simulators themselves where there are coarse ones; 12 when not given.
+    /// Most runs of the simulators themselves where there are coarse ones; 12 by default.
     pub full_runs: Option<usize>,
-    /// Stages whose runs the surrogate learns from.
+    /// Stages whose runs the surrogate uses too.
     pub learn_from: Vec<String>,
-    /// The material whose values stand for factors that a table of `learn_from` does not vary.
+    /// The material with the values of factors that a table of `learn_from` does not vary.
     pub material: Option<String>,
     /// The parameters to find, between the ends of their ranges.
     pub factors: Vec<String>,
-    /// Other ranges than those of the factors, in their units.
+    /// Ranges in place of those of the factors, in their units.
     pub ranges: BTreeMap<String, [f64; 2]>,
     /// Factors that are searched on another scale than their own.
     pub scales: BTreeMap<String, Scale>,
@@ -52,22 +53,22 @@ pub struct Calibrate {
     /// Factors that are not calibrated and their values, in their units: one table for all target sets, or one for each;
     /// several with one target set make as many sets.
     pub held: Vec<BTreeMap<String, f64>>,
-    /// A stress–strain curve that every set must follow as well; needs a simulator.
+    /// A stress–strain curve that is a target of every set too; needs a simulator.
     pub curve: Option<Curve>,
-    /// Weight of the deviation of a response, 1 when not given.
+    /// Weight of the deviation of a response, 1 by default.
     pub weights: BTreeMap<String, f64>,
-    /// Relative deviation up to which a target counts as met; 0.02 when not given.
+    /// Relative deviation up to which a target counts as met; 0.02 by default.
     pub tolerance: Option<f64>,
-    /// What `flow run` makes of targets that are not met.
+    /// What `flow run` does when targets are not met.
     pub unmet: Unmet,
-    /// What becomes of a run that is not valid: left out it is an evaluation that failed, and costs what one costs.
+    /// What to do with a run that is not valid. A run that is left out counts as a failed evaluation.
     #[serde(skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
-    /// How deviations are combined: as the method's preset was published, else their sum, when not given.
+    /// How deviations are combined; by default as in the publication of the method's preset, else as their sum.
     pub misfit: Option<Form>,
-    /// What deviations are relative to.
+    /// The value by which deviations are divided.
     pub denominator: Denominator,
-    /// The optimiser: `genetic` on surfaces and `surrogate` with a simulator when not given.
+    /// The optimiser; by default `genetic` on surfaces and `surrogate` with a simulator.
     pub method: Option<MethodName>,
     /// Settings of the genetic algorithm.
     pub genetic: Option<genetic::Settings>,
@@ -81,50 +82,41 @@ pub struct Calibrate {
     pub surrogate: Option<surrogate::Settings>,
     /// Settings of the proportional corrections.
     pub proportional: Option<Slope>,
-    /// A first guess, in the factors' units; the middle of the range for factors that are not named.
+    /// First point of the search, in the factors' units; the middle of the range for factors that are not named.
     pub start: BTreeMap<String, f64>,
     /// Seeds of the optimiser, in place of the workflow's: every target set is searched once with each.
     pub seeds: Vec<u64>,
     /// Most evaluations of a set.
     pub evaluations: Option<usize>,
-    /// Misfit that is good enough.
+    /// Misfit at which the search stops.
     pub stop_at: Option<f64>,
-    /// Refine the best point at the end; on surfaces only.
+    /// Whether to refine the best point by a local descent at the end; on surfaces only.
     pub polish: bool,
-    /// Point that the solution shall be nearest to, in the factors' units; the centre for factors that are not named.
+    /// Of equally good solutions the one nearest to this point is taken, in the factors' units; the middle of the range for
+    /// factors that are not named.
     pub preference: BTreeMap<String, f64>,
-    /// Size of the sample of the solution set; 50 when not given.
+    /// Number of further solutions in the table `solution_set`; 50 by default.
     pub solutions: Option<usize>,
-    /// Specimens to cycle through; a fresh one for every simulation of a set when not given.
+    /// Number of specimens that the simulations use in turn; by default every simulation of a set has a new one.
     pub specimens: Option<u64>,
 }
 
-/// Default size of the sample of the solution set.
+/// Default number of further solutions.
 const SOLUTIONS: usize = 50;
 /// Default relative deviation up to which a target counts as met.
 const TOLERANCE: f64 = 0.02;
 /// Default number of runs of the full simulators.
 const FULL_RUNS: usize = 12;
 
-/// What becomes of a calibration whose targets are not met.
+/// What to do when the targets of a calibration are not met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Unmet {
-    /// It is reported.
+    /// Report it.
     #[default]
     Say,
-    /// It is reported, and `flow run` exits with 1.
+    /// Report it and let `flow run` exit with 1.
     Fail,
-}
-
-/// Σ terms ≤ `at_most`, in the factors' units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Constraint {
-    /// Coefficient of each factor.
-    pub terms: BTreeMap<String, f64>,
-    /// Upper bound.
-    pub at_most: f64,
 }
 
 /// The optimisers.
@@ -141,7 +133,7 @@ pub enum MethodName {
     CmaEs,
     /// One model per response over all runs.
     Surrogate,
-    /// One factor, corrected by the slope that the last run showed.
+    /// One factor, corrected by the slope of the last run.
     Proportional,
 }
 
@@ -168,7 +160,7 @@ impl Calibrate {
         }
     }
 
-    /// The wanted misfit: as set, or as the method's preset has it.
+    /// The misfit at which the search stops: the setting, or that of the method's preset.
     fn stop_at(&self) -> Option<f64> {
         let published = match self.method() {
             Method::Annealing(settings) => settings.published_misfit(),
@@ -181,7 +173,7 @@ impl Calibrate {
         self.stop_at.or(published)
     }
 
-    /// How deviations are combined: as set, or as the method's preset has it.
+    /// How deviations are combined: the setting, or that of the method's preset.
     pub(super) fn form(&self) -> Form {
         let published = match self.method() {
             Method::Annealing(settings) => settings.published_form(),
@@ -194,8 +186,8 @@ impl Calibrate {
         self.misfit.or(published).unwrap_or_default()
     }
 
-    /// All that decides the result, in the units of factors and responses. `measured` are the curves named by the stage,
-    /// none before they are known: then the sets lack the targets that they make.
+    /// All parameters that decide the result, in the units of factors and responses. `measured` are the curves that the stage
+    /// names, empty before they are known: then the sets lack the targets of the curves.
     pub(super) fn params(&self, context: &Context, measured: &[Arc<Artifact>]) -> Result<Params, StageError> {
         let factor = |name: &String| {
             let factor = context.factors.get(name).ok_or_else(|| StageError::new(format!("no [factor.{name}]")))?;
@@ -234,7 +226,7 @@ impl Calibrate {
         self.ranges.get(name).copied().or(factor.range).or(ends)
     }
 
-    /// Whether a factor is searched by logarithms: by the setting of the stage, else of the factor.
+    /// Whether a factor is searched on a logarithmic scale: by the setting of the stage, else of the factor.
     fn is_log(&self, context: &Context, name: &str) -> bool {
         let own = context.factors.get(name).is_some_and(|factor| factor.scale == Scale::Log);
         self.scales.get(name).map_or(own, |scale| *scale == Scale::Log)

@@ -1,11 +1,11 @@
-//! The evaluations of a calibration by simulations, one step after the other.
+//! The course of a calibration by simulations: which evaluations come next.
 //!
-//! The next points are a pure function of the outcomes so far: a fresh course replays the whole history and continues. A
-//! course that the stage remembered ([`crate::stage::Memory`]) continues from its state with the new outcomes alone, so
+//! The next points are a pure function of the outcomes so far: a new course replays the whole history and continues. A
+//! course in the memory of the stage ([`crate::stage::Memory`]) continues from its state with the new outcomes alone, so
 //! that an evaluation costs the same however many came before. It holds points and responses, no artifacts.
 //!
 //! With coarse simulators a set is searched twice: first on these, by the calibration's method; then on the simulators
-//! themselves by the surrogate, whose first belief is what the coarse runs showed, so that full runs measure the ratio
+//! themselves by the surrogate, whose prior mean is the model of the coarse runs, so that full runs measure the ratio
 //! between the two, response by response, near the solution.
 
 use super::config::Calibrate;
@@ -20,12 +20,12 @@ use std::sync::Arc;
 
 /// The searches of all sets.
 pub(super) struct Course {
-    /// The calibration it belongs to: a course is of use to no other.
+    /// The calibration that it belongs to; it is valid for no other.
     task: Task,
     sets: Vec<Trail>,
 }
 
-/// Which simulators are run.
+/// The level of the simulators that are run, coarse or full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Level {
     Coarse,
@@ -38,12 +38,12 @@ struct Trail {
     search: Search,
     level: Level,
     history: History,
-    /// Points that were asked for and whose outcomes are not all known, each with its tasks.
+    /// Points whose outcomes are not all known yet, each with its tasks.
     pending: Vec<(Vec<f64>, Vec<Task>)>,
 }
 
 impl Course {
-    /// A course at its beginning; `task` is the calibration without its history.
+    /// A new course; `task` is the calibration without its history.
     pub(super) fn new(task: &Task, known: &Known, params: &Params) -> Result<Self, StageError> {
         let load = |key: &str| known.port(key).map(|input| known.load(input)).collect::<Result<Vec<_>, _>>();
         let (surfaces, earlier) = (load("surfaces")?, load("learn_from")?);
@@ -64,7 +64,7 @@ impl Course {
         self.task == *task
     }
 
-    /// Takes in all outcomes there are; the tasks that it must see next, none when every search is over.
+    /// Processes all outcomes there are and returns the tasks of the next evaluations; none when every search is over.
     pub(super) fn advance(
         &mut self,
         stage: &Calibrate,
@@ -79,12 +79,12 @@ impl Course {
         Ok(wanted)
     }
 
-    /// The outcomes that every set has received.
+    /// The outcomes of each set so far.
     pub(super) fn into_histories(self) -> Vec<History> {
         self.sets.into_iter().map(|trail| trail.history).collect()
     }
 
-    /// Where it stands, in a few words: evaluations, best and recommended misfit, set by set.
+    /// Progress in a few words: evaluations, best and recommended misfit, set by set.
     pub(super) fn in_words(&self) -> String {
         let states: Vec<State> = self.sets.iter().map(|trail| trail.search.state()).collect();
         let each = |pick: &dyn Fn(&State) -> String| states.iter().map(pick).collect::<Vec<_>>().join("/");
@@ -108,7 +108,7 @@ impl Trail {
         }
     }
 
-    /// Evaluations so far, as a person reads them.
+    /// Evaluations so far, for a reader.
     fn count(&self) -> String {
         match self.history.coarse.len() {
             0 => self.history.runs.len().to_string(),
@@ -143,7 +143,7 @@ impl Trail {
         }
     }
 
-    /// Switches from the coarse simulators to the full ones; returns whether it could.
+    /// Switches from the coarse simulators to the full ones; false when there are none, or it runs them already.
     fn refine(&mut self, known: &Known, params: &Params, set: usize) -> Result<bool, StageError> {
         let (Level::Coarse, Some(runs)) = (self.level, params.full) else { return Ok(false) };
         let seed = params.seed(set, known.context.seed);
@@ -171,7 +171,7 @@ impl Trail {
             let mut values: Point = names.zip(point.iter().copied()).collect();
             values.extend(params.sets[set].held.clone());
             let number = stage.specimen((before + i) as u64);
-            // Rows are numbered as the history counts, set by set and simulator by simulator within an evaluation.
+            // Rows are numbered as in the history: set by set, and simulator by simulator within an evaluation.
             let row = |k: usize| ((all + i) * sets + set) * simulators.len() + k;
             let task = |(k, simulator): (usize, &&Input<'_>)| Ok((simulator.sample)(&values, number)?.row(row(k)));
             let tasks = simulators.iter().enumerate().map(task).collect::<Result<_, StageError>>()?;

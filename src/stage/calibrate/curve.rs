@@ -25,18 +25,18 @@ pub struct Curve {
     pub strain: Vec<f64>,
     /// Axial stress at each, compression positive, such as `"12.5 MPa"`.
     pub stress: Vec<Wanted>,
-    /// The stage that holds the curve in place of these: of kind `data`, or a single simulation, whose curve is then followed;
-    /// several, one per target set.
+    /// The stage that gives the curve instead: of kind `data`, or a single simulation; several stages give one curve for each
+    /// target set.
     pub of: Names,
     /// Names of its columns of strain and stress.
     pub columns: Option<[String; 2]>,
-    /// Strains at which curves are compared; the points of an inline curve when left out.
+    /// Strains at which curves are compared; by default those of a curve that is written in the workflow.
     pub at: Vec<f64>,
     /// Number of points on the rising branch of the measured curve, in place of `at`.
     pub points: Option<usize>,
-    /// How the points weigh against each other.
+    /// Weights of the points relative to each other.
     pub weights: Weights,
-    /// Weight of the whole curve against other targets; 1 when not given.
+    /// Weight of the whole curve relative to other targets; 1 by default.
     pub weight: Option<f64>,
 }
 
@@ -44,10 +44,10 @@ pub struct Curve {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
-    /// All the same.
+    /// Equal weights.
     #[default]
     Equal,
-    /// By their measured stress, so that first points near zero weigh little.
+    /// Weights proportional to the measured stress, so that first points near zero have little weight.
     Stress,
 }
 
@@ -109,7 +109,7 @@ impl Curve {
                 Weights::Equal => 1.0 / strains.len() as f64,
                 Weights::Stress => stress / total,
             };
-            // A greatest deviation is one of the points', whatever their number.
+            // The greatest deviation does not depend on the number of points.
             let share = if form == Form::Maximum { share * strains.len() as f64 } else { share };
             share * self.weight.unwrap_or(1.0)
         };
@@ -130,7 +130,7 @@ impl Curve {
         Ok(Measured { strain: self.strain.clone(), stress: stress.map_err(StageError::new)? })
     }
 
-    /// The curve of a data stage, in order of its strains, rows without a number left out; or that of a run.
+    /// The curve of a data stage, ordered by strain, without rows that lack a number; or that of a run.
     fn read(&self, data: &Artifact) -> Result<Measured, StageError> {
         if data.is(ArtifactKind::RUN) {
             return self.of_run(data);
@@ -166,7 +166,7 @@ impl Curve {
         Ok(Measured { strain: curve.axial_strain, stress })
     }
 
-    /// Where curves are compared.
+    /// Strains at which curves are compared.
     fn strains(&self, measured: &Measured) -> Result<Vec<f64>, StageError> {
         if !self.at.is_empty() {
             return Ok(self.at.clone());
@@ -182,7 +182,7 @@ impl Curve {
         if !(peak.1 > 0.0 && peak.0 > first) {
             return Err(StageError::new("curve: the stress never rises above zero").hint("compression is positive"));
         }
-        // By their own strain the points are named, so they are rounded to where a reader can say it.
+        // The strain is the name of a point, so it is rounded to a few digits.
         let count = self.points.unwrap_or(POINTS);
         let start = measured.strain[0].max(first);
         let at = |k: usize| start + (peak.0 - start) * k as f64 / count as f64;

@@ -1,23 +1,12 @@
-//! How many evaluations it took to come near the targets.
+//! Effort: the number of evaluations until the responses were near the targets.
 
-use super::solve::Line;
+use super::solved::{Effort, Line};
+use crate::artifact::calibration::Percents;
 use optim::{Problem, Recommendation};
 
-/// Greatest relative deviations that count, in the order of the columns.
-pub(super) const LEVELS: [f64; 3] = [0.10, 0.05, 0.02];
-
-/// Evaluations of one set until all responses lay within each of [`LEVELS`]; none where they never did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Effort {
-    /// Until a run did, by what it showed.
-    pub seen: [Option<usize>; 3],
-    /// Until the recommended point was expected to, and stayed so.
-    pub settled: [Option<usize>; 3],
-}
-
 impl Effort {
-    /// From the history of one search, what it recommended once the batch of each evaluation was known, and the number of
-    /// evaluations after each batch: a recommendation costs its whole batch.
+    /// From the history of one search, its recommendation after the batch of each evaluation, and the number of evaluations
+    /// after each batch: a recommendation costs its whole batch.
     pub(super) fn of(
         problem: &Problem,
         lines: &[Line],
@@ -40,7 +29,8 @@ impl Effort {
             let batch = || ends.iter().copied().find(|end| *end > last);
             if last < expected.len() { batch() } else { None }
         };
-        Self { seen: LEVELS.map(first), settled: LEVELS.map(stays) }
+        let levels = Percents::LEVELS.map(|percent| f64::from(percent) / 100.0);
+        Self { seen: levels.map(first), settled: levels.map(stays) }
     }
 }
 

@@ -1,4 +1,4 @@
-//! What can be wrong with the settings of a calibration before anything runs.
+//! Faults in the settings of a calibration, found before anything runs.
 
 use super::config::{Calibrate, MethodName};
 use crate::stage::given::check_given;
@@ -57,7 +57,7 @@ impl Calibrate {
         found
     }
 
-    /// Settings that do not go together.
+    /// Settings that contradict each other.
     fn contradictions(&self) -> Vec<Complaint> {
         let mut found = Vec::new();
         for (key, length) in self.uneven() {
@@ -177,7 +177,7 @@ impl Calibrate {
         found
     }
 
-    /// Settings that do nothing with the rest as it is.
+    /// Settings without effect beside the others.
     fn ineffective(&self) -> Vec<Complaint> {
         let method = self.method_name();
         let name = json_name(method);

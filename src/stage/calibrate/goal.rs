@@ -53,13 +53,13 @@ pub enum Goal {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GoalTable {
-    /// The wanted value.
+    /// The target value.
     #[serde(default)]
     pub value: Option<Wanted>,
-    /// The least that is good.
+    /// Lower end of the target band.
     #[serde(default)]
     pub at_least: Option<Wanted>,
-    /// The most that is good.
+    /// Upper end of the target band.
     #[serde(default)]
     pub at_most: Option<Wanted>,
     /// Weight of the deviation in this set, in place of that in `weights`.
@@ -83,7 +83,7 @@ impl Goal {
 }
 
 impl GoalTable {
-    /// The two ends of the wanted band in `unit`; none where it is open.
+    /// The two ends of the target band in `unit`; `None` where it is open.
     pub(super) fn ends(&self, unit: &str) -> Result<[Option<f64>; 2], String> {
         let end = |wanted: &Option<Wanted>| wanted.as_ref().map(|wanted| wanted.value_in(unit)).transpose();
         match (&self.value, &self.at_least, &self.at_most) {

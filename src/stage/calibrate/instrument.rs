@@ -1,5 +1,5 @@
-//! A calibration on surfaces as plain data: all that a page needs to predict responses and to search parameters by itself,
-//! with the numbers and settings that `flow calibrate` uses.
+//! A calibration on surfaces as plain data, from which a page can predict responses and search parameters by itself, with
+//! the numbers and settings that `flow calibrate` uses.
 
 use super::config::Calibrate;
 use super::outlook::{DETERMINED, FREE};
@@ -28,13 +28,13 @@ pub struct Instrument {
     pub sets: Vec<Aims>,
     /// How deviations are combined.
     pub form: Form,
-    /// What deviations are relative to.
+    /// The value by which deviations are divided.
     pub denominator: Denominator,
     /// Relative deviation up to which a target counts as met.
     pub tolerance: f64,
-    /// Part of its range over which a determined parameter lies at most.
+    /// Largest part of its range over which a determined parameter may lie.
     pub determined: f64,
-    /// Part of its range over which a free parameter lies at least.
+    /// Smallest part of its range over which a free parameter lies.
     pub free: f64,
 }
 
@@ -51,11 +51,11 @@ pub struct Parameter {
     pub high: f64,
     /// Whether it is searched by logarithms.
     pub log: bool,
-    /// The value that solutions shall be nearest to; the middle of the range when none.
+    /// Of equally good solutions the one nearest to this value is taken; by default the middle of the range.
     pub preferred: Option<f64>,
     /// Whether target sets hold it at a value.
     pub held: bool,
-    /// Paths of what it sets, such as `mortar.Ec`.
+    /// Paths of the values that it sets, such as `mortar.Ec`.
     pub sets: Vec<String>,
 }
 
@@ -66,7 +66,7 @@ pub struct Wall {
     pub normal: Vec<f64>,
     /// Its bound.
     pub bound: f64,
-    /// The constraint as it is written.
+    /// The constraint as the workflow writes it.
     pub text: String,
 }
 
@@ -79,7 +79,7 @@ pub struct Surface {
     pub unit: String,
     /// Weight of its deviation.
     pub weight: f64,
-    /// The coded axes, and which parameter each is.
+    /// The coded axes, each with its parameter.
     pub axes: Vec<Axis>,
     /// Powers of the axes, term by term.
     pub powers: Vec<Vec<u32>>,
@@ -91,7 +91,7 @@ pub struct Surface {
     pub s: Option<f64>,
     /// Student's quantile of the 95 % intervals.
     pub quantile: f64,
-    /// The greatest leverage of a run: beyond it lies extrapolation, even inside the box.
+    /// The greatest leverage of a run: a point with a larger one is an extrapolation, even inside the box.
     pub farthest: f64,
 }
 
@@ -104,13 +104,13 @@ pub struct Axis {
     pub centre: f64,
     /// Natural length of one coded unit.
     pub half: f64,
-    /// Least value that was run.
+    /// Smallest value of a run.
     pub low: f64,
-    /// Greatest value that was run.
+    /// Largest value of a run.
     pub high: f64,
 }
 
-/// What a target set wants, and what it holds.
+/// A target set: its targets and the parameters that it holds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Aims {
     /// The targets.
@@ -119,20 +119,20 @@ pub struct Aims {
     pub held: BTreeMap<String, f64>,
 }
 
-/// A target; an end that is none is open.
+/// A target band; an end that is `None` is open.
 #[derive(Clone, Debug, Serialize)]
 pub struct Aim {
     /// Index of the response.
     pub response: usize,
-    /// Least wanted value.
+    /// Lower end.
     pub low: Option<f64>,
-    /// Greatest wanted value.
+    /// Upper end.
     pub high: Option<f64>,
-    /// Relative deviation up to which it counts as met, where it has one of its own.
+    /// Relative deviation up to which it counts as met; `None` for that of the calibration.
     pub tolerance: Option<f64>,
 }
 
-/// The data of the calibration with these settings on these surfaces; none when it searches by simulations, which a page
+/// The data of the calibration with these settings on these surfaces; `None` when it searches by simulations, which a page
 /// cannot run.
 ///
 /// # Errors
@@ -202,7 +202,7 @@ fn parameters(params: &Params, context: &Context, models: &[(String, Model)]) ->
     found
 }
 
-/// A surface as data; none when it needs a factor that is neither calibrated nor held.
+/// A surface as data; `None` when it needs a factor that is neither calibrated nor held.
 fn surface(name: &str, model: &Model, params: &Params, context: &Context, parameters: &[Parameter]) -> Option<Surface> {
     let axis = |axis: &stats::model::Axis| {
         let parameter = parameters.iter().position(|parameter| parameter.name == axis.name)?;

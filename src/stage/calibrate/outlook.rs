@@ -1,32 +1,13 @@
-//! What a solution promises and how sure it is: the tables `prediction`, `parameters` and `notes`.
+//! Predicted responses and parameters of a solution with their intervals: the tables `prediction`, `parameters`, `notes`.
 
 use super::params::{FactorParam, Params, TargetParam};
-use super::record::{named, numbered};
-use super::solve::{Line, Solved};
-use crate::artifact::Table;
+use super::solved::{Line, Solved, numbered};
+use crate::artifact::calibration::{Answer, Determination, OUT_OF_REACH, Parameters, Prediction};
+use crate::artifact::notes::NoteTable;
 use crate::artifact::validity::Tally;
 use crate::stage::notes::{Notes, short};
 use optim::Interval;
 use optim::constraint::Factor;
-
-/// Whether a target is met, by the prediction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Met {
-    Yes,
-    No,
-    Unknown,
-}
-
-impl Met {
-    /// The word in tables.
-    pub(super) fn word(self) -> &'static str {
-        match self {
-            Self::Yes => "yes",
-            Self::No => "no",
-            Self::Unknown => "unknown",
-        }
-    }
-}
 
 /// One row per set and target.
 struct Predicted<'a> {
@@ -37,7 +18,7 @@ struct Predicted<'a> {
     scatter: f64,
     deviation: f64,
     reach: [f64; 2],
-    met: Met,
+    met: Answer,
 }
 
 fn predicted<'a>(params: &'a Params, solved: &[Solved]) -> Vec<Predicted<'a>> {
@@ -49,9 +30,9 @@ fn predicted<'a>(params: &'a Params, solved: &[Solved]) -> Vec<Predicted<'a>> {
             let reach = s.set.as_ref().map(|set| &set.reach[k]);
             let mean = s.expected[k].mean;
             let met = match target.target().holds([mean, mean], params.tolerance) {
-                _ if mean.is_nan() => Met::Unknown,
-                true => Met::Yes,
-                false => Met::No,
+                _ if mean.is_nan() => Answer::Unknown,
+                true => Answer::Yes,
+                false => Answer::No,
             };
             rows.push(Predicted {
                 set,
@@ -69,83 +50,70 @@ fn predicted<'a>(params: &'a Params, solved: &[Solved]) -> Vec<Predicted<'a>> {
 }
 
 /// Whether all targets of a set are met.
-pub(super) fn met(params: &Params, solved: &[Solved], set: usize) -> Met {
+pub(super) fn met(params: &Params, solved: &[Solved], set: usize) -> Answer {
     let rows = predicted(params, solved);
     let own = || rows.iter().filter(|row| row.set == set);
-    if own().any(|row| row.met == Met::No) {
-        Met::No
-    } else if own().any(|row| row.met == Met::Unknown) {
-        Met::Unknown
+    if own().any(|row| row.met == Answer::No) {
+        Answer::No
+    } else if own().any(|row| row.met == Answer::Unknown) {
+        Answer::Unknown
     } else {
-        Met::Yes
+        Answer::Yes
     }
 }
 
 impl Predicted<'_> {
-    /// Whether the target can be had by itself, and the nearest that can.
+    /// Whether the target can be reached by itself; if not, the nearest value that can.
     fn reach(&self) -> String {
         let [low, high] = self.reach;
         let target = self.target.target();
         if low.is_nan() {
             "unknown".to_owned()
         } else if low > target.high {
-            format!("out of reach, at least {low:.4}")
+            format!("{OUT_OF_REACH}, at least {low:.4}")
         } else if high < target.low {
-            format!("out of reach, at most {high:.4}")
+            format!("{OUT_OF_REACH}, at most {high:.4}")
         } else {
             "within reach".to_owned()
         }
     }
 
     fn out_of_reach(&self) -> bool {
-        self.reach().starts_with("out of reach")
+        self.reach().starts_with(OUT_OF_REACH)
     }
 }
 
-pub(super) fn prediction(params: &Params, solved: &[Solved]) -> Table {
+pub(super) fn prediction(params: &Params, solved: &[Solved]) -> Prediction {
     let rows = predicted(params, solved);
     let reals = |pick: fn(&Predicted) -> f64| rows.iter().map(pick).collect::<Vec<_>>();
-    let end = |end: Option<f64>| end.unwrap_or(f64::NAN);
-    let texts = |pick: fn(&Predicted) -> String| rows.iter().map(pick).collect::<Vec<_>>();
-    let mut table = named("targets, what is expected, and what can be had over the ranges")
-        .ints_column("set", "target set, from 1", numbered(rows.iter().map(|row| row.set)))
-        .texts_column("response", "", texts(|row| row.target.response.clone()))
-        .texts_column("unit", "of the numbers beside it", texts(|row| row.target.unit.clone()))
-        .reals_column("target", "", "wanted; the lower end of a band", reals(|row| row.target.target().value()));
-    if rows.iter().any(|row| row.target.low != row.target.high) {
-        let ends = |pick: fn(&TargetParam) -> Option<f64>| rows.iter().map(|row| end(pick(row.target))).collect();
-        table = table
-            .reals_column("at_least", "", "lower end of what is wanted", ends(|target| target.low))
-            .reals_column("at_most", "", "upper end", ends(|target| target.high));
+    let texts = |pick: fn(&Predicted) -> String| rows.iter().map(pick).collect();
+    let band = rows.iter().any(|row| row.target.low != row.target.high);
+    let observed = rows.iter().any(|row| !row.observed.is_nan());
+    Prediction {
+        set: numbered(rows.iter().map(|row| row.set)),
+        response: texts(|row| row.target.response.clone()),
+        unit: texts(|row| row.target.unit.clone()),
+        target: reals(|row| row.target.target().value()),
+        at_least: band.then(|| reals(|row| row.target.low.unwrap_or(f64::NAN))),
+        at_most: band.then(|| reals(|row| row.target.high.unwrap_or(f64::NAN))),
+        expected: reals(|row| row.expected.mean),
+        low: reals(|row| row.expected.low),
+        high: reals(|row| row.expected.high),
+        deviation_percent: reals(|row| row.deviation),
+        observed: observed.then(|| reals(|row| row.observed)),
+        scatter: reals(|row| row.scatter),
+        reach_low: reals(|row| row.reach[0]),
+        reach_high: reals(|row| row.reach[1]),
+        reach: texts(|row| row.reach()),
+        met: rows.iter().map(|row| row.met).collect(),
     }
-    table = table
-        .reals_column("expected", "", "at the solution", reals(|row| row.expected.mean))
-        .reals_column(
-            "low",
-            "",
-            "lower end of the 95 % interval of the mean; missing where one run is all that is known",
-            reals(|row| row.expected.low),
-        )
-        .reals_column("high", "", "upper end", reals(|row| row.expected.high))
-        .reals_column("deviation_percent", "", "as in the misfit", reals(|row| row.deviation));
-    if rows.iter().any(|row| !row.observed.is_nan()) {
-        let about = "by the run at the solution, which is the luckiest of many";
-        table = table.reals_column("observed", "", about, reals(|row| row.observed));
-    }
-    let scatter = reals(|row| row.scatter);
-    table
-        .reals_column("scatter", "", "standard deviation of a single run, from packing to packing", scatter)
-        .reals_column("reach_low", "", "least over the ranges", reals(|row| row.reach[0]))
-        .reals_column("reach_high", "", "greatest over the ranges", reals(|row| row.reach[1]))
-        .texts_column("reach", "whether the target can be had by itself", texts(|row| row.reach()))
-        .texts_column("met", "whether the expected value lies within the tolerance", texts(|row| row.met.word().into()))
 }
 
-/// Part of its range over which a determined parameter lies at most, and a free one at least.
+/// Parts of the range: the largest for a determined parameter, and the smallest for a free one.
 pub(super) const DETERMINED: f64 = 0.25;
 pub(super) const FREE: f64 = 0.9;
 
-/// What the targets determine of one parameter.
+/// How far the targets determine one parameter.
 struct Determined<'a> {
     set: usize,
     factor: &'a FactorParam,
@@ -153,50 +121,50 @@ struct Determined<'a> {
     ends: [f64; 2],
     /// Part of the range, on the factor's scale.
     part: f64,
-    word: &'static str,
+    known: Determination,
 }
 
 fn determined<'a>(params: &'a Params, solved: &[Solved]) -> Vec<Determined<'a>> {
     let mut rows = Vec::new();
     for (set, s) in solved.iter().enumerate() {
-        let known = s.expected.iter().any(|y| y.high - y.low > 0.0);
+        let model = s.expected.iter().any(|y| y.high - y.low > 0.0);
         for (k, factor) in params.factors.iter().enumerate() {
             let domain: &Factor = &s.problem.domain.factors()[k];
             let [low, high] = s.extents.as_ref().map_or([f64::NAN; 2], |ends| ends[k]);
             let part = domain.unit(high) - domain.unit(low);
-            // A parameter that the responses tie is known as well as they are.
-            let (ends, word) = match part {
-                part if part >= FREE => ([low, high], "free"),
-                _ if part.is_nan() || !known => ([f64::NAN; 2], "unknown"),
-                part if part <= DETERMINED => ([low, high], "determined"),
-                _ => ([low, high], "partly determined"),
+            // A parameter that the responses fix is known as well as they are.
+            let (ends, known) = match part {
+                part if part >= FREE => ([low, high], Determination::Free),
+                _ if part.is_nan() || !model => ([f64::NAN; 2], Determination::Unknown),
+                part if part <= DETERMINED => ([low, high], Determination::Determined),
+                _ => ([low, high], Determination::Partly),
             };
-            let part = if word == "unknown" { f64::NAN } else { part };
-            rows.push(Determined { set, factor, value: s.point[k], ends, part, word });
+            let part = if known == Determination::Unknown { f64::NAN } else { part };
+            rows.push(Determined { set, factor, value: s.point[k], ends, part, known });
         }
     }
     rows
 }
 
-pub(super) fn parameters(params: &Params, solved: &[Solved]) -> Table {
+pub(super) fn parameters(params: &Params, solved: &[Solved]) -> Parameters {
     let rows = determined(params, solved);
-    let reals = |pick: fn(&Determined) -> f64| rows.iter().map(pick).collect::<Vec<_>>();
-    let texts = |pick: fn(&Determined) -> String| rows.iter().map(pick).collect::<Vec<_>>();
-    named("calibrated parameters, and what each can be while no response differs by more than its 95 % interval")
-        .ints_column("set", "target set, from 1", numbered(rows.iter().map(|row| row.set)))
-        .texts_column("factor", "", texts(|row| row.factor.name.clone()))
-        .texts_column("unit", "of the numbers beside it", texts(|row| row.factor.unit.clone()))
-        .reals_column("value", "", "of the solution", reals(|row| row.value))
-        .reals_column("low", "", "least over all equally good solutions", reals(|row| row.ends[0]))
-        .reals_column("high", "", "greatest", reals(|row| row.ends[1]))
-        .reals_column("range_low", "", "lower end of its range", reals(|row| row.factor.low))
-        .reals_column("range_high", "", "upper end", reals(|row| row.factor.high))
-        .reals_column("part_percent", "", "of the range that is as good", reals(|row| 100.0 * row.part))
-        .texts_column("known", "what the targets say of it", texts(|row| row.word.to_owned()))
+    let reals = |pick: fn(&Determined) -> f64| rows.iter().map(pick).collect();
+    Parameters {
+        set: numbered(rows.iter().map(|row| row.set)),
+        factor: rows.iter().map(|row| row.factor.name.clone()).collect(),
+        unit: rows.iter().map(|row| row.factor.unit.clone()).collect(),
+        value: reals(|row| row.value),
+        low: reals(|row| row.ends[0]),
+        high: reals(|row| row.ends[1]),
+        range_low: reals(|row| row.factor.low),
+        range_high: reals(|row| row.factor.high),
+        part_percent: reals(|row| 100.0 * row.part),
+        known: rows.iter().map(|row| row.known).collect(),
+    }
 }
 
-/// What to look at before the numbers are used; `learned` are the sentences on the runs that the search learned from.
-pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> Table {
+/// The notes on a solution; `learned` are the sentences on the runs that the search learned from.
+pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> NoteTable {
     let mut notes = Notes::default();
     learned.iter().for_each(|said| notes.add("", format!("learned from: {said}")));
     let several = solved.len() > 1;
@@ -209,14 +177,14 @@ pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> T
         if row.out_of_reach() {
             let note = format!("{set}the target is {}; {expected} is expected", row.reach());
             notes.add(&row.target.response, note);
-        } else if row.met == Met::No {
+        } else if row.met == Answer::No {
             let note = format!("{set}not met: {expected} is expected, off by {} %", short(row.deviation));
             notes.add(&row.target.response, note);
         }
     }
     for (set, s) in solved.iter().enumerate() {
         let mut own = rows.iter().filter(|row| row.set == set);
-        if own.clone().any(|row| row.met == Met::No) && own.all(|row| row.reach() == "within reach") {
+        if own.clone().any(|row| row.met == Answer::No) && own.all(|row| row.reach() == "within reach") {
             notes.add("", format!("{}each target can be met by itself, all together were not", whose(set)));
         }
         let of = |pick: fn(&Line) -> &str| Tally::of(s.history.len(), s.history.iter().map(pick));
@@ -227,5 +195,5 @@ pub(super) fn notes(params: &Params, solved: &[Solved], learned: &[String]) -> T
             notes.add("", format!("{}intervals are unknown: {}", whose(set), s.unknown));
         }
     }
-    notes.table().to_table()
+    notes.table()
 }

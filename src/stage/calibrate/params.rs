@@ -1,18 +1,15 @@
-//! All that decides a calibration's result, and the optimisation problem it makes.
+//! The parameters of a calibration's task, and the optimisation problem that they define.
 
-use super::config::Constraint;
-use super::read;
-use crate::artifact::Artifact;
+use super::constraint::Constraint;
 use crate::stage::StageError;
 use crate::stage::invalid::Invalid;
 use math::scale::Scale;
 use optim::constraint::{Domain, Factor, Linear};
 use optim::misfit::{Denominator, Form, Misfit, Target};
-use optim::search::{Knowledge, Limits, Method, Run};
+use optim::search::{Limits, Method, Run};
 use optim::{Error, Problem};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// A parameter to find.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,10 +26,10 @@ pub(super) struct FactorParam {
     pub fallback: Option<f64>,
 }
 
-/// How the name of a curve's ordinate begins; the strain follows.
+/// Prefix of the name of a curve's ordinate, before the strain.
 pub(super) const ORDINATE: &str = "stress at ";
 
-/// A wanted response; an end that is not given is open.
+/// A target: a response and its band; an end that is `None` is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TargetParam {
     pub response: String,
@@ -42,10 +39,10 @@ pub(super) struct TargetParam {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub high: Option<f64>,
     pub weight: f64,
-    /// Relative deviation up to which it counts as met; the calibration's when not given.
+    /// Relative deviation up to which it counts as met; `None` for that of the calibration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// The strain at which the curve gives it; none for a response by name.
+    /// The strain at which the curve gives it; `None` for a response by name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strain: Option<f64>,
 }
@@ -65,7 +62,7 @@ pub(super) struct SetParam {
     /// Factors that are not calibrated, in their units.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub held: BTreeMap<String, f64>,
-    /// First guess of its own, in the factors' units.
+    /// First point of its search, in the factors' units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Vec<f64>>,
     /// Seed of the optimiser in place of the task's.
@@ -77,10 +74,10 @@ pub(super) struct SetParam {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Told {
     pub point: Vec<f64>,
-    /// The responses in the order of the targets; none when it failed.
+    /// The responses in the order of the targets; empty when it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub responses: Option<Vec<f64>>,
-    /// Why it failed; a run that is not valid and left out has failed.
+    /// Why it failed; a run that is left out because it is not valid counts as failed.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub failure: String,
     /// Why a run that is used is not valid.
@@ -98,10 +95,10 @@ impl Told {
 /// The evaluations of one set.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct History {
-    /// Those on coarse twins, where there are some.
+    /// Evaluations on coarse twins, if there are any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub coarse: Vec<Told>,
-    /// Those of the simulators themselves.
+    /// Evaluations of the simulators themselves.
     pub runs: Vec<Told>,
 }
 
@@ -110,7 +107,7 @@ pub(super) struct History {
 pub(super) struct Params {
     pub factors: Vec<FactorParam>,
     pub sets: Vec<SetParam>,
-    /// Units of the factors that sets hold.
+    /// Units of the factors that the sets hold constant.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub held_units: BTreeMap<String, String>,
     pub form: Form,
@@ -121,7 +118,7 @@ pub(super) struct Params {
     pub limits: Limits,
     /// Relative deviation up to which a target counts as met.
     pub tolerance: f64,
-    /// Most full runs where coarse ones are searched.
+    /// Most full runs where the search uses coarse ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub full: Option<usize>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -131,7 +128,7 @@ pub(super) struct Params {
     pub solutions: usize,
     /// Simulations that make one evaluation.
     pub simulators: usize,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
     /// Evaluations of each set; empty on surfaces.
@@ -158,7 +155,7 @@ impl Params {
         self.filled(&self.preference)
     }
 
-    /// A point in natural units, the middle of the range of factors that are not named; none when none is.
+    /// A point in natural units, with the middle of the range for factors that are not named; `None` when no factor is named.
     fn filled(&self, named: &BTreeMap<String, f64>) -> Option<Vec<f64>> {
         let middle = |f: &FactorParam| if f.log { (f.low * f.high).sqrt() } else { 0.5 * (f.low + f.high) };
         let value = |f: &FactorParam| named.get(&f.name).copied().unwrap_or_else(|| middle(f));
@@ -183,7 +180,7 @@ impl Params {
         found
     }
 
-    /// Refuses faulty settings.
+    /// An error when settings have faults.
     pub(super) fn check(&self) -> Result<(), StageError> {
         let faults: Vec<String> = self.faults().iter().map(ToString::to_string).collect();
         if faults.is_empty() { Ok(()) } else { Err(StageError::new(faults.join("; "))) }
@@ -199,40 +196,24 @@ impl Params {
         Ok(Problem { domain, misfit: self.misfit(set).map_err(all)?, start })
     }
 
-    /// What the surrogate knows beforehand.
-    pub(super) fn knowledge(
-        &self,
-        set: usize,
-        surfaces: Option<&Artifact>,
-        earlier: &[Arc<Artifact>],
-    ) -> Result<Knowledge, StageError> {
-        let SetParam { targets, held, .. } = &self.sets[set];
-        let trend = surfaces.map(|artifact| read::surfaces(artifact, &self.factors, held, targets)).transpose()?;
-        let mut runs = Vec::new();
-        for artifact in earlier {
-            runs.extend(read::runs(artifact, &self.factors, targets, self.invalid)?);
-        }
-        Ok(Knowledge { earlier: runs, trend })
-    }
-
     /// The seed of the search of a set.
     pub(super) fn seed(&self, set: usize, usual: u64) -> u64 {
         self.sets[set].seed.unwrap_or(usual)
     }
 }
 
-/// Largest population: more than any published one by far, and little memory.
+/// Largest population: far more than any published one, and little memory.
 const MOST_POPULATION: usize = 100_000;
 const POPULATION: &str = "a whole number from 5 to 100000 is needed";
-/// Most generations or moves; nobody waits for more.
+/// Most generations or moves.
 const MOST_STEPS: usize = 10_000_000;
 const STEPS: &str = "a whole number from 1 to 10000000 is needed";
-/// Most runs of a surrogate, whose models take the cube of it.
+/// Most runs of a surrogate; the time of its models grows with the cube of that number.
 const MOST_RUNS: usize = 10_000;
 const RUNS: &str = "a whole number from 1 to 10000 is needed";
 const RESTARTS: &str = "the population, `growth` times larger at each of them, would pass 100000";
 
-/// Settings of the method that are out of their range.
+/// Settings of the method outside their ranges.
 fn method_faults(method: &Method) -> Vec<Error> {
     let mut found = Vec::new();
     let mut within = |setting: &'static str, value: f64, fine: bool, expected: &'static str| {

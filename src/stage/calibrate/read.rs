@@ -1,6 +1,6 @@
 //! Responses for the optimiser: from surfaces, from single runs, from tables of runs.
 
-use super::params::{FactorParam, SetParam, TargetParam};
+use super::params::{FactorParam, Params, SetParam, TargetParam};
 use crate::artifact::results::Results;
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, Table};
@@ -10,16 +10,16 @@ use crate::stage::invalid::{Invalid, refused};
 use crate::unit::Conversion;
 use optim::Interval;
 use optim::misfit::ordinates;
-use optim::search::Run as Trial;
+use optim::search::{Knowledge, Run as Trial};
 use optim::surrogate::Trend;
 use stats::model::Model;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// One surface per target: the model, and where its axes stand among the factors.
+/// One surface per target: the model, and the source of the value of each of its axes.
 type Surface = (Model, Vec<Axis>);
 
-/// Where a surface takes the value of an axis from.
+/// Source of the value of an axis.
 #[derive(Clone, Copy, Debug)]
 enum Axis {
     /// The factor at this index.
@@ -54,8 +54,8 @@ pub(super) fn surfaces(
 /// Factors that are held, and their values.
 type Held = BTreeMap<String, f64>;
 
-/// What the surfaces expect at a point, each with the 95 % interval of its mean response; NaN for the ends where the
-/// fit has no residual degrees of freedom.
+/// The mean responses of the surfaces at a point, each with its 95 % interval; NaN for the ends where the fit has no
+/// residual degrees of freedom.
 pub(super) fn outlook(
     artifact: &Artifact,
     factors: &[FactorParam],
@@ -74,6 +74,24 @@ pub(super) fn outlook(
 
 /// Coverage of the intervals.
 pub(super) const COVERAGE: f64 = 0.95;
+
+impl Params {
+    /// The prior knowledge of the surrogate.
+    pub(super) fn knowledge(
+        &self,
+        set: usize,
+        surfaces: Option<&Artifact>,
+        earlier: &[Arc<Artifact>],
+    ) -> Result<Knowledge, StageError> {
+        let SetParam { targets, held, .. } = &self.sets[set];
+        let trend = surfaces.map(|artifact| self::surfaces(artifact, &self.factors, held, targets)).transpose()?;
+        let mut known = Vec::new();
+        for artifact in earlier {
+            known.extend(runs(artifact, &self.factors, targets, self.invalid)?);
+        }
+        Ok(Knowledge { earlier: known, trend })
+    }
+}
 
 /// The surface of every target.
 fn chosen(
@@ -96,10 +114,10 @@ fn chosen(
     Ok(chosen)
 }
 
-/// How far a range may stand beyond a surface's domain by rounding, in parts of the domain.
+/// Largest excess of a range over a surface's domain that counts as rounding, in parts of the domain.
 const ROUNDING: f64 = 1e-9;
 
-/// Where the axes of a surface come from; ranges and held values must lie in its domain.
+/// The sources of the axes of a surface; ranges and held values must lie in its domain.
 fn axes(model: &Model, response: &str, factors: &[FactorParam], held: &Held) -> Result<Vec<Axis>, StageError> {
     let mut found = Vec::new();
     for axis in &model.axes {
@@ -140,26 +158,26 @@ fn converted(value: f64, from: &str, to: &str, what: &str) -> Result<f64, StageE
 pub(super) struct Part<'a> {
     /// The simulator.
     pub stage: &'a str,
-    /// What it gave.
+    /// Its outcome.
     pub run: &'a Artifact,
 }
 
 /// Validity and failures of the runs of one evaluation.
 #[derive(Default)]
 pub(in crate::stage) struct Judgement {
-    /// Why one of them gave no result; empty when all did.
+    /// Why a run gave no result; empty when all gave one.
     pub failure: String,
-    /// Why one that gave a result is not valid; empty when all are.
+    /// Why a run that gave a result is not valid; empty when all are valid.
     pub validity: String,
     /// Whether the simulators have checks at all.
     pub checked: bool,
 }
 
 impl Judgement {
-    /// Looks at the runs of one evaluation.
+    /// Collects validity and failures of the runs of one evaluation.
     ///
     /// # Errors
-    /// One is no run.
+    /// An artifact is not a run.
     pub(super) fn of(parts: &[Part<'_>]) -> Result<Self, StageError> {
         let mut found = Self::default();
         for part in parts {
@@ -177,11 +195,11 @@ impl Judgement {
     }
 }
 
-/// The responses of one evaluation in the order of the targets, or why it has none: a run gave no result, or is not valid
-/// and left out. Each is taken from the simulator that `from` names, or from the first that gives it.
+/// The responses of one evaluation in the order of the targets, or why it has none: a run gave no result, or is left out
+/// because it is not valid. Each is taken from the simulator that `from` names, or from the first that gives it.
 ///
 /// # Errors
-/// A run is not valid and refused, or a response is given by none, or in a unit of another dimension.
+/// A run is refused because it is not valid, or no simulator gives a response, or gives it in a unit of another dimension.
 pub(super) fn evaluation(
     parts: &[Part<'_>],
     from: &BTreeMap<String, String>,
@@ -204,7 +222,7 @@ pub(super) fn evaluation(
         let wanted = |stage: &str| from.get(&target.response).is_none_or(|own| own == stage);
         let mut givers = found.iter().filter(|(part, _)| wanted(part.stage));
         let value = match target.strain {
-            Some(strain) => match givers.find(|(part, _)| part.run.table("curve").is_some()) {
+            Some(strain) => match givers.find(|(part, _)| Run::curve_of(part.run).is_some()) {
                 Some((part, _)) => stress_at(part.run, strain)?.map(|stress| (stress, "Pa")),
                 None => return Err(StageError::new("no simulator stores a stress–strain curve")),
             },
@@ -235,8 +253,8 @@ fn no_response(response: &str, found: &[Given<'_>]) -> StageError {
     StageError::new(format!("no simulator gives a response `{response}`")).hint(given.join("; "))
 }
 
-/// Stress of a run's curve at a strain, in Pa; the inner error when there is no curve to read. Before its first point the
-/// curve rises from zero, and beyond its last the stress is that of the last: the test ended on the falling branch.
+/// Stress of a run's curve at a strain, Pa; the inner error says why the curve cannot be read. Before its first point the
+/// curve rises from zero; beyond its last point the stress is constant, because the test ended on the falling branch.
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
     let curve = Run::from_artifact(artifact)?.curve.ok_or_else(missing)?;
@@ -250,8 +268,8 @@ fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, St
     Ok(ordinates(&strains, &stresses, &[at]).map(|values| values[0]).map_err(|fault| fault.to_string()))
 }
 
-/// The runs of a table, in the order of factors and targets; what a run lacks is NaN. One that is not valid and left out
-/// has failed.
+/// The runs of a table, in the order of factors and targets; a missing value is NaN. A run that is left out because it is
+/// not valid counts as failed.
 pub(super) fn runs(
     artifact: &Artifact,
     factors: &[FactorParam],
@@ -269,13 +287,13 @@ pub(super) fn runs(
         let left_out = judged.leaves_out(i);
         let some = values.iter().any(|v| v.is_finite()) && !left_out;
         let point = points.iter().map(|column| column[i]).collect();
-        // A run that lacks every response without having failed says nothing.
+        // A run without any response that has not failed holds no information.
         (some || failed(i) || left_out).then_some(Trial { point, responses: some.then_some(values) })
     };
     Ok((0..table.rows()).filter_map(row).collect())
 }
 
-/// How many of the runs that a search learns from are not valid, and what becomes of them.
+/// How many of the runs that a search learns from are not valid, and whether they are used.
 pub(super) fn not_valid(artifact: &Artifact, invalid: Invalid) -> Result<Option<String>, StageError> {
     Ok(invalid.judge(Results::table(artifact)?)?.sentence())
 }

@@ -1,30 +1,27 @@
 //! The artifact `solution`.
 
-use super::effort::LEVELS;
-use super::outlook::{self, Met};
+use super::outlook;
 use super::params::{FactorParam, Params, TargetParam};
-use super::solve::{Line, Solved};
-use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
+use super::solved::{Line, Solved, numbered};
+use crate::artifact::calibration::{self, Alternatives, Answer, Evaluations, Level, Percents, Solution};
+use crate::artifact::{Artifact, Table};
 use crate::stage::invalid::Invalid;
 use crate::stage::notes::short;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The tables of a calibration; `learned` are the sentences on the runs that it learned from.
+/// The artifact of a calibration; `learned` are the sentences on the runs that it learned from.
 pub(super) fn artifact(params: &Params, solved: &[Solved], learned: &[String]) -> Artifact {
-    let root = Group::new()
-        .with("solution", Node::Table(solution(params, solved)))
-        .with("parameters", Node::Table(outlook::parameters(params, solved)))
-        .with("prediction", Node::Table(outlook::prediction(params, solved)))
-        .with("history", Node::Table(history(params, solved)))
-        .with("effort", Node::Table(effort(params, solved)))
-        .with("solution_set", Node::Table(solution_set(params, solved)))
-        .with("notes", Node::Table(outlook::notes(params, solved, learned)));
-    Artifact::of(ArtifactKind::SOLUTION, root)
-}
-
-pub(super) fn named(about: &str) -> Table {
-    Table { about: about.to_owned(), columns: Vec::new() }
+    Solution {
+        solution: solution(params, solved),
+        parameters: outlook::parameters(params, solved),
+        prediction: outlook::prediction(params, solved),
+        history: history(params, solved),
+        effort: effort(params, solved),
+        solution_set: solution_set(params, solved),
+        notes: outlook::notes(params, solved, learned),
+    }
+    .to_artifact()
 }
 
 /// Every response that some set has a target for, in the order of first mention.
@@ -45,7 +42,8 @@ fn held(params: &Params) -> BTreeSet<&String> {
 
 /// Columns of the factors, calibrated and held, and of the responses; `rows` gives set, point and the responses of that
 /// set's targets.
-fn columns(mut table: Table, params: &Params, rows: &[(usize, &[f64], &[f64])]) -> Table {
+fn columns(params: &Params, rows: &[(usize, &[f64], &[f64])]) -> Table {
+    let mut table = Table::default();
     for (i, FactorParam { name, unit, .. }) in params.factors.iter().enumerate() {
         table = table.reals_column(name, unit, "", rows.iter().map(|(_, point, _)| point[i]).collect());
     }
@@ -56,92 +54,66 @@ fn columns(mut table: Table, params: &Params, rows: &[(usize, &[f64], &[f64])]) 
     }
     for TargetParam { response, unit, .. } in responses(params) {
         let value = |(set, _, values): &(usize, &[f64], &[f64])| {
-            let place = params.sets[*set].targets.iter().position(|target| target.response == *response);
-            place.and_then(|k| values.get(k).copied()).unwrap_or(f64::NAN)
+            let index = params.sets[*set].targets.iter().position(|target| target.response == *response);
+            index.and_then(|k| values.get(k).copied()).unwrap_or(f64::NAN)
         };
         table = table.reals_column(response, unit, "", rows.iter().map(value).collect());
     }
     table
 }
 
-pub(super) fn numbered(sets: impl Iterator<Item = usize>) -> Vec<i64> {
-    sets.map(|set| set as i64 + 1).collect()
-}
-
-fn solution(params: &Params, solved: &[Solved]) -> Table {
+fn solution(params: &Params, solved: &[Solved]) -> calibration::Solved {
     let means: Vec<Vec<f64>> = solved.iter().map(|s| s.expected.iter().map(|y| y.mean).collect()).collect();
     let rows: Vec<_> = solved.iter().zip(&means).enumerate().map(|(i, (s, y))| (i, &s.point[..], &y[..])).collect();
     let free = |s: &Solved| s.set.as_ref().map_or(f64::NAN, |set| set.free as f64);
-    let table = named("calibrated parameters and the responses they are predicted to give").ints_column(
-        "set",
-        "target set, from 1",
-        numbered(0..solved.len()),
-    );
-    let mut table = columns(seeded(table, params, (0..solved.len()).collect()), params, &rows)
-        .reals_column("misfit", "", "of the predicted responses", solved.iter().map(|s| s.misfit).collect())
-        .ints_column("evaluations", "of the model", solved.iter().map(|s| s.evaluations as i64).collect());
-    if params.full.is_some() {
-        let coarse = solved.iter().map(|s| s.coarse as i64).collect();
-        table = table.ints_column("coarse", "evaluations on the coarse twins", coarse);
+    calibration::Solved {
+        set: numbered(0..solved.len()),
+        seed: seeds(params, 0..solved.len()),
+        point: columns(params, &rows),
+        misfit: solved.iter().map(|s| s.misfit).collect(),
+        evaluations: solved.iter().map(|s| s.evaluations).collect(),
+        coarse: params.full.is_some().then(|| solved.iter().map(|s| s.coarse).collect()),
+        failed: solved.iter().map(|s| s.failed).collect(),
+        stop: solved.iter().map(|s| s.stop.to_string()).collect(),
+        met: (0..solved.len()).map(|set| outlook::met(params, solved, set)).collect(),
+        free: solved.iter().map(free).collect(),
     }
-    let met = (0..solved.len()).map(|i| outlook::met(params, solved, i).word().to_owned()).collect();
-    table
-        .ints_column("failed", "evaluations without responses", solved.iter().map(|s| s.failed as i64).collect())
-        .texts_column("stop", "why the search ended", solved.iter().map(|s| s.stop.to_string()).collect())
-        .texts_column("met", "whether all targets are expected to be met", met)
-        .reals_column("free", "", "directions that change no response", solved.iter().map(free).collect())
 }
 
-/// A column of the optimiser's seeds, where sets differ by them.
-fn seeded(table: Table, params: &Params, sets: Vec<usize>) -> Table {
-    let seeds: Option<Vec<i64>> = sets.into_iter().map(|set| params.sets[set].seed.map(|seed| seed as i64)).collect();
-    match seeds {
-        Some(seeds) => table.ints_column("seed", "of the optimiser", seeds),
-        None => table,
-    }
+/// The optimiser's seeds, if the sets have seeds of their own.
+fn seeds(params: &Params, sets: impl IntoIterator<Item = usize>) -> Option<Vec<i64>> {
+    sets.into_iter().map(|set| params.sets[set].seed.map(|seed| seed as i64)).collect()
 }
 
 /// The message of `flow run` on targets that are not met; `None` when all are.
 pub(super) fn unmet(solution: &Artifact) -> Option<String> {
-    let table = solution.table("prediction")?;
-    let texts = |name: &str| table.texts(name).ok();
-    let (responses, met, reach, units) = (texts("response")?, texts("met")?, texts("reach")?, texts("unit")?);
-    let (sets, expected) = (table.ints("set").ok()?, table.numbers("expected", "").ok()?);
-    let several = sets.iter().any(|set| *set != 1);
+    let found = Solution::from_artifact(solution).ok()?.prediction;
+    let several = found.set.iter().any(|set| *set != 1);
     let mut missed = Vec::new();
-    for i in (0..met.len()).filter(|&i| met[i] != Met::Yes.word()) {
-        let whose = if several { format!("set {}: ", sets[i]) } else { String::new() };
-        let unit = if units[i].is_empty() { String::new() } else { format!(" {}", units[i]) };
-        let why = if reach[i].starts_with("out of reach") { format!(", {}", reach[i]) } else { String::new() };
-        missed.push(format!("{whose}{} is expected to be {}{unit}{why}", responses[i], short(expected[i])));
+    for i in (0..found.met.len()).filter(|&i| found.met[i] != Answer::Yes) {
+        let whose = if several { format!("set {}: ", found.set[i]) } else { String::new() };
+        let unit = if found.unit[i].is_empty() { String::new() } else { format!(" {}", found.unit[i]) };
+        let why = if found.out_of_reach(i) { format!(", {}", found.reach[i]) } else { String::new() };
+        let expected = short(found.expected[i]);
+        missed.push(format!("{whose}{} is expected to be {expected}{unit}{why}", found.response[i]));
     }
     (!missed.is_empty()).then(|| missed.join("; "))
 }
 
-fn effort(params: &Params, solved: &[Solved]) -> Table {
-    let count = |pick: fn(&Solved) -> Option<usize>| {
-        solved.iter().map(|s| pick(s).map_or(f64::NAN, |count| count as f64)).collect::<Vec<_>>()
+fn effort(params: &Params, solved: &[Solved]) -> calibration::Effort {
+    let percents = |pick: fn(&Solved) -> &[Option<usize>; 3]| {
+        let count = |s: &Solved, level: usize| pick(s)[level].map_or(f64::NAN, |count| count as f64);
+        Percents([0, 1, 2].map(|level| solved.iter().map(|s| count(s, level)).collect()))
     };
-    let table = named("evaluations until all responses lay near their targets; none where they never did").ints_column(
-        "set",
-        "target set, from 1",
-        numbered(0..solved.len()),
-    );
-    let mut table = seeded(table, params, (0..solved.len()).collect())
-        .texts_column("method", "", solved.iter().map(|_| method(params)).collect())
-        .ints_column("evaluations", "in all", solved.iter().map(|s| s.evaluations as i64).collect())
-        .ints_column("coarse", "before them, on coarse twins", solved.iter().map(|s| s.coarse as i64).collect());
-    let seen: [fn(&Solved) -> Option<usize>; 3] = [|s| s.effort.seen[0], |s| s.effort.seen[1], |s| s.effort.seen[2]];
-    let settled: [fn(&Solved) -> Option<usize>; 3] =
-        [|s| s.effort.settled[0], |s| s.effort.settled[1], |s| s.effort.settled[2]];
-    for (what, about, picks) in
-        [("to", "until a run showed it", seen), ("expected", "until the recommended point was expected to", settled)]
-    {
-        for (level, pick) in LEVELS.iter().zip(picks) {
-            table = table.reals_column(&format!("{what}_{}_percent", 100.0 * level), "", about, count(pick));
-        }
+    calibration::Effort {
+        set: numbered(0..solved.len()),
+        seed: seeds(params, 0..solved.len()),
+        method: vec![method(params); solved.len()],
+        evaluations: solved.iter().map(|s| s.evaluations).collect(),
+        coarse: solved.iter().map(|s| s.coarse).collect(),
+        to: percents(|s| &s.effort.seen),
+        expected: percents(|s| &s.effort.settled),
     }
-    table
 }
 
 /// The method as a workflow writes it.
@@ -156,43 +128,32 @@ fn method(params: &Params) -> String {
     }
 }
 
-fn history(params: &Params, solved: &[Solved]) -> Table {
+fn history(params: &Params, solved: &[Solved]) -> Evaluations {
     let all: Vec<(usize, &Line)> =
         solved.iter().enumerate().flat_map(|(set, s)| s.history.iter().map(move |line| (set, line))).collect();
     let rows: Vec<_> = all.iter().map(|(set, line)| (*set, &line.point[..], &line.responses[..])).collect();
-    let count = all.iter().map(|(_, line)| line.evaluation as i64).collect();
-    let table = named("evaluations: all simulations, or those that improved on a surface")
-        .ints_column("set", "target set, from 1", numbered(all.iter().map(|(set, _)| *set)))
-        .ints_column("evaluation", "counted from 1", count);
+    let reals = |pick: fn(&Line) -> f64| all.iter().map(|(_, line)| pick(line)).collect();
+    let texts = |pick: fn(&Line) -> &String| all.iter().map(|(_, line)| pick(line).clone()).collect();
+    let level = |line: &Line| if line.coarse { Level::Coarse } else { Level::Full };
     let simulated = !params.history.is_empty();
-    let mut table = seeded(table, params, all.iter().map(|(set, _)| *set).collect());
-    if params.full.is_some() {
-        let level = |line: &Line| if line.coarse { "coarse" } else { "full" }.to_owned();
-        table = table.texts_column("level", "which simulators", all.iter().map(|(_, line)| level(line)).collect());
+    Evaluations {
+        set: numbered(all.iter().map(|(set, _)| *set)),
+        evaluation: all.iter().map(|(_, line)| line.evaluation).collect(),
+        seed: seeds(params, all.iter().map(|(set, _)| *set)),
+        level: params.full.is_some().then(|| all.iter().map(|(_, line)| level(line)).collect()),
+        row: simulated.then(|| shown(params, &all)),
+        point: columns(params, &rows),
+        misfit: reals(|line| line.misfit),
+        best: reals(|line| line.best),
+        recommended: reals(|line| line.recommended),
+        failure: texts(|line| &line.failure),
+        validity: (simulated && params.invalid == Invalid::Keep).then(|| texts(|line| &line.validity)),
     }
-    if simulated {
-        table = table.ints_column("row", "of the stage, which shows the simulation", shown(params, &all));
-    }
-    let mut table = columns(table, params, &rows)
-        .reals_column("misfit", "", "of this evaluation", all.iter().map(|(_, line)| line.misfit).collect())
-        .reals_column("best", "", "best misfit so far", all.iter().map(|(_, line)| line.best).collect())
-        .reals_column(
-            "recommended",
-            "",
-            "misfit expected at the point that was recommended then",
-            all.iter().map(|(_, line)| line.recommended).collect(),
-        )
-        .texts_column("failure", "empty when it went well", all.iter().map(|(_, line)| line.failure.clone()).collect());
-    if simulated && params.invalid == Invalid::Keep {
-        let why = all.iter().map(|(_, line)| line.validity.clone()).collect();
-        table = table.texts_column("validity", "checks that a run does not meet; empty when all are valid", why);
-    }
-    table
 }
 
-/// The row under which each evaluation's simulation stands among the stage's tasks, counted from 1. Sets that begin alike
-/// share their first simulations, which stand under the first of them.
-fn shown(params: &Params, all: &[(usize, &Line)]) -> Vec<i64> {
+/// The row of each evaluation's simulation among the stage's tasks, counted from 1. Sets whose first points are equal share
+/// their simulations, which have the rows of the first of these sets.
+fn shown(params: &Params, all: &[(usize, &Line)]) -> Vec<usize> {
     let (sets, simulators) = (params.sets.len(), params.simulators);
     let coarse = |set: usize| params.history[set].coarse.len();
     let index = |set: usize, line: &Line| line.evaluation - 1 + if line.coarse { 0 } else { coarse(set) };
@@ -207,25 +168,23 @@ fn shown(params: &Params, all: &[(usize, &Line)]) -> Vec<i64> {
                 && index(*other, like) == index(set, line)
         };
         let owner = seen.iter().find(alike).map_or(set, |(other, _)| *other);
-        rows.push(((index(set, line) * sets + owner) * simulators) as i64 + 1);
+        rows.push((index(set, line) * sets + owner) * simulators + 1);
         seen.push((set, line));
     }
     rows
 }
 
-fn solution_set(params: &Params, solved: &[Solved]) -> Table {
-    let mut points: Vec<(usize, Vec<f64>)> = Vec::new();
+fn solution_set(params: &Params, solved: &[Solved]) -> Alternatives {
+    let (mut sets, mut points) = (Vec::new(), Vec::new());
     for (i, s) in solved.iter().enumerate() {
-        let sample = s.set.iter().flat_map(|set| &set.sample);
-        points.extend(sample.map(|unit| (i, s.problem.domain.natural(unit))));
+        for unit in s.set.iter().flat_map(|set| &set.sample) {
+            sets.push(i);
+            points.push(s.problem.domain.natural(unit));
+        }
     }
-    let mut table = named("further parameters that give the responses of the solution").ints_column(
-        "set",
-        "target set, from 1",
-        numbered(points.iter().map(|(set, _)| *set)),
-    );
+    let mut point = Table::default();
     for (i, FactorParam { name, unit, .. }) in params.factors.iter().enumerate() {
-        table = table.reals_column(name, unit, "", points.iter().map(|(_, point)| point[i]).collect());
+        point = point.reals_column(name, unit, "", points.iter().map(|point: &Vec<f64>| point[i]).collect());
     }
-    table
+    Alternatives { set: numbered(sets.into_iter()), point }
 }

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 impl Calibrate {
-    /// Number of target sets, before each is repeated for every seed: the length of the longest list that gives
-    /// them apart.
+    /// Number of target sets, before each is repeated for every seed: the length of the longest list with an entry for each
+    /// set.
     pub(super) fn count(&self) -> usize {
         let curves = self.curve.as_ref().map_or(0, |curve| curve.of.list().len());
         self.targets.len().max(self.held.len()).max(curves).max(1)
@@ -45,7 +45,7 @@ impl Calibrate {
         Ok(sets)
     }
 
-    /// The targets of one set but for its curve.
+    /// The targets of one set without its curve.
     pub(super) fn set(&self, context: &Context, listed: &BTreeMap<String, Goal>) -> Result<Vec<TargetParam>, String> {
         let target = |(response, goal): (&String, &Goal)| {
             let unit = context.responses.get(response).map_or("", |r| r.unit.as_str());

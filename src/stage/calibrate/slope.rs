@@ -1,6 +1,6 @@
-//! Where proportional corrections begin: the slope K of the response on the factor, known from an earlier analysis.
+//! The start of proportional corrections: the slope K of the response on the factor, known from an earlier analysis.
 //!
-//! A table of slopes has a column for each held factor that K depends on and one for K, as a regression by groups gives it.
+//! A table of slopes has a column for each held factor that K depends on and one for K, like the table of a regression by groups.
 //! K at the held values of a set is interpolated: linearly along every held factor where the table is a full grid of
 //! their values, and clamped to the grid's edge outside. The first value of the factor is then target / K, or
 //! target / (K c) where the slope is that on c times the factor, with c from `regressor`.
@@ -19,18 +19,18 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Slope {
-    /// Runs of a set: the first, and those corrected by the one before; 2 when not given.
+    /// Number of runs of a set: the first one, and corrected ones; 2 by default.
     pub runs: Option<usize>,
     /// The slope itself, response over factor in their units.
     pub slope: Option<f64>,
     /// The stage whose table holds slopes by held factors.
     pub slopes: Option<String>,
-    /// That table; `runs` when not given.
+    /// Name of that table; `runs` by default.
     pub table: Option<String>,
-    /// The column of slopes; `slope` when not given.
+    /// The column of slopes; `slope` by default.
     pub column: Option<String>,
-    /// What the slope multiplies, a formula of the factor and of held factors in their units that is proportional to the
-    /// factor, such as `sigma_cn / (1 + ratio)`; the factor itself when not given.
+    /// The quantity that the slope multiplies: a formula of the factor and of held factors in their units that is proportional
+    /// to the factor, such as `sigma_cn / (1 + ratio)`; by default the factor itself.
     pub regressor: Option<String>,
 }
 
@@ -62,7 +62,7 @@ impl Slope {
         found
     }
 
-    /// What the slope multiplies when the factor is 1, at the held values of a set.
+    /// The quantity that the slope multiplies when the factor is 1, at the held values of a set.
     fn of_one(&self, factor: &str, held: &BTreeMap<String, f64>) -> Result<f64, StageError> {
         let Some(text) = &self.regressor else { return Ok(1.0) };
         let fail = |why: String| StageError::new(format!("`regressor`: {why}"));
@@ -83,7 +83,7 @@ impl Slope {
         Ok(one)
     }
 
-    /// The first value of the factor of a set; none when no slope is known.
+    /// The first value of the factor of a set; `None` when no slope is known.
     pub(super) fn first(
         &self,
         slopes: Option<&Artifact>,
@@ -140,8 +140,8 @@ fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, StageError> {
     })
 }
 
-/// The value at a point among rows that hold a full grid of their coordinates: each axis is the coordinate of every row
-/// and where it is asked for. None where a corner of the point's cell has no row, or several that differ.
+/// Interpolates at a point among rows that hold a full grid of their coordinates: each axis is the coordinate of every row
+/// and that of the point. `None` where a corner of the point's cell has no row, or several rows that differ.
 fn on_grid(axes: &[(Vec<f64>, f64)], values: &[f64]) -> Option<f64> {
     let cells: Vec<(f64, f64, f64)> = axes.iter().map(|(rows, at)| cell(rows, *at)).collect::<Option<_>>()?;
     let mut sum = 0.0;

@@ -1,60 +1,17 @@
-//! The work `calibrate`: from parameters, surfaces and finished simulations to the artifact `solution`.
+//! The work `calibrate`: computes the artifact `solution` from parameters, surfaces and finished simulations.
 
-use super::effort::Effort;
 use super::params::{History, Params, Told};
+use super::solved::{Effort, Line, Solved};
 use super::twin::{self, Twin, full_limits, full_method};
 use super::{read, record};
 use crate::artifact::Artifact;
 use crate::stage::{Failure, Job, Progress, StageError};
 use optim::determination::{Outlook, extents};
 use optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
-use optim::solution_set::{SolutionSet, explore};
+use optim::solution_set::explore;
 use optim::surrogate::Model;
 use optim::surrogate::models::Models;
 use optim::{Interval, Problem, Recommendation, Stop, Trial};
-
-/// One line of the history.
-#[derive(Default)]
-pub(super) struct Line {
-    pub evaluation: usize,
-    /// Whether it was on the coarse twins.
-    pub coarse: bool,
-    pub point: Vec<f64>,
-    /// NaN where it failed.
-    pub responses: Vec<f64>,
-    pub misfit: f64,
-    pub best: f64,
-    /// Misfit of the recommended point once the batch of this evaluation was known; NaN before there is one.
-    pub recommended: f64,
-    pub failure: String,
-    /// Why a run that is used is not valid.
-    pub validity: String,
-}
-
-/// What came of one target set.
-pub(super) struct Solved {
-    pub problem: Problem,
-    pub stop: Stop,
-    pub evaluations: usize,
-    /// Evaluations on the coarse twins.
-    pub coarse: usize,
-    pub failed: usize,
-    /// The solution, in natural units.
-    pub point: Vec<f64>,
-    pub expected: Vec<Interval>,
-    /// What the run at the solution gave, for methods that recommend one of their runs.
-    pub observed: Option<Vec<f64>>,
-    /// Standard deviation of a single run; NaN where nothing is known of it.
-    pub scatter: Vec<f64>,
-    pub misfit: f64,
-    pub set: Option<SolutionSet>,
-    /// Range of each factor over equally good solutions, natural units; `None` without a model.
-    pub extents: Option<Vec<[f64; 2]>>,
-    /// Why intervals are unknown, where they are.
-    pub unknown: String,
-    pub history: Vec<Line>,
-    pub effort: Effort,
-}
 
 pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
@@ -97,7 +54,7 @@ fn on_surfaces(
     seed: u64,
 ) -> Result<Solved, Failure> {
     let surfaces = knowledge.trend.clone().ok_or_else(|| StageError::new("there are no surfaces"))?;
-    // The optimiser must find the optimum of the surfaces by itself.
+    // The optimiser must find the optimum of the surfaces without help.
     let mut search = Search::new(&problem, &params.method, &params.limits, seed, &Knowledge::default());
     let (mut history, mut best, mut count) = (Vec::new(), f64::INFINITY, 0);
     let stop = loop {
@@ -167,7 +124,7 @@ fn on_surfaces(
 /// Misfit up to which the solution nearest the preference is as good as the best point found.
 const REFINED: f64 = 1e-5;
 
-/// A finished search: why it ended, where it stands, and after every batch what it recommended.
+/// A finished search: why it ended, its state, and its recommendation after every batch.
 struct Replayed {
     stop: Stop,
     state: State,
@@ -193,7 +150,7 @@ fn replayed(search: &mut Search, told: &[Told]) -> Result<Replayed, StageError> 
         return Err(StageError::new(format!("all {} simulations failed; the first: {first}", runs.len()))
             .hint("look at the ranges of the factors, and at one run with `flow show`"));
     }
-    // The last batch can be cut short by the budget.
+    // The budget can shorten the last batch.
     recommended.resize(runs.len(), state.recommended.clone());
     ends.push(runs.len());
     Ok(Replayed { stop, state, recommended, ends })
@@ -237,7 +194,7 @@ fn simulated(
     let unknown = if models.is_some() { String::new() } else { too_few(&problem, runs) };
     let expected = match models {
         Some(_) => recommended.responses,
-        // One run says nothing of its own scatter.
+        // A single run does not show its scatter.
         None => {
             recommended.responses.iter().map(|y| Interval { mean: y.mean, low: f64::NAN, high: f64::NAN }).collect()
         }
@@ -278,11 +235,11 @@ fn simulated(
     Ok(solved)
 }
 
-/// Runs beyond one for each factor that a model takes before it gives intervals.
+/// Number of runs, beyond one for each factor, from which on a model gives intervals.
 const SPARE: usize = 3;
 
 /// Models over all runs of a search, which predict responses and their intervals: the surrogate's own, or such models
-/// over the runs of another method; none where there are too few.
+/// over the runs of another method; `None` where there are too few.
 fn models(method: &Method, problem: &Problem, knowledge: &Knowledge, runs: &[Told]) -> Option<Models> {
     let Method::Surrogate(settings) = method else {
         let good = runs.iter().filter(|told| told.responses.is_some()).count();
@@ -303,7 +260,7 @@ fn too_few(problem: &Problem, runs: &[Told]) -> String {
 }
 
 impl Solved {
-    /// Finds what each factor takes over all equally good solutions.
+    /// Finds the range of each factor over all equally good solutions.
     fn determine(&mut self, outlook: &Outlook) {
         let Some(set) = &self.set else { return };
         let at = self.problem.domain.unit(&self.point);

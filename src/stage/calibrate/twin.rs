@@ -25,18 +25,18 @@ impl Twin {
         Ok(Self(models))
     }
 
-    /// Its responses as a belief of the surrogate, at a point in natural units.
+    /// Its responses as the prior mean of the surrogate, at a point in natural units.
     pub(super) fn trend(self) -> Trend {
         let models = self.0;
         Arc::new(move |point: &[f64]| Some(models.expected_at(point)))
     }
 }
 
-/// Runs that models are made of, at most: those nearest the best one, and others from all over the history.
+/// Most runs in a model: those nearest the best one, and others from the whole history.
 const NEAR: usize = 80;
 const SPREAD: usize = 40;
 
-/// Models over the runs of a search, near its best run above all; none when no run gave responses.
+/// Models over the runs of a search, most of them near its best run; `None` when no run gave responses.
 pub(super) fn fitted(problem: &Problem, told: &[Told]) -> Option<Models> {
     let trials: Vec<Trial> = told.iter().map(|told| trial(problem, told)).collect();
     let misfit = |trial: &Trial| if trial.succeeded() { trial.misfit } else { f64::INFINITY };
@@ -63,7 +63,7 @@ fn trial(problem: &Problem, told: &Told) -> Trial {
     Trial { point: problem.domain.unit(&told.point), misfit, responses }
 }
 
-/// How the full-size runs are chosen: by the surrogate, with the calibration's own settings where that is its method.
+/// The search of the full-size runs: by the surrogate, with the calibration's own settings where that is its method.
 pub(super) fn full_method(method: &Method, runs: usize) -> Method {
     let own = match method {
         Method::Surrogate(settings) => settings.clone(),

@@ -1,9 +1,10 @@
-//! What a calibration found, as sentences for a reader.
+//! The result of a calibration as sentences for a reader.
 
 use crate::artifact::Artifact;
+use crate::artifact::calibration::{Determination, Solution};
 use crate::stage::notes::short;
 
-/// For every target set, which parameters the targets determine and within what, and which they leave free.
+/// For every target set, which parameters the targets determine, with their intervals, and which they leave free.
 pub fn parameters_in_words(solution: &Artifact) -> Vec<String> {
     read(solution).unwrap_or_default()
 }
@@ -13,27 +14,22 @@ struct Parameter<'a> {
     set: i64,
     name: &'a str,
     unit: &'a str,
-    known: &'a str,
+    known: Determination,
     value: f64,
     ends: [f64; 2],
 }
 
 fn read(solution: &Artifact) -> Option<Vec<String>> {
-    let table = solution.table("parameters")?;
-    let texts = |name: &str| table.texts(name).ok();
-    let (names, units, known) = (texts("factor")?, texts("unit")?, texts("known")?);
-    let numbers = |name: &str| table.numbers(name, "").ok();
-    let (values, low, high) = (numbers("value")?, numbers("low")?, numbers("high")?);
-    let sets = table.ints("set").ok()?;
+    let found = Solution::from_artifact(solution).ok()?.parameters;
     let parameter = |i: usize| Parameter {
-        set: sets[i],
-        name: &names[i],
-        unit: &units[i],
-        known: &known[i],
-        value: values[i],
-        ends: [low[i], high[i]],
+        set: found.set[i],
+        name: &found.factor[i],
+        unit: &found.unit[i],
+        known: found.known[i],
+        value: found.value[i],
+        ends: [found.low[i], found.high[i]],
     };
-    let all: Vec<Parameter<'_>> = (0..sets.len()).map(parameter).collect();
+    let all: Vec<Parameter<'_>> = (0..found.set.len()).map(parameter).collect();
     let several = all.last().is_some_and(|last| last.set > 1);
     let sentence = |set: i64| {
         let own: Vec<&Parameter<'_>> = all.iter().filter(|one| one.set == set).collect();
@@ -46,13 +42,17 @@ fn read(solution: &Artifact) -> Option<Vec<String>> {
 
 /// "determined: σ_c = 20 MPa (19 … 21); free: mu".
 fn of_set(parameters: &[&Parameter<'_>]) -> String {
-    let list = |word: &str, with_ends: bool| {
-        let own = parameters.iter().filter(|one| one.known == word);
+    let list = |known: Determination, with_ends: bool| {
+        let own = parameters.iter().filter(|one| one.known == known);
         let texts: Vec<String> = own.map(|one| if with_ends { one.in_words() } else { one.name.to_owned() }).collect();
-        (!texts.is_empty()).then(|| format!("{word}: {}", texts.join(", ")))
+        (!texts.is_empty()).then(|| format!("{}: {}", known.word(), texts.join(", ")))
     };
-    let parts =
-        [list("determined", true), list("partly determined", true), list("free", false), list("unknown", false)];
+    let parts = [
+        list(Determination::Determined, true),
+        list(Determination::Partly, true),
+        list(Determination::Free, false),
+        list(Determination::Unknown, false),
+    ];
     parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 

@@ -1,4 +1,4 @@
-//! The folder of one run: filled before, watched while the program runs, removed after.
+//! The folder of one run: it is filled before the program starts, watched while it runs, and removed afterwards.
 
 use super::leftover::{self, Record};
 use super::{Params, template};
@@ -11,16 +11,16 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Largest text file that is read back.
+/// Largest text file that is read back, bytes.
 const LARGEST: u64 = 64 << 20;
 
-/// Most bytes that a program may print; one that prints without end would fill the disk.
+/// Most bytes that a program may print, so that one that prints without end does not fill the disk.
 const MOST_PRINTED: u64 = 1 << 30;
 
-/// Most bytes between the slashes of a name.
+/// Longest part of a path between two slashes, bytes.
 const LONGEST_NAME: usize = 255;
 
-/// Whether a name stays inside the folder it is put in, and can be the name of a file.
+/// Whether a name stays inside its folder and can be the name of a file.
 pub(super) fn is_plain(name: &str) -> bool {
     let part = |part: Component| matches!(part, Component::Normal(name) if name.len() <= LONGEST_NAME);
     !name.is_empty() && !name.contains('\0') && Path::new(name).components().all(part)
@@ -82,13 +82,13 @@ impl Folder {
         Ok(if status.success() { Ok(()) } else { Err(format!("`{}` ended with {status}", params.run.join(" "))) })
     }
 
-    /// Waits for the end, the time limit or the interruption, whichever is first; leaves no process of the run behind.
+    /// Waits until the program ends, the time limit is reached or the run is interrupted; then ends all processes of the run.
     fn wait(&self, mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
         let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
         let group = Pid::from_child(&child);
         loop {
             if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
-                // What it started and left running ends with it.
+                // Processes that it started and left running are ended too.
                 let _ = kill_process_group(group, Signal::KILL);
                 leftover::end_strays(self.root.path());
                 return Ok(status);
@@ -123,7 +123,7 @@ impl Folder {
         }
     }
 
-    /// Bytes that the program has printed so far.
+    /// Number of bytes that the program has printed so far.
     fn printed(&self, name: &str) -> u64 {
         std::fs::symlink_metadata(self.path(name)).map_or(0, |meta| meta.len())
     }
@@ -148,7 +148,7 @@ impl Folder {
         let said =
             ["stderr", "stdout"].iter().filter_map(|name| self.text(name).ok()).find(|text| !text.trim().is_empty());
         said.map_or_else(
-            || "it said nothing".to_owned(),
+            || "it printed nothing".to_owned(),
             |text| {
                 let lines: Vec<String> = text.trim_end().lines().rev().take(5).map(shown).collect();
                 format!("it said: {}", lines.into_iter().rev().collect::<Vec<_>>().join(" | "))
@@ -171,7 +171,7 @@ fn filled(template: &[u8], file: &str, job: &Job, params: &Params) -> Result<Vec
         .map_err(|error| StageError { hint: error.hint, ..fail(&error.message) })
 }
 
-/// Bytes as text: UTF-16 by its mark, as shells of Windows write logs; of all else what is no UTF-8 as `\xE9`.
+/// Bytes as text: UTF-16 by its mark, as shells of Windows write logs; otherwise UTF-8, with other bytes as `\xE9`.
 fn readable(bytes: &[u8]) -> String {
     if let Some((encoding, mark)) = encoding_rs::Encoding::for_bom(bytes).filter(|(own, _)| *own != encoding_rs::UTF_8)
     {

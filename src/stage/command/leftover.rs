@@ -1,10 +1,10 @@
-//! What programs leave behind: processes that outlive their run, and folders of campaigns that were killed.
+//! Leftovers of programs: processes that outlive their run, and folders of campaigns that were killed.
 //!
 //! A program may start others that leave its process group (`setsid`), and a campaign that is killed (`kill -9`, no memory)
-//! ends nothing itself. So every run is written down before its program starts, in a folder that only this user can enter
-//! and that is the same for every `TMPDIR`; and its processes are known by a variable of their environment,
-//! [`VARIABLE`], or by the folder they work in. The next campaign on this machine, and `flow store gc`, find the runs whose
-//! campaign is gone, end their processes and remove their folders. A process that clears its environment and leaves the
+//! ends nothing itself. So every run is registered before its program starts, in a folder that only this user can enter
+//! and that is the same for every `TMPDIR`; and its processes are recognised by a variable of their environment,
+//! [`VARIABLE`], or by their working folder. The next campaign on this machine, and `flow store gc`, find the runs whose
+//! campaign has ended, end their processes and remove their folders. A process that clears its environment and leaves the
 //! folder, or that belongs to another user, is not found.
 
 use rustix::process::{Pid, Signal, getuid, kill_process};
@@ -17,20 +17,20 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// The variable that a program finds its folder in, and is found by.
+/// The variable with the folder of the run, by which its processes are recognised.
 pub(super) const VARIABLE: &str = "FLOW_RUN_FOLDER";
 
-/// How the folders of runs are called.
+/// Prefix of the folders of runs.
 pub(super) const PREFIX: &str = "flow-run-";
 
 /// Largest record that is read.
 const LARGEST: u64 = 1 << 14;
 
-/// The record of a run; it goes with the run.
+/// The record of a run; it is removed with the run.
 pub(super) struct Record(Option<PathBuf>);
 
 impl Record {
-    /// Registers a run. A run that cannot be registered continues, but could not be found after a kill.
+    /// Registers a run. A run that cannot be registered continues, but is not found after a kill.
     pub(super) fn of(folder: &Path) -> Self {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         let write = || {
@@ -51,13 +51,22 @@ impl Drop for Record {
     }
 }
 
-/// Ends the processes of runs whose campaign is gone and removes their folders; a line on each.
+/// Ends the processes of runs whose campaign has ended and removes their folders; returns a line on each.
 pub fn sweep() -> Vec<String> {
-    let Some(records) = registry(false).and_then(|folder| fs::read_dir(folder).ok()) else { return Vec::new() };
-    records.flatten().filter_map(|entry| abandoned(&entry.path())).map(|run| run.clear()).collect()
+    all_abandoned().into_iter().map(Abandoned::clear).collect()
 }
 
-/// Ends the programs of this campaign, which itself is about to end, and removes their folders.
+/// How many runs [`sweep`] would clear.
+pub fn count() -> usize {
+    all_abandoned().len()
+}
+
+fn all_abandoned() -> Vec<Abandoned> {
+    let Some(records) = registry(false).and_then(|folder| fs::read_dir(folder).ok()) else { return Vec::new() };
+    records.flatten().filter_map(|entry| abandoned(&entry.path())).collect()
+}
+
+/// Ends the programs of this campaign before it ends itself, and removes their folders.
 pub fn end_own() {
     let Some(records) = registry(false).and_then(|folder| fs::read_dir(folder).ok()) else { return };
     let own = format!("{}-", std::process::id());
@@ -71,7 +80,7 @@ pub fn end_own() {
     }
 }
 
-/// A run whose campaign is gone.
+/// A run whose campaign has ended.
 struct Abandoned {
     record: PathBuf,
     folder: PathBuf,
@@ -117,7 +126,7 @@ fn read(record: &Path) -> Option<(PathBuf, String)> {
     let named = folder.file_name().is_some_and(|name| name.as_bytes().starts_with(PREFIX.as_bytes()));
     let (here, there) = (machine()?, std::str::from_utf8(on).ok()?);
     let ((boot, space), (other_boot, other_space)) = (here.split_once(' ')?, there.split_once(' ')?);
-    // Processes of another container cannot be seen; those before the last start of the machine are gone.
+    // Processes of another container are invisible; those from before the last start of the machine have ended.
     let by = if boot == other_boot { std::str::from_utf8(by).ok()?.to_owned() } else { "0 0".to_owned() };
     let seen = boot != other_boot || space == other_space;
     (named && folder.is_absolute() && seen).then_some((folder, by))
@@ -137,17 +146,17 @@ fn registry(make: bool) -> Option<PathBuf> {
     (meta.is_dir() && meta.uid() == user && meta.mode() & 0o077 == 0).then_some(folder)
 }
 
-/// Which start of which machine this is, and which processes can be seen.
+/// Identifies the machine, its last start, and the namespace of visible processes.
 fn machine() -> Option<String> {
     let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
     let space = fs::read_link("/proc/self/ns/pid").ok()?;
     Some(format!("{} {}", boot.trim(), space.display()))
 }
 
-/// A process: its number, and when it started, because numbers come again.
+/// A process: its id, and when it started, because ids are reused.
 fn owner(pid: u32) -> Option<String> {
     let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    // The name of the program, in brackets, may hold anything.
+    // The name of the program, in brackets, may hold any character.
     let started = stat.rsplit_once(')')?.1.split_whitespace().nth(19)?.to_owned();
     Some(format!("{pid} {started}"))
 }
@@ -156,7 +165,7 @@ fn owner(pid: u32) -> Option<String> {
 pub(super) fn end_strays(folder: &Path) -> usize {
     const ROUNDS: usize = 20;
     let mut ended = 0;
-    // Until none is found: while one is ended it may start another.
+    // Repeated until none is found: a process may start another while it is ended.
     for _ in 0..ROUNDS {
         let found = strays(folder);
         if found.is_empty() {

@@ -1,10 +1,10 @@
-//! `kind = "command"`: an external program stands wherever `simulate` stands.
+//! `kind = "command"`: an external program as simulator, wherever a `simulate` stage can stand.
 //!
 //! For every row of the design (or once, without a design) the program runs in a folder of its own: files are copied
 //! there, templates are filled with the row's parameters, the command is started without a shell (unless asked for),
-//! with no standard input, with `PATH`, the declared environment, `FLOW_RUN_FOLDER` (its folder) and nothing else; then the responses are read from
-//! what it left (CSV, JSON, or a pattern on a text file). Command, templates, files and parameters are in the key,
-//! the time limit is not.
+//! with no standard input, with `PATH`, the declared environment, `FLOW_RUN_FOLDER` (its folder) and nothing else; then the
+//! responses are read from its files (CSV, JSON, or a pattern on a text file). Command, templates, files and parameters are
+//! in the key, the time limit is not.
 //!
 //! A template names values in double braces: `{{mortar.Ec}}` (parameter, SI), `{{Ec}}` (factor, in its unit),
 //! `{{seed}}`, `{{replicate}}`. The seed differs from row to row and from replicate to replicate and follows from the
@@ -14,14 +14,15 @@
 //! Numbers are read as C and Fortran write them. A value that the program itself calls `NaN` (or `null` in JSON) is a
 //! missing response, which a warning of the run names; a run that leaves no value at all has failed.
 //!
-//! A program that ends with another code than 0, leaves out a file or writes something unreadable is a failed task, not kept, run
-//! again next time; with `on_failure = "record"` it is a result with a reason, as a simulation without a peak is.
-//! `validity` and `cautions` say where the program tells that a run is not valid, or to be read with caution.
-//! Programs speak in any encoding: a text file with the mark of UTF-16 is read as that, and bytes of others that are not
-//! UTF-8 as `\\xE9`.
-//! Running out of time or being stopped is never recorded, because it says nothing about the model.
+//! A program that ends with another code than 0, does not write a file or writes an unreadable one has failed. Its task is
+//! not stored and runs again next time; with `on_failure = "record"` it is a result with a reason, like a simulation without
+//! a peak. `validity` and `cautions` name the texts in which the program says that a run is not valid, or needs caution.
+//! Text files may have any encoding: one with the mark of UTF-16 is read as UTF-16, and in others a byte that is not UTF-8
+//! is shown as `\\xE9`. A run that exceeds its time limit or is stopped is never recorded, because that does not depend on
+//! the model alone.
 
 mod folder;
+mod json;
 pub mod leftover;
 mod number;
 mod read;
@@ -53,14 +54,14 @@ use verdict::ReadText;
 pub struct Command {
     /// Program and arguments, such as `["python3", "engine.py", "input.json"]`; with `shell` one text for `sh -c`.
     pub run: Vec<String>,
-    /// Give the one text of `run` to a shell.
+    /// Whether a shell runs the one text of `run`.
     #[serde(default)]
     pub shell: bool,
-    /// The design whose rows are run; once when not given.
+    /// The design whose rows are run; without it there is one run.
     pub design: Option<String>,
     /// The `[material.NAME]` whose parameters rows vary and templates may name.
     pub material: Option<String>,
-    /// Files copied into the folder: name there = file beside the workflow.
+    /// Files that are copied into the folder: name in the folder = file beside the workflow.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
     /// Templates filled with the row's values: name in the folder = file beside the workflow.
@@ -69,26 +70,26 @@ pub struct Command {
     /// Environment variables besides `PATH`.
     #[serde(default)]
     pub environment: BTreeMap<String, String>,
-    /// A run that takes longer is ended and has failed.
+    /// Longest time of a run; a run that takes longer is ended and has failed.
     pub time_limit: Option<unit::Time>,
-    /// Most runs of the program at once, such as the number of its licences; as many as `--jobs` allows when not given.
+    /// Most runs of the program at once, such as the number of its licences; by default as many as `--jobs` allows.
     /// Stages that run the same program share the number, and such runs stay on this machine.
     pub at_once: Option<usize>,
     /// Whether a failed run stops the campaign or is recorded with its reason.
     #[serde(default)]
     pub on_failure: OnFailure,
-    /// How each response is read, by its name.
+    /// How to read each response, by its name.
     pub read: BTreeMap<String, Read>,
-    /// Where the program says why a run is not valid: it is then treated as a test of `simulate` that does not meet its
+    /// Where the program says why a run is not valid; such a run is treated like a test of `simulate` that does not meet its
     /// checks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validity: Option<ReadText>,
-    /// Where the program says why a run is to be read with caution.
+    /// Where the program says why the numbers of a run need caution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cautions: Option<ReadText>,
 }
 
-/// What becomes of a run that failed.
+/// What to do with a run that failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OnFailure {
@@ -187,7 +188,7 @@ impl Stage for Command {
         for (key, files) in [("files", &self.files), ("templates", &self.templates)] {
             for (name, path) in files {
                 let Some(full) = found.file(&format!("{key}.{name}"), path) else { continue };
-                // A template that is no text is reported when it is filled.
+                // A template that is not text is reported when it is filled.
                 let text = (key == "templates").then(|| std::fs::read_to_string(full).ok()).flatten();
                 if let Some(fault) = text.and_then(|text| template::fault(&text, || self.values(context))) {
                     let complaint = Complaint::new(key, format!("{path}, {}", fault.message));
@@ -318,10 +319,10 @@ impl Command {
     }
 }
 
-/// Files of a run that hold what the program says.
+/// Files of a run with the output of the program.
 const OUTPUT: [&str; 2] = ["stdout", "stderr"];
 
-/// The first of `{{name}}` in the text that names a value; other braces are the program's own.
+/// The first `{{name}}` in the text that names a value; other braces belong to the program.
 fn placeholder<'a>(text: &'a str, values: &[String]) -> Option<&'a str> {
     let mut within = text.split("{{").skip(1).filter_map(|rest| Some(rest.split_once("}}")?.0));
     within.find(|name| values.iter().any(|value| value == name.trim()))
@@ -352,18 +353,18 @@ fn execute(job: &Job) -> Result<Artifact, Failure> {
     Ok(run.to_artifact())
 }
 
-/// What the program gave and what it says of it.
+/// The responses of the program, and its texts on their validity.
 fn given(params: &Params, folder: &folder::Folder) -> Result<Run, String> {
     let (responses, missing) = responses(&params.read, folder)?;
     let said = |read: &Option<ReadText>| read.as_ref().map(|read| read.reason(folder)).transpose();
     let (validity, cautions) = (said(&params.validity)?, said(&params.cautions)?);
-    // A program that says anything of its runs says of all whether they are valid.
+    // With one of the two settings every run has a validity.
     let validity = validity.or_else(|| cautions.is_some().then(String::new));
     let warnings = (!missing.is_empty()).then_some(missing);
     Ok(Run { validity, cautions, warnings, ..Run::plain("", responses) })
 }
 
-/// What a program left: the responses, and words on those that have no value.
+/// Reads the files of a program: the responses, and a sentence on each response without a value.
 fn responses(read: &BTreeMap<String, Read>, folder: &folder::Folder) -> Result<(Responses, Vec<String>), String> {
     let (mut found, mut missing) = (Vec::new(), Vec::new());
     for (name, read) in read {

@@ -1,22 +1,22 @@
 //! Numbers as programs write them.
 //!
-//! Beside the usual forms: Fortran's exponent letters (`1.0D+03`, `1.0d3`, `1.0Q2`), its exponents of three digits without
-//! a letter (`0.123-100`), fields too narrow for their number (`*****`), and every word that compilers have for what is no
-//! number (`NaN`, `-nan(ind)`, `1.#QNAN`). Decimal commas and thousands separators are refused: they look alike.
+//! Besides the usual forms: Fortran's exponent letters (`1.0D+03`, `1.0d3`, `1.0Q2`), its exponents of three digits without
+//! a letter (`0.123-100`), fields too narrow for their number (`*****`), and the words of compilers for "not a number"
+//! (`NaN`, `-nan(ind)`, `1.#QNAN`). Decimal commas and thousands separators are refused because they are ambiguous.
 
-/// What a text stands for.
+/// The value of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
     /// A finite number.
     Finite(f64),
-    /// No value: the program says that it is not a number.
+    /// A missing value, written as not-a-number.
     Missing,
 }
 
 /// Reads one number.
 ///
 /// # Errors
-/// Why the text is none, in words that follow the text.
+/// Why the text is not a number, in words that follow the text.
 pub(super) fn number(text: &str) -> Result<Number, String> {
     let text = text.trim();
     if is_nan(text) {

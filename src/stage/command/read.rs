@@ -1,19 +1,20 @@
-//! How a response is read from what a program left.
+//! How a response is read from the files of a program.
 
 use super::folder::{Folder, is_plain};
+use super::json;
 use super::number::{Number, number};
 use crate::stage::sheet::Sheet;
 use crate::stage::{Complaint, Context, rows};
-use regex::Regex;
+use regex_lite::Regex;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Where a response stands: in a column of a CSV file, at a pointer of a JSON file, or at a pattern of a text file.
+/// Where a response is: in a column of a CSV file, at a pointer of a JSON file, or at a pattern of a text file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Read {
-    /// The file in the run's folder; `stdout` and `stderr` hold what the program printed.
+    /// The file in the run's folder; `stdout` and `stderr` hold the output of the program.
     file: String,
     /// Column of a CSV file with a first line of names.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -24,7 +25,7 @@ pub struct Read {
     /// Regular expression whose first group is the number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pattern: Option<String>,
-    /// Which row of the column, or which match of the pattern, counts.
+    /// Which row of the column, or which match of the pattern, is taken.
     #[serde(default, skip_serializing_if = "Take::is_default")]
     take: Take,
     /// Unit of the number; none for a pure number.
@@ -36,7 +37,7 @@ pub struct Read {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Take {
-    /// The last: what a program prints at the end of a run.
+    /// The last, such as the number that a program prints at the end of a run.
     #[default]
     Last,
     /// The first.
@@ -54,8 +55,8 @@ impl Take {
         *self == Self::default()
     }
 
-    /// The number among these texts, in their order; there is at least one. Missing values are passed over unless the
-    /// first or the last is wanted.
+    /// The number among these texts, in their order; there is at least one. Missing values are skipped unless the first or the
+    /// last is taken.
     fn of(self, texts: &[String]) -> Result<Number, String> {
         let read = |text: &String| number(text).map_err(|why| format!("`{text}` {why}"));
         let ends = match self {
@@ -82,6 +83,41 @@ impl Take {
     }
 }
 
+/// The file of a value, and the ways to read it: a column, a pointer and a pattern, of which one must be set.
+pub(super) struct Source<'a> {
+    pub file: &'a str,
+    pub ways: [&'a Option<String>; 3],
+}
+
+impl Source<'_> {
+    /// The faults of the table at `path`, which reads `name`; `group` is the meaning of the pattern's group, with an
+    /// example of a pattern.
+    pub(super) fn check(&self, path: &str, name: &str, group: (&str, &str)) -> Vec<Complaint> {
+        let at = |key: &str| format!("{path}.{key}");
+        let mut found = Vec::new();
+        if !is_plain(self.file) {
+            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
+            let hint = "leave out `..` and a leading `/`; a file outside is in no key: list it in `files`";
+            found.push(Complaint::new(&at("file"), message).hint(hint));
+        }
+        let ways = self.ways.iter().filter(|way| way.is_some()).count();
+        if ways != 1 {
+            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
+            found.push(Complaint::new(path, format!("{ways} ways to read `{name}`, not one")).hint(hint));
+        }
+        let [.., pattern] = self.ways;
+        match pattern.as_deref().map(Regex::new) {
+            Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
+            Some(Ok(regex)) if regex.captures_len() != 2 => {
+                let message = format!("the pattern needs exactly one group: {}", group.0);
+                found.push(Complaint::new(&at("pattern"), message).hint(group.1));
+            }
+            Some(Ok(_)) | None => {}
+        }
+        found
+    }
+}
+
 impl Read {
     pub(super) fn unit(&self) -> &str {
         &self.unit
@@ -89,29 +125,12 @@ impl Read {
 
     pub(super) fn check(&self, name: &str, context: &Context) -> Vec<Complaint> {
         let at = |key: &str| format!("read.{name}.{key}");
-        let mut found = Vec::new();
-        if !is_plain(&self.file) {
-            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
-            let hint = "leave out `..` and a leading `/`: what lies outside is in no key; list it in `files`";
-            found.push(Complaint::new(&at("file"), message).hint(hint));
-        }
-        let ways = [&self.column, &self.pointer, &self.pattern].iter().filter(|way| way.is_some()).count();
-        if ways != 1 {
-            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
-            found.push(Complaint::new(&at(""), format!("{ways} ways to read `{name}`, not one")).hint(hint));
-        }
+        let source = Source { file: &self.file, ways: [&self.column, &self.pointer, &self.pattern] };
+        let mut found = source.check(&at(""), name, ("the number", r"pattern = 'UCS = (\S+)'"));
         found.extend(rows::check_response(&at("unit"), name, &self.unit, context));
         if self.pointer.is_some() && !self.take.is_default() {
             let message = "a pointer names one number, so there is nothing to choose from";
             found.push(Complaint::new(&at("take"), message).hint("leave `take` out, or read a column or a pattern"));
-        }
-        match self.pattern.as_deref().map(Regex::new) {
-            Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
-            Some(Ok(regex)) if regex.captures_len() != 2 => {
-                let message = "the pattern needs exactly one group: the number";
-                found.push(Complaint::new(&at("pattern"), message).hint(r"pattern = 'UCS = (\S+)'"));
-            }
-            Some(Ok(_)) | None => {}
         }
         found
     }
@@ -119,7 +138,7 @@ impl Read {
     /// The number, in the unit of this response, or why it has no value although the program ended well.
     ///
     /// # Errors
-    /// What is wrong with the file or the number.
+    /// The fault of the file or the number.
     pub(super) fn value(&self, folder: &Folder) -> Result<Result<f64, String>, String> {
         let text = folder.text(&self.file)?;
         let found = if let Some(column) = &self.column {
@@ -147,10 +166,9 @@ pub(super) fn from_csv(text: &str, column: &str) -> Result<Vec<String>, String> 
     if sheet.rows() == 0 { Err("no rows".to_owned()) } else { Ok(sheet.columns[place].clone()) }
 }
 
-/// The number at a pointer; `null`, and the `NaN` that many programs write although JSON has none, are missing values.
+/// The number at a pointer; `null` is a missing value.
 fn from_json(text: &str, pointer: &str) -> Result<Number, String> {
-    let text = without_nan(text);
-    let value: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
+    let value = json::parse(text)?;
     match value.pointer(pointer) {
         Some(Value::Number(found)) => {
             let found = found.to_string();
@@ -161,31 +179,6 @@ fn from_json(text: &str, pointer: &str) -> Result<Number, String> {
         Some(other) => Err(format!("`{pointer}` is `{other}`, not a number")),
         None => Err(format!("nothing at `{pointer}`")),
     }
-}
-
-/// The text with `null` for each bare `NaN`, and with infinities in quotes, where they are refused by name.
-fn without_nan(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let (mut rest, mut quoted) = (text, false);
-    while let Some(c) = rest.chars().next() {
-        let bare = |word: &str| !quoted && rest.starts_with(word);
-        let (taken, written) = if quoted && c == '\\' {
-            let taken = rest.chars().take(2).map(char::len_utf8).sum();
-            (taken, &rest[..taken])
-        } else if bare("NaN") {
-            (3, "null")
-        } else if bare("-Infinity") {
-            (9, "\"-Infinity\"")
-        } else if bare("Infinity") {
-            (8, "\"Infinity\"")
-        } else {
-            (c.len_utf8(), &rest[..c.len_utf8()])
-        };
-        quoted ^= c == '"';
-        out.push_str(written);
-        rest = &rest[taken..];
-    }
-    out
 }
 
 /// The numbers that a pattern finds; there is at least one.
@@ -241,7 +234,6 @@ mod tests {
         assert_eq!(from_json(json, "/D"), Ok(Number::Finite(150.0)));
         assert_eq!(from_json(json, "/s/1"), Ok(Number::Missing));
         assert!(from_json(json, "/s/0").unwrap_err().contains("`-Infinity` is not a finite number"));
-        assert!(without_nan(json).contains(r#""note \"NaN": "NaN \\""#));
     }
 
     #[test]

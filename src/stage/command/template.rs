@@ -1,10 +1,10 @@
-//! Templates: `{{name}}` stands for a value of the run.
+//! Templates: `{{name}}` is replaced by a value of the run.
 
 use crate::stage::StageError;
 
 /// A stretch of a template.
 enum Part<'t> {
-    /// As it stands.
+    /// Text that is copied.
     Text(&'t str),
     /// The name between double braces, and its line.
     Name(&'t str, usize),
@@ -28,7 +28,7 @@ fn parts(text: &str) -> Result<Vec<Part<'_>>, String> {
     Ok(parts)
 }
 
-/// The first name that stands for nothing, with what is known.
+/// The error about the first unknown name; its hint lists the known ones.
 pub(super) fn fault(text: &str, known: impl Fn() -> Vec<String>) -> Option<StageError> {
     let parts = match parts(text) {
         Ok(parts) => parts,

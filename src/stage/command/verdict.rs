@@ -1,18 +1,19 @@
-//! How the words on the validity of a run are read from what a program left.
+//! How the texts on the validity of a run are read from the files of a program.
 
-use super::folder::{Folder, is_plain, shown};
-use super::read::from_csv;
+use super::folder::{Folder, shown};
+use super::json;
+use super::read::{Source, from_csv};
 use crate::stage::Complaint;
-use regex::Regex;
+use regex_lite::Regex;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Where a text stands: the words after which a run is not valid, or is to be read with caution.
+/// Where a text is that says why a run is not valid, or needs caution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReadText {
-    /// The file in the run's folder; `stdout` and `stderr` hold what the program printed.
+    /// The file in the run's folder; `stdout` and `stderr` hold the output of the program.
     file: String,
     /// Column of a CSV file with a first line of names; the last row counts. An empty cell is no reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -26,29 +27,10 @@ pub struct ReadText {
 }
 
 impl ReadText {
-    /// What is wrong with it, as the value of the stage's `key`.
+    /// Its faults, as the value of the stage's `key`.
     pub(super) fn check(&self, key: &str) -> Vec<Complaint> {
-        let at = |own: &str| format!("{key}.{own}");
-        let mut found = Vec::new();
-        if !is_plain(&self.file) {
-            let message = format!("`{}` must be a plain name inside the run's folder", self.file);
-            let hint = "leave out `..` and a leading `/`: what lies outside is in no key; list it in `files`";
-            found.push(Complaint::new(&at("file"), message).hint(hint));
-        }
-        let ways = [&self.column, &self.pointer, &self.pattern].iter().filter(|way| way.is_some()).count();
-        if ways != 1 {
-            let hint = "give one of `column` (CSV), `pointer` (JSON), `pattern` (text)";
-            found.push(Complaint::new(key, format!("{ways} ways to read `{key}`, not one")).hint(hint));
-        }
-        match self.pattern.as_deref().map(Regex::new) {
-            Some(Err(e)) => found.push(Complaint::new(&at("pattern"), e.to_string())),
-            Some(Ok(regex)) if regex.captures_len() != 2 => {
-                let message = "the pattern needs exactly one group: the reason";
-                found.push(Complaint::new(&at("pattern"), message).hint("pattern = 'not valid: (.+)'"));
-            }
-            Some(Ok(_)) | None => {}
-        }
-        found
+        let source = Source { file: &self.file, ways: [&self.column, &self.pointer, &self.pattern] };
+        source.check(key, key, ("the reason", "pattern = 'not valid: (.+)'"))
     }
 
     /// The reasons, joined; empty when there is none.
@@ -72,9 +54,9 @@ impl ReadText {
     }
 }
 
-/// The text, or the texts of the list, that the pointer leads to.
+/// The text, or the texts of the list, at the pointer.
 fn reasons_from_json(text: &str, pointer: &str) -> Result<Vec<String>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+    let value = json::parse(text)?;
     let word = |value: &Value| value.as_str().map(str::to_owned);
     let found = value.pointer(pointer).ok_or_else(|| format!("nothing at `{pointer}`"))?;
     let reasons = match found {
@@ -103,6 +85,7 @@ mod tests {
         assert_eq!(json(r#"{"v": null}"#), words(&[]));
         assert_eq!(json(r#"{"v": "rotation"}"#), words(&["rotation"]));
         assert_eq!(json(r#"{"v": ["rotation", ""]}"#), words(&["rotation", ""]));
+        assert_eq!(json(r#"{"E": NaN, "v": "rotation"}"#), words(&["rotation"]));
         for (text, told) in [(r#"{"v": false}"#, "`false`"), (r#"{"v": [1]}"#, "`[1]`"), ("{}", "nothing at")] {
             assert!(json(text).unwrap_err().contains(told), "{text}");
         }

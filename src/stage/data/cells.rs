@@ -5,7 +5,7 @@ use super::dialect::{Decimal, is_number};
 use crate::artifact::Table;
 use crate::unit::Unit;
 
-/// Words that stand for no value where the workflow names none.
+/// Default words for missing values.
 const MISSING: [&str; 8] = ["NA", "N/A", "n/a", "NaN", "nan", "null", "-", "–"];
 
 /// How cells are read.
@@ -42,14 +42,14 @@ fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
     }
     let known = |unit: &str| !unit.is_empty() && unit != "1" && Unit::parse(unit).is_ok();
     let round = head.strip_suffix(')').and_then(|rest| rest.split_once('(')).filter(|(name, _)| !name.ends_with('/'));
-    // the first stroke: a unit may hold another, as in `v / m/s`
+    // the first slash: a unit may hold another, as in `v / m/s`
     let stroke = head.split_once('/').filter(|(_, unit)| is_plain_unit(bare(unit.trim())));
     let both = [round, stroke].into_iter().flatten().map(|(name, unit)| (name.trim(), unit.trim()));
     let found = both.into_iter().find(|(name, unit)| !name.is_empty() && known(bare(unit)));
     Ok(found.map_or((head, ""), |(name, unit)| (name, bare(unit))))
 }
 
-/// Whether a text behind a stroke is surely a unit: `ks` and `t` are units too, but `kn/ks` and `R/t` are ratios.
+/// Whether a text after a slash can only be a unit: `ks` and `t` are units too, but `kn/ks` and `R/t` are ratios.
 fn is_plain_unit(unit: &str) -> bool {
     let marked = unit.contains(|c: char| c.is_uppercase() || c.is_ascii_digit() || "%°µ/".contains(c));
     marked || ["m", "cm", "mm", "g", "kg", "s", "ms", "min", "rad", "deg"].contains(&unit)
@@ -83,7 +83,7 @@ impl Cells<'_> {
         is_number(&text).then(|| text.parse().ok()).flatten()
     }
 
-    /// Cells that are no numbers in a column of numbers: thousands separators, and words in a column with a unit.
+    /// The fault of a cell that is not a number in a column of numbers: a thousands separator, or a word in a column with a unit.
     fn check_words(&self, name: &str, unit: &str, cells: &[String]) -> Result<(), StageError> {
         let wrong = cells.iter().enumerate().find(|(_, cell)| self.number(cell).is_none());
         let Some((row, cell)) = wrong else { return Ok(()) };

@@ -1,11 +1,11 @@
-//! How a text file writes its table: encoding, delimiter, decimal sign; detected from the bytes, or fixed by settings.
+//! The dialect of a text file: encoding, delimiter and decimal sign, detected from the bytes or set in the workflow.
 
 use super::super::StageError;
 use super::super::sheet::below_comments;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What stands between two cells.
+/// The delimiter between two cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Delimiter {
@@ -19,7 +19,7 @@ pub enum Delimiter {
     Bar,
 }
 
-/// What stands before the decimals of a number.
+/// The decimal sign of a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Decimal {
@@ -30,7 +30,7 @@ pub enum Decimal {
     Comma,
 }
 
-/// How letters are written as bytes.
+/// The encoding of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Encoding {
@@ -45,19 +45,19 @@ pub enum Encoding {
     Windows1252,
 }
 
-/// How a file is read; what is `None` is detected.
+/// The dialect of a file; a field that is `None` is detected.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Dialect {
-    /// What stands between cells.
+    /// The delimiter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub delimiter: Option<Delimiter>,
-    /// What stands before decimals.
+    /// The decimal sign.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decimal: Option<Decimal>,
-    /// How letters are written.
+    /// The encoding.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub encoding: Option<Encoding>,
-    /// Words that stand for no value, beside an empty cell; `None` takes the usual ones.
+    /// Words for missing values, besides an empty cell; `None` for the default ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missing: Option<Vec<String>>,
     /// The sheet of a workbook.
@@ -88,7 +88,7 @@ impl Delimiter {
     }
 }
 
-/// The text of a file, and what was detected that is not plain UTF-8.
+/// The text of a file, and its encoding in words if it is not plain UTF-8.
 pub(super) fn decode(bytes: &[u8], fixed: Option<Encoding>) -> Result<(String, Option<String>), StageError> {
     let marked = |mark: &[u8]| bytes.strip_prefix(mark);
     let (encoding, body, mark) = match (marked(b"\xEF\xBB\xBF"), marked(b"\xFF\xFE"), marked(b"\xFE\xFF")) {
@@ -105,7 +105,7 @@ pub(super) fn decode(bytes: &[u8], fixed: Option<Encoding>) -> Result<(String, O
         Some(Encoding::Utf16) => encoding_rs::UTF_16LE,
         Some(Encoding::Windows1252) => encoding_rs::WINDOWS_1252,
     };
-    // a mark of another encoding than asked for is part of the text, and its letters show that
+    // the mark of another encoding than the setting is read as part of the text, whose letters show the mistake
     let body = if asked == encoding { body } else { bytes };
     let text = asked.decode_without_bom_handling_and_without_replacement(body).ok_or_else(|| {
         StageError::new(format!("the file is not written in {}", asked.name()))
@@ -128,7 +128,7 @@ pub(super) fn delimiter(text: &str) -> Delimiter {
         let widths: Vec<usize> = reader.records().take(200).flatten().map(|record| record.len()).collect();
         let first = widths.first().copied().unwrap_or(1);
         let even = first > 1 && widths.iter().all(|w| *w == first);
-        // where no delimiter is even, the one that parts the first line most is the one whose lines are at fault
+        // where no delimiter gives lines of equal length, the one with most cells in the first line is reported
         (even, first)
     };
     let best = Delimiter::ALL.into_iter().reduce(|a, b| if score(b) > score(a) { b } else { a });
@@ -159,7 +159,7 @@ pub(super) fn decimal<'a>(cells: impl Iterator<Item = &'a str> + Clone) -> Resul
     }
 }
 
-/// `1,234` or `12,345`: one to three digits without a leading zero, then three.
+/// Matches `1,234` and `12,345`: one to three digits without a leading zero, then three.
 fn could_be_thousands(cell: &str) -> bool {
     let body = cell.strip_prefix(['-', '+']).unwrap_or(cell);
     let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
@@ -178,7 +178,7 @@ pub(super) fn is_number(text: &str) -> bool {
     sane && text.parse::<f64>().is_ok_and(f64::is_finite)
 }
 
-/// The note on how a table was read; `None` for the usual way.
+/// The note on how a table was read; `None` for the default.
 pub(super) fn said(encoding: Option<String>, delimiter: Option<Delimiter>, decimal: Option<Decimal>) -> Option<String> {
     let cells = delimiter.filter(|d| *d != Delimiter::Comma).map(|d| {
         format!(

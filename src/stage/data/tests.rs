@@ -1,6 +1,7 @@
 //! Tables as laboratories and spreadsheets write them.
 
 use super::*;
+use std::io::Write;
 
 #[test]
 fn units_numbers_and_missing_cells_are_read() {
@@ -115,19 +116,24 @@ fn workbooks_are_read_by_sheet() {
     }
 }
 
-/// The check sum of archives (CRC-32, ISO 3309).
-fn crc(bytes: &[u8]) -> u32 {
-    let bit = |crc: u32| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg());
-    !bytes.iter().fold(!0, |crc, byte| (0..8).fold(crc ^ u32::from(*byte), |crc, _| bit(crc)))
+/// An archive of these parts.
+fn archive_of(parts: &[(&str, &str)]) -> Vec<u8> {
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (name, text) in parts {
+        let how = if *name == "mimetype" { zip::CompressionMethod::Stored } else { zip::CompressionMethod::Deflated };
+        archive.start_file(*name, zip::write::SimpleFileOptions::default().compression_method(how)).unwrap();
+        archive.write_all(text.as_bytes()).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
 }
 
-/// A workbook with one sheet of these cells, as an archive without compression.
-fn workbook_of(sheet: &str) -> Vec<u8> {
+/// A workbook of Excel with one sheet of these rows, and the list of texts where there is one.
+fn workbook_of(sheet: &str, texts: Option<&str>) -> Vec<u8> {
     let types = "application/vnd.openxmlformats-officedocument.spreadsheetml";
     let relations = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
     let package = "http://schemas.openxmlformats.org/package/2006";
-    let files = [
+    let mut files = vec![
         (
             "[Content_Types].xml",
             format!(
@@ -156,29 +162,9 @@ fn workbook_of(sheet: &str) -> Vec<u8> {
         ),
         ("xl/worksheets/sheet1.xml", format!("<worksheet xmlns=\"{main}\"><sheetData>{sheet}</sheetData></worksheet>")),
     ];
-    let (mut bytes, mut list, count) = (Vec::new(), Vec::new(), files.len() as u16);
-    for (name, text) in files {
-        let at = bytes.len() as u32;
-        let sizes = [crc(text.as_bytes()), text.len() as u32, text.len() as u32];
-        let mut common = vec![20, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-        sizes.iter().for_each(|size| common.extend(size.to_le_bytes()));
-        common.extend((name.len() as u32).to_le_bytes());
-        bytes.extend(b"PK\x03\x04");
-        bytes.extend(&common);
-        bytes.extend(name.bytes().chain(text.bytes()));
-        list.extend(b"PK\x01\x02\x14\0");
-        list.extend(&common);
-        list.extend([0; 10]);
-        list.extend(at.to_le_bytes());
-        list.extend(name.bytes());
-    }
-    let (start, length) = (bytes.len() as u32, list.len() as u32);
-    bytes.extend(list);
-    bytes.extend(b"PK\x05\x06\0\0\0\0");
-    [count, count].iter().for_each(|count| bytes.extend(count.to_le_bytes()));
-    [length, start].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
-    bytes.extend([0, 0]);
-    bytes
+    files.extend(texts.map(|texts| ("xl/sharedStrings.xml", texts.to_owned())));
+    let parts: Vec<(&str, &str)> = files.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    archive_of(&parts)
 }
 
 /// A sheet is as large as the place of its last cell says: one in the last corner would take 512 GB.
@@ -188,12 +174,132 @@ fn a_cell_far_out_costs_no_memory() {
     let number = |place: &str| format!("<c r=\"{place}\"><v>1.5</v></c>");
     let head = format!("<row r=\"1\">{}{}</row>", text("A1", "a"), text("B1", "y"));
     let line = format!("<row r=\"2\">{}{}</row>", number("A2"), number("B2"));
-    let table = parse(&workbook_of(&format!("{head}{line}"))).unwrap();
+    let table = parse(&workbook_of(&format!("{head}{line}"), None)).unwrap();
     assert_eq!(table.columns[1].values, Values::Reals(vec![1.5]));
     let far = format!("{head}{line}<row r=\"1048576\">{}</row>", number("XFD1048576"));
-    assert!(parse(&workbook_of(&far)).unwrap_err().message.contains("every column needs a name of its own"));
+    assert!(parse(&workbook_of(&far, None)).unwrap_err().message.contains("every column needs a name of its own"));
     let beyond = format!("{head}<row r=\"2\">{}</row>", number("ZZZZZ2"));
-    assert!(parse(&workbook_of(&beyond)).unwrap_err().message.contains("has a cell in column"));
+    assert!(parse(&workbook_of(&beyond, None)).unwrap_err().message.contains("has a cell in column"));
     let below = format!("{head}{line}<row r=\"4000000\">{}</row>", number("A4000000"));
-    assert_eq!(parse(&workbook_of(&below)).unwrap().rows(), 2);
+    assert_eq!(parse(&workbook_of(&below, None)).unwrap().rows(), 2);
+}
+
+/// A workbook of LibreOffice with one sheet of these rows.
+fn ods_of(rows: &str) -> Vec<u8> {
+    let content = format!(
+        "<office:document-content><office:body><office:spreadsheet><table:table table:name=\"a\">{rows}</table:table>\
+         </office:spreadsheet></office:body></office:document-content>"
+    );
+    archive_of(&[("mimetype", "application/vnd.oasis.opendocument.spreadsheet"), ("content.xml", &content)])
+}
+
+const HEAD: &str = "<table:table-row><table:table-cell office:value-type=\"string\"><text:p>y</text:p></table:table-cell></table:table-row>";
+
+fn ods_cell(attributes: &str, inside: &str) -> String {
+    format!("<table:table-cell {attributes}>{inside}</table:table-cell>")
+}
+
+/// What LibreOffice writes below and beside a table that was formatted to the last corner, and repeated cells that hold
+/// something.
+#[test]
+fn repeated_cells_cost_what_they_hold() {
+    let number = ods_cell("office:value-type=\"float\" office:value=\"1.5\"", "<text:p>1,50</text:p>");
+    let row = |attributes: &str, cells: &str| format!("<table:table-row {attributes}>{cells}</table:table-row>");
+    let empty = "<table:table-cell table:number-columns-repeated=\"16384\"/>";
+    let thrice = row("table:number-rows-repeated=\"3\"", &format!("{number}{empty}"));
+    let below = row("table:number-rows-repeated=\"1048571\"", empty);
+    let table = parse(&ods_of(&format!("{HEAD}{thrice}{below}"))).unwrap();
+    assert_eq!(table.columns[0].values, Values::Reals(vec![1.5; 3]));
+
+    let message = |rows: String| parse(&ods_of(&rows)).unwrap_err().message;
+    for count in ["2000000", "4294967295", "99999999999999999999"] {
+        let many = row(&format!("table:number-rows-repeated=\"{count}\""), &number);
+        assert!(message(format!("{HEAD}{many}")).contains("the sheet has more than"), "{count}");
+        let wide = number.replace("table-cell ", &format!("table-cell table:number-columns-repeated=\"{count}\" "));
+        assert!(message(format!("{HEAD}{}", row("", &wide))).contains("has a cell in column"), "{count}");
+        let blanks =
+            ods_cell("office:value-type=\"string\"", &format!("<text:p>a<text:s text:c=\"{count}\"/></text:p>"));
+        assert!(message(format!("{HEAD}{}", row("", &blanks))).contains("more than 32768 characters"), "{count}");
+    }
+    assert!(message(format!("{HEAD}{}", row("table:number-rows-repeated=\"-1\"", &number))).contains("is `-1`"));
+    // far below and far to the right
+    let far = format!("{HEAD}{thrice}{below}{}", row("", &format!("{empty}{number}")));
+    assert!(message(far).contains("has a cell in column"));
+}
+
+#[test]
+fn cells_of_libreoffice_are_read_as_they_stand() {
+    let cells = [
+        ods_cell("office:value-type=\"percentage\" office:value=\"0.125\"", "<text:p>12,5 %</text:p>"),
+        ods_cell("office:value-type=\"date\" office:date-value=\"2024-05-01\"", "<text:p>1. Mai</text:p>"),
+        ods_cell("office:value-type=\"boolean\" office:boolean-value=\"true\"", "<text:p>WAHR</text:p>"),
+        ods_cell("office:value-type=\"string\"", "<text:p>a &amp; <text:span>b</text:span></text:p><text:p>c</text:p>"),
+        ods_cell(
+            "office:value-type=\"float\" office:value=\"7\"",
+            "<office:annotation><text:p>remark</text:p></office:annotation><text:p>7</text:p>",
+        ),
+    ];
+    let heads: String =
+        (0..5).map(|n| ods_cell("office:value-type=\"string\"", &format!("<text:p>c{n}</text:p>"))).collect();
+    let rows = format!(
+        "<table:table-header-rows><table:table-row>{heads}</table:table-row></table:table-header-rows>\
+         <table:table-row>{}</table:table-row>",
+        cells.concat()
+    );
+    let table = parse(&ods_of(&rows)).unwrap();
+    let texts = |index: usize| match &table.columns[index].values {
+        Values::Texts(texts) => texts[0].clone(),
+        other => format!("{other:?}"),
+    };
+    assert_eq!([texts(1), texts(2), texts(3)], ["2024-05-01", "true", "a & b\nc"]);
+    assert_eq!([table.shown("c0").unwrap().0, table.shown("c4").unwrap().0], [[0.125], [7.0]]);
+    let error = ods_cell("office:value-type=\"string\" calcext:value-type=\"error\"", "<text:p>#DIV/0!</text:p>");
+    let fault = parse(&ods_of(&format!("{HEAD}<table:table-row>{error}</table:table-row>"))).unwrap_err();
+    assert_eq!(fault.message, "sheet `a`, row 2: a cell holds the error #DIV/0!");
+}
+
+/// Files that unpack to more than there is memory, announce more than they hold, or end too early.
+#[test]
+fn workbooks_are_judged_before_they_are_read() {
+    let blank = " ".repeat(300 << 20);
+    let bomb = archive_of(&[("mimetype", "application/vnd.oasis.opendocument.spreadsheet"), ("content.xml", &blank)]);
+    assert!(bomb.len() < 1 << 20);
+    let message = |bytes: &[u8]| parse(bytes).unwrap_err().message;
+    assert!(message(&bomb).contains("unpacks to more than 256 MiB"), "{}", message(&bomb));
+    for count in ["18446744073709551615", "1000000000000"] {
+        let texts = format!("<sst uniqueCount=\"{count}\"><si><t>y</t></si></sst>");
+        let book = workbook_of("<row r=\"1\"><c r=\"A1\" t=\"s\"><v>0</v></c></row>", Some(&texts));
+        assert!(message(&book).contains(&format!("says that it holds {count} texts")), "{}", message(&book));
+    }
+    let cut = archive_of(&[
+        ("mimetype", "application/vnd.oasis.opendocument.spreadsheet"),
+        ("content.xml", &format!("<office:spreadsheet><table:table table:name=\"a\">{HEAD}")),
+    ]);
+    assert!(message(&cut).contains("cannot be read"), "{}", message(&cut));
+    let locked = archive_of(&[
+        ("mimetype", "application/vnd.oasis.opendocument.spreadsheet"),
+        ("META-INF/manifest.xml", "<manifest:encryption-data/>"),
+        ("content.xml", "x"),
+    ]);
+    assert!(message(&locked).contains("locked with a password"));
+}
+
+/// Every cut and many flips of real workbooks: an answer or a reason, never a panic that passes on.
+#[test]
+fn damaged_workbooks_are_refused() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/data/");
+    let how = Dialect { sheet: Some("cylinders".into()), ..Dialect::default() };
+    for file in ["runs.xlsx", "runs.ods"] {
+        let bytes = std::fs::read(format!("{folder}{file}")).unwrap();
+        let whole = read(&bytes, &how).0;
+        for cut in (0..bytes.len()).step_by(97) {
+            assert!(parse_as(&bytes[..cut], &how).is_err(), "{file} cut at {cut}");
+        }
+        for at in (0..bytes.len()).step_by(61) {
+            let mut flipped = bytes.clone();
+            flipped[at] ^= 1 << (at % 8);
+            // The check sums of an archive leave a flip in its headers alone.
+            assert!(parse_as(&flipped, &how).map_or(true, |(table, _)| table == whole), "{file} flipped at {at}");
+        }
+    }
 }

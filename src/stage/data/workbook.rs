@@ -1,7 +1,11 @@
 //! Workbooks of Excel and LibreOffice (xlsx, xlsb, xls, ods): one sheet as a table of text.
 
+mod archive;
+mod ods;
+
 use super::super::StageError;
 use super::super::sheet::Sheet;
+use archive::{Archive, broken};
 use calamine::{Data, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
 use std::collections::BTreeMap;
@@ -30,60 +34,92 @@ pub(super) fn sheet(bytes: &[u8], sheet: Option<&str>) -> Result<Sheet, StageErr
 
 /// The lines of a sheet, all of one length.
 fn lines(bytes: &[u8], sheet: Option<&str>) -> Result<Vec<Vec<String>>, StageError> {
-    let fault = |e: calamine::Error| StageError::new(format!("the workbook cannot be read: {e}"));
-    let mut book = open_workbook_auto_from_rs(Cursor::new(bytes.to_vec())).map_err(fault)?;
-    let names = book.sheet_names();
-    let name = match (sheet, names.as_slice()) {
-        (Some(wanted), _) if names.iter().any(|name| name == wanted) => wanted.to_owned(),
-        (None, [only]) => only.clone(),
-        (wanted, _) => {
-            let message = match wanted {
-                Some(wanted) => format!("the workbook has no sheet `{wanted}`"),
-                None => "the workbook has several sheets".to_owned(),
-            };
-            return Err(StageError::new(message).hint(format!("`sheet` is one of: {}", names.join(", "))));
-        }
-    };
+    let mut archive = bytes.starts_with(b"PK").then(|| Archive::open(bytes)).transpose()?;
     let mut cells = Cells::default();
-    let mut take = |row: u32, column: u32, cell: &Data| -> Result<(), StageError> {
-        let read = text(cell).map_err(|e| at(&name, row as usize + 1, &e))?;
-        cells.add(row, column, read)
+    let open = archive.as_mut().map(ods::is_ods).transpose()?.unwrap_or(false);
+    if let Some(archive) = archive.as_mut().filter(|_| open) {
+        let name = chosen(&ods::names(archive)?, sheet)?;
+        ods::cells(archive, &name, |row, column, text| cells.take(&name, row, column, text.clone()))?;
+    } else {
+        check_dimensions(bytes)?;
+        // Old formats are full of counts and offsets, and a damaged file may send their reader beyond its end.
+        let read = std::panic::AssertUnwindSafe(|| read_cells(bytes, sheet, &mut cells));
+        std::panic::catch_unwind(read).unwrap_or_else(|_| Err(broken("it is damaged")))?;
+    }
+    Ok(cells.lines())
+}
+
+/// The sheet of this name, or the only one.
+fn chosen(names: &[String], sheet: Option<&str>) -> Result<String, StageError> {
+    let message = match (sheet, names) {
+        (Some(wanted), _) if names.iter().any(|name| name == wanted) => return Ok(wanted.to_owned()),
+        (None, [only]) => return Ok(only.clone()),
+        (_, []) => return Err(broken("it has no sheet")),
+        (Some(wanted), _) => format!("the workbook has no sheet `{wanted}`"),
+        (None, _) => "the workbook has several sheets".to_owned(),
     };
-    // Cell by cell where the format allows it: a sheet is as large as the place of its last cell says, and one cell far out
-    // would ask for more memory than there is.
+    Err(StageError::new(message).hint(format!("`sheet` is one of: {}", names.join(", "))))
+}
+
+/// Reads the cells of a workbook of Excel.
+fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<(), StageError> {
+    let mut book = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(broken)?;
+    let name = chosen(&book.sheet_names(), sheet)?;
+    // Cell by cell where the format allows it: the size of a sheet is the position of its last cell, so one cell far away
+    // would need more memory than there is.
     match &mut book {
         Sheets::Xlsx(book) => {
-            let mut reader = book.worksheet_cells_reader(&name).map_err(|e| fault(e.into()))?;
-            while let Some(cell) = reader.next_cell().map_err(|e| fault(e.into()))? {
+            let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
+            while let Some(cell) = reader.next_cell().map_err(broken)? {
                 let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
-                take(row, column, &value)?;
+                cells.take(&name, row, column, text(&value))?;
             }
         }
         Sheets::Xlsb(book) => {
-            let mut reader = book.worksheet_cells_reader(&name).map_err(|e| fault(e.into()))?;
-            while let Some(cell) = reader.next_cell().map_err(|e| fault(e.into()))? {
+            let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
+            while let Some(cell) = reader.next_cell().map_err(broken)? {
                 let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
-                take(row, column, &value)?;
+                cells.take(&name, row, column, text(&value))?;
             }
         }
         Sheets::Xls(_) | Sheets::Ods(_) => {
-            let range = book.worksheet_range(&name).map_err(fault)?;
+            let range = book.worksheet_range(&name).map_err(broken)?;
             let (row, column) = range.start().unwrap_or_default();
             for (i, j, cell) in range.used_cells() {
-                take(row + i as u32, column + j as u32, cell)?;
+                cells.take(&name, row + i as u32, column + j as u32, text(cell))?;
             }
         }
     }
-    Ok(cells.lines())
+    Ok(())
+}
+
+/// The size that a sheet of an old workbook (xls) announces: room is made for so many cells before one is read.
+///
+/// The record `Dimensions` (MS-XLS 2.4.90): type 0x0200, length 14, first and last row, first and last column.
+fn check_dimensions(bytes: &[u8]) -> Result<(), StageError> {
+    if bytes.starts_with(b"PK") {
+        return Ok(());
+    }
+    let long = |at: &[u8]| u32::from_le_bytes([at[0], at[1], at[2], at[3]]);
+    let short = |at: &[u8]| u32::from(u16::from_le_bytes([at[0], at[1]]));
+    for record in bytes.windows(18).filter(|record| record.starts_with(&[0, 2, 14, 0])) {
+        let rows = u64::from(long(&record[8..]).saturating_sub(long(&record[4..])));
+        let columns = u64::from(short(&record[14..]).saturating_sub(short(&record[12..])));
+        // Such a sheet has at most 65,536 rows and 256 columns.
+        if rows > 1 << 16 || columns > 1 << 8 {
+            return Err(broken(format!("it says that a sheet has {rows} rows and {columns} columns")));
+        }
+    }
+    Ok(())
 }
 
 /// Most columns of a sheet.
 const MOST_COLUMNS: u32 = 1 << 14;
 
 /// Most cells of the lines of a sheet, the empty ones between others included.
-const MOST_CELLS: usize = 1 << 26;
+const MOST_CELLS: usize = 1 << 24;
 
-/// The cells of a sheet that hold something, by row and column.
+/// The cells of a sheet that are not empty, by row and column.
 #[derive(Default)]
 struct Cells {
     rows: BTreeMap<u32, Vec<(u32, String)>>,
@@ -92,6 +128,11 @@ struct Cells {
 }
 
 impl Cells {
+    /// Takes a cell of a sheet, or the error that it holds.
+    fn take(&mut self, sheet: &str, row: u32, column: u32, text: Result<String, String>) -> Result<(), StageError> {
+        self.add(row, column, text.map_err(|error| at(sheet, row as usize + 1, &error))?)
+    }
+
     fn add(&mut self, row: u32, column: u32, text: String) -> Result<(), StageError> {
         if text.is_empty() {
             return Ok(());
@@ -105,7 +146,7 @@ impl Cells {
         let (first, last) = (first.min(column), last.max(column));
         self.columns = Some([first, last]);
         let cells = self.rows.len().saturating_mul((last - first) as usize + 1);
-        // The line of names is one more.
+        // The line of names is not a row.
         if self.rows.len() > MOST_RUNS + 1 || cells > MOST_CELLS {
             let message = format!("the sheet has more than {MOST_RUNS} rows, or {MOST_CELLS} cells");
             return Err(StageError::new(message).hint("name a part of it, or delete what lies far from the table"));

@@ -1,4 +1,4 @@
-//! The table of a `design` stage: `method`, the options of every method, and which of them go together.
+//! The table of a `design` stage: `method`, the options of every method, and their combinations.
 
 use super::valid::InvalidRows;
 use crate::stage::{Complaint, Context};
@@ -49,26 +49,26 @@ pub struct Design {
     pub method: Name,
     /// The factors it varies, in column order.
     pub factors: Vec<String>,
-    /// Order of the runs: `standard`, or `random` by the workflow's seed.
+    /// Order of the runs: `standard`, or `random` from the workflow's seed.
     #[serde(default)]
     pub order: Order,
-    /// How often the whole design is run, each time on its own packing.
+    /// Number of times that the whole design is run, each time on its own packing.
     #[serde(default = "once")]
     pub replicates: usize,
     /// Rules that every row must obey, with units: "Ec/sigma_c <= 830", "kn_ks >= 1", "mu in 0.2..1".
     #[serde(default)]
     pub valid: Vec<String>,
-    /// What becomes of rows that break a rule.
+    /// What to do with rows that break a rule.
     #[serde(default)]
     pub invalid_rows: InvalidRows,
-    /// The effect, noise and level that the report computes the power for.
+    /// The effect, noise and level for which the report computes the power.
     #[serde(default)]
     pub power: Question,
-    /// Orthogonal: the table, such as `L64(4^21)`; the smallest that fits if left out.
+    /// Orthogonal: the table, such as `L64(4^21)`; by default the smallest that fits.
     pub table: Option<String>,
     /// Orthogonal: the column of each factor, from 1.
     pub columns: Option<Vec<usize>>,
-    /// Orthogonal, where a factor has fewer levels than its column: the level met most often, from 1.
+    /// Orthogonal, where a factor has fewer levels than its column: the level that occurs most often, from 1.
     pub doubled: Option<usize>,
     /// Orthogonal: strength 2 or 3.
     pub strength: Option<usize>,
@@ -80,12 +80,12 @@ pub struct Design {
     pub runs: Option<usize>,
     /// Plackett–Burman: add the mirror image of every run.
     pub fold: Option<bool>,
-    /// Number of centre points; factorial and screening designs have none, surface designs their published number if
-    /// left out.
+    /// Number of centre points; by default none for factorial and screening designs, the published number for surface
+    /// designs.
     pub centre_points: Option<usize>,
     /// Central composite: `rotatable`, `orthogonal`, `spherical`, `face` or a number.
     pub alpha: Option<Alpha>,
-    /// Central composite: whether ranges stand for the `cube` or the `axial` points.
+    /// Central composite: whether the ends of ranges are the `cube` or the `axial` points.
     pub extent: Option<Extent>,
     /// Central composite: `fraction` (from five factors on) or `full`.
     pub corners: Option<Corners>,
@@ -93,15 +93,15 @@ pub struct Design {
     pub criterion: Option<Criterion>,
     /// Latin hypercube: points at the `centre` of their strata or at `random`.
     pub position: Option<Position>,
-    /// Sobol: scramble by the workflow's seed.
+    /// Sobol: whether to scramble it with the workflow's seed.
     pub scramble: Option<bool>,
-    /// Sobol: points left out from the start.
+    /// Sobol: number of points to skip at the start.
     pub skip: Option<usize>,
     /// Given: the rows, one value a factor, in the factors' units.
     pub rows: Option<Vec<Vec<f64>>>,
     /// Given: a CSV file beside the workflow with a column for every factor.
     pub file: Option<String>,
-    /// Given: the rows hold numbers of the factors' levels, from 1, as published tables do, not their values.
+    /// Given: whether the rows hold the numbers of levels, from 1, as published tables do, instead of values.
     pub by_level: Option<bool>,
 }
 
@@ -142,7 +142,7 @@ const OPTIONS: &[(&str, &[Name])] = &[
 ];
 
 impl Design {
-    /// Whether the option is there, in the order of [`OPTIONS`].
+    /// Whether each option is set, in the order of [`OPTIONS`].
     fn said(&self) -> [bool; 19] {
         [
             self.table.is_some(),
@@ -171,7 +171,7 @@ impl Design {
         serde_json::to_value(self.method).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
     }
 
-    /// Options that have no effect with this method, and settings that make no sense with any.
+    /// Options that have no effect with this method, and settings that no method can use.
     pub(super) fn option_complaints(&self) -> Vec<Complaint> {
         let method = self.word();
         let mut known: Vec<&str> = Vec::new();
@@ -212,7 +212,7 @@ impl Design {
         unknown.map(|name| complaint(name).hint(&hint)).collect()
     }
 
-    /// How the whole design is repeated and ordered.
+    /// Replicates and order of the runs.
     pub(super) fn layout(&self) -> Layout {
         Layout { replicates: self.replicates, order: self.order }
     }
@@ -286,7 +286,7 @@ impl Design {
                 let ends = || {
                     let ends =
                         Factor { name: name.clone(), unit: String::new(), domain: levels(), scale: Scale::Linear };
-                    // a single level is no range; the design says what is wrong with it
+                    // a single level is not a range; the design reports that
                     if factor.levels.len() < 2 {
                         levels()
                     } else {

@@ -24,7 +24,8 @@ pub(super) fn shortened(
             counted(broken.iter().map(|b| whole.standard_order[b.row])),
         )
         .texts_column("rule", "", broken.iter().map(|b| b.rule.clone()).collect())
-        .reals_column("left_side", "", "of the rule, in SI units", broken.iter().map(|b| b.value).collect());
+        .reals_column("left_side", "", "of the rule, in `left_side_unit`", broken.iter().map(|b| b.value).collect())
+        .texts_column("left_side_unit", "", broken.iter().map(|b| b.unit.clone()).collect());
     for (j, factor) in whole.factors.iter().enumerate() {
         left =
             left.reals_column(&factor.name, &factor.unit, "", broken.iter().map(|b| whole.natural[b.row][j]).collect());

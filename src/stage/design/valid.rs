@@ -1,26 +1,26 @@
 //! Rules that the rows of a design must obey: `valid = ["Ec/sigma_c <= 830", "ratio < 6.2", "Ec/scn in 0.14..1.36 GPa/MPa"]`.
 //!
-//! A rule compares two sides, or holds one within bounds. Sides are formulas of the design's factors and quantities; factors
-//! count with their units, and both sides must be of one kind. Equality is taken up to rounding (10⁻¹² of the larger side).
+//! A rule compares two sides, or one side with bounds. Sides are formulas of the design's factors and quantities; factors
+//! have their units, and both sides must be of one kind. Equality allows for rounding (10⁻¹² of the larger side).
 
 use crate::expression::{Expression, Measure};
-use crate::unit::{Unit, parse_any};
+use crate::unit::{Dimension, Unit, parse_any, split_any};
 use design::{DesignTable, Factor};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What becomes of rows that break a rule.
+/// What to do with rows that break a rule.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum InvalidRows {
-    /// The design is refused, and the rows are named.
+    /// Refuse the design, and list the rows.
     #[default]
     Refuse,
-    /// They are left out and listed in the table `left_out`.
+    /// Leave them out, and list them in the table `left_out`.
     LeaveOut,
 }
 
-/// Share of the larger side by which rounding may differ.
+/// Largest rounding difference, as a fraction of the larger side.
 const ROUNDING: f64 = 1e-12;
 
 /// A rule that was read.
@@ -28,6 +28,8 @@ pub(super) struct Rule {
     text: String,
     left: Expression,
     relation: Relation,
+    /// The unit of the quantity that it compares with, as it was written; empty without one.
+    unit: String,
 }
 
 enum Relation {
@@ -48,8 +50,10 @@ pub(super) struct Broken {
     pub(super) row: usize,
     /// The rule's text.
     pub(super) rule: String,
-    /// The left side in the row, SI.
+    /// Value of the left side in the row, in `unit`.
     pub(super) value: f64,
+    /// The unit that the rule is written in; the SI unit where it compares two formulas. Empty for a pure number.
+    pub(super) unit: String,
 }
 
 impl Rule {
@@ -68,7 +72,25 @@ impl Rule {
             let below = op.starts_with('<');
             (left, if below { Relation::Below { strict, right } } else { Relation::Above { strict, right } })
         };
-        Ok(Self { text: text.to_owned(), left: Expression::parse(left.trim())?, relation })
+        let unit = match &relation {
+            Relation::Within(_) => unit_of(text.rsplit_once("..").map_or("", |(_, high)| high)),
+            Relation::Below { right: Side::Quantity(_), .. } | Relation::Above { right: Side::Quantity(_), .. } => {
+                unit_of(text.trim_start_matches(left).trim_start_matches(['<', '>', '=']))
+            }
+            Relation::Below { .. } | Relation::Above { .. } => String::new(),
+        };
+        Ok(Self { text: text.to_owned(), left: Expression::parse(left.trim())?, relation, unit })
+    }
+
+    /// A left side as a number of the unit that the rule is written in, and that unit.
+    fn shown(&self, left: Measure) -> (f64, String) {
+        let dimension = left.dimension.unwrap_or(Dimension::NONE);
+        let written = Unit::parse(&self.unit).ok().filter(|unit| unit.dimension == dimension);
+        match written.filter(|_| !self.unit.is_empty()) {
+            Some(unit) => (unit.of_si(left.value), self.unit.clone()),
+            None if dimension == Dimension::NONE => (left.value, String::new()),
+            None => (left.value, dimension.to_string()),
+        }
     }
 
     /// The names that it uses.
@@ -82,7 +104,7 @@ impl Rule {
     }
 
     /// Its left side, and whether it holds.
-    fn judge(&self, value: &dyn Fn(&str) -> Option<Measure>) -> Result<(f64, bool), String> {
+    fn judge(&self, value: &dyn Fn(&str) -> Option<Measure>) -> Result<(Measure, bool), String> {
         let evaluate = |formula: &Expression| {
             let named = |name: &String| value(name).ok_or_else(|| format!("`{name}` is not a factor of the design"));
             formula.eval(&formula.names().iter().map(named).collect::<Result<Vec<_>, _>>()?)
@@ -110,7 +132,7 @@ impl Rule {
             }
             Relation::Within([low, high]) => above(*low)? >= 0.0 && above(*high)? <= 0.0,
         };
-        Ok((left.value, holds))
+        Ok((left, holds))
     }
 
     /// The rows of a table that break it.
@@ -123,13 +145,19 @@ impl Rule {
                 let place = table.factors.iter().position(|factor| factor.name == name)?;
                 Some(Measure::of(values[place] * units[place].factor, units[place].dimension))
             };
-            let (value, holds) = self.judge(&value)?;
+            let (left, holds) = self.judge(&value)?;
             if !holds {
-                broken.push(Broken { row, rule: self.text.clone(), value });
+                let (value, unit) = self.shown(left);
+                broken.push(Broken { row, rule: self.text.clone(), value, unit });
             }
         }
         Ok(broken)
     }
+}
+
+/// The unit behind the number of a quantity.
+fn unit_of(text: &str) -> String {
+    split_any(text).map_or("", |(_, unit)| unit.trim()).to_owned()
 }
 
 fn side(text: &str) -> Result<Side, String> {
@@ -143,7 +171,7 @@ fn side(text: &str) -> Result<Side, String> {
     }
 }
 
-/// `0.14..1.36 GPa/MPa`: the unit behind counts for both unless the first has its own.
+/// Bounds such as `0.14..1.36 GPa/MPa`: the unit at the end holds for both unless the first has its own.
 fn bounds_of(text: &str) -> Result<[Measure; 2], String> {
     let Some((low, high)) = text.split_once("..") else {
         return Err(format!("`{text}` are no bounds; write for example 0.2..1 or 10..30 MPa"));
@@ -174,12 +202,18 @@ pub(super) fn broken(rules: &[String], table: &DesignTable) -> Result<Vec<Broken
     Ok(all)
 }
 
+/// A number with ten digits, so that what breaks a rule by little differs from the bound.
+fn short(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
+}
+
 /// A row that breaks a rule, in words.
 pub(super) fn told(broken: &Broken, table: &DesignTable) -> String {
     let value =
         |(factor, value): (&Factor, &f64)| format!("{} = {value} {}", factor.name, factor.unit).trim_end().to_owned();
     let values: Vec<String> = table.factors.iter().zip(&table.natural[broken.row]).map(value).collect();
-    format!("row {} breaks `{}`: {} (left side {:.6})", broken.row + 1, broken.rule, values.join(", "), broken.value)
+    let left = format!("{} {}", short(broken.value), broken.unit);
+    format!("row {} breaks `{}`: {} (left side {})", broken.row + 1, broken.rule, values.join(", "), left.trim_end())
 }
 
 /// The table without some of its rows.
@@ -219,6 +253,23 @@ mod tests {
             of("Ec/scn in 0.14..1.36 GPa/MPa") && of("Ec/scn in 0.83..1 GPa/MPa") && !of("Ec/scn in 0.84..1 GPa/MPa")
         );
         assert!(of("Ec <= 25 GPa") && !of("Ec <= 24 GPa") && of("scn < Ec") && of("2*scn in 10 MPa..0.1 GPa"));
+    }
+
+    #[test]
+    fn a_left_side_is_shown_in_the_unit_that_the_rule_is_written_in() {
+        let shown = |rule: &str| {
+            let measure = |text: &str| parse_any(text).map(|(value, dimension)| Measure::of(value, dimension)).ok();
+            let value = |name: &str| measure(if name == "Ec" { "24.9 GPa" } else { "30 MPa" });
+            let rule = Rule::parse(rule).unwrap();
+            let (value, unit) = rule.shown(rule.judge(&value).unwrap().0);
+            format!("{} {unit}", short(value))
+        };
+        assert_eq!(shown("Ec <= 24 GPa"), "24.9 GPa");
+        assert_eq!(shown("Ec>=26000MPa"), "24900 MPa");
+        assert_eq!(shown("Ec/scn in 0.84..1 GPa/MPa"), "0.83 GPa/MPa");
+        assert_eq!(shown("Ec/scn < 800"), "830 ");
+        assert_eq!(shown("Ec < 2*scn"), "24900000000 Pa");
+        assert_eq!(shown("scn in 10 MPa..0.02 GPa"), "0.03 GPa");
     }
 
     #[test]

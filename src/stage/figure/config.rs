@@ -1,4 +1,4 @@
-//! Settings of a `figure` stage, and what each figure takes.
+//! Settings of a `figure` stage, and those that each figure accepts.
 
 use super::plot::{Bars, Direction, Fit};
 use crate::artifact::{Accepts, ArtifactKind as Of};
@@ -15,26 +15,26 @@ use std::collections::BTreeMap;
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Figure {
-    /// What is drawn.
+    /// The figure to draw.
     pub show: Show,
-    /// The stages it is drawn from.
+    /// The stages whose results it shows.
     pub of: Names,
-    /// Stages with values to set beside them.
+    /// Stages with values to compare.
     #[serde(default)]
     pub compare: Names,
-    /// The response that is drawn; where the figure has a panel for each, several, or all when not given.
+    /// The response to draw; a figure with a panel per response takes several, by default all.
     #[serde(default)]
     pub response: Names,
-    /// The factors that are drawn; all of them when not given.
+    /// The factors to draw; all by default.
     #[serde(default)]
     pub factors: Vec<String>,
-    /// Values of the factors that are held constant, in their units; the middle of the range when not given.
+    /// Values of the factors that are held constant, in their units; by default the middle of the range.
     #[serde(default)]
     pub at: BTreeMap<String, f64>,
-    /// Words for what has a symbol only: `{ UCS = "Peak strength" }`; for series, names in the legend by stage.
+    /// Names of quantities: `{ UCS = "Peak strength" }`; for series, names in the legend by stage.
     #[serde(default)]
     pub names: BTreeMap<String, String>,
-    /// Half width of the band around the line of equality, as a share of the value.
+    /// Half width of the band around the line of equality, as a fraction of the value.
     pub band: Option<f64>,
     /// Column along the page (`xy`, `curves`, `heat-map`), or the quantity of a `histogram`.
     pub x: Option<String>,
@@ -42,37 +42,37 @@ pub struct Figure {
     pub y: Option<String>,
     /// Column in the cells of a `heat-map`.
     pub value: Option<String>,
-    /// Column by whose values points, curves or boxes are grouped.
+    /// Column whose values group points, curves or boxes.
     pub by: Option<String>,
-    /// Table of the result that the columns are in; its main table when not given.
+    /// Table of the result with the columns; by default its main table.
     pub table: Option<String>,
-    /// Only rows in which these columns have these values.
+    /// Draws only rows in which these columns have these values.
     #[serde(default, rename = "where")]
     pub only: BTreeMap<String, String>,
     /// Line through the points of each group of an `xy`, with its confidence band.
     pub fit: Option<Fit>,
-    /// Mean and bars in place of the points of an `xy` that share their `x`.
+    /// Draws the mean with bars in place of the points of an `xy` with equal `x`.
     pub bars: Option<Bars>,
-    /// Coverage of bands and bars, 0.95 when not given.
+    /// Coverage of bands and bars, 0.95 by default.
     pub confidence: Option<f64>,
-    /// Axes with equal ratios: `["x"]`, `["y"]` or both.
+    /// Logarithmic axes: `["x"]`, `["y"]` or both.
     #[serde(default)]
     pub log: Vec<Direction>,
-    /// Join the points of each group of an `xy`.
+    /// Joins the points of each group of an `xy` by lines.
     #[serde(default)]
     pub joined: bool,
     /// CSV or workbook, beside the workflow, whose columns `x` and `y` are drawn over the others (`xy`, `curves`).
     pub overlay: Option<String>,
-    /// Number of bins of a `histogram`; chosen from the scatter when not given.
+    /// Number of bins of a `histogram`; by default from the scatter.
     pub bins: Option<usize>,
-    /// What becomes of runs that are not valid: left out of what draws the runs of a table, drawn where the picture is of
-    /// one run, by default.
+    /// What to do with runs that are not valid: by default a figure of a table of runs leaves them out, and a figure of a
+    /// single run draws it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub invalid: Option<Invalid>,
     /// `single` (90 mm), `double` (190 mm) or a length.
     #[serde(default)]
     pub width: Width,
-    /// Size of the text in points; 8 when not given.
+    /// Size of the text in points; 8 by default.
     pub points: Option<f64>,
     /// Colours of surfaces.
     #[serde(default)]
@@ -93,7 +93,7 @@ pub enum Names {
     Many(Vec<String>),
 }
 
-/// As the list of names, however many were written.
+/// The list of names.
 impl Serialize for Names {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.list().serialize(serializer)
@@ -101,7 +101,7 @@ impl Serialize for Names {
 }
 
 impl Names {
-    /// Whether nothing is named.
+    /// Whether there is no name.
     pub(in crate::stage) fn is_empty(&self) -> bool {
         match self {
             Names::None => true,
@@ -125,7 +125,7 @@ impl Names {
 #[schemars(with = "String")]
 pub struct Width(f64);
 
-/// As the number of millimetres.
+/// A width as millimetres.
 impl Serialize for Width {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_f64(self.0)
@@ -204,7 +204,7 @@ pub enum Show {
     Xy,
     /// Curves of many runs with their mean.
     Curves,
-    /// How often values of a column occur.
+    /// Histogram of a column.
     Histogram,
     /// Median, quartiles and single values of a column, by groups.
     Box,
@@ -214,18 +214,29 @@ pub enum Show {
     Stones,
     /// Zingg's diagram of stones.
     Zingg,
-    /// The stages that lead to those named, and what flows between them.
+    /// The graph of stages up to the named ones.
     Dag,
 }
 
-/// What one kind of figure takes.
+/// The settings that one kind of figure accepts.
 pub(super) struct Needs {
     pub(super) from: Accepts,
     pub(super) compare: Accepts,
     /// Least and greatest number of responses.
     pub(super) responses: [usize; 2],
-    /// Least and greatest number of factors named; factors are drawn when the second is not 0.
+    /// Least and greatest number of named factors; the figure draws factors when the second is not 0.
     pub(super) factors: [usize; 2],
+    /// Keys of a plot of the user's own columns that must be set, and those that may be; the first are columns of numbers.
+    pub(super) keys: [&'static [&'static str]; 2],
+    /// Whether the figure draws the single runs of a table, so that some can be left out.
+    pub(super) runs: bool,
+}
+
+impl Needs {
+    /// Whether it draws columns of the user's choice.
+    pub(super) fn is_plot(&self) -> bool {
+        self.keys.iter().any(|keys| !keys.is_empty())
+    }
 }
 
 const MANY: usize = usize::MAX;
@@ -237,6 +248,14 @@ impl Show {
             compare: Accepts::Only(compare),
             responses,
             factors,
+            keys: [&[], &[]],
+            runs: false,
+        };
+        let plot = |required: &'static [&'static str], optional: &'static [&'static str]| Needs {
+            from: Accepts::All,
+            keys: [required, optional],
+            runs: true,
+            ..needs(&[], &[], [0, 0], [0, 0])
         };
         const RESULTS: &[Of] = &[Of::RESULTS];
         const MODELS: &[Of] = &[Of::ANOVA, Of::SCREENING, Of::SURFACES];
@@ -248,7 +267,7 @@ impl Show {
             Show::Stones | Show::Zingg => needs(&[Of::SHAPES], &[], [0, 0], [0, 0]),
             Show::MainEffects | Show::Range => needs(&[Of::RANGE], &[Of::RANGE], [1, 1], [0, MANY]),
             Show::Points => needs(POINTS, &[], [0, 0], [0, 3]),
-            Show::Agreement => needs(RESULTS, RESULTS, [0, MANY], [0, MANY]),
+            Show::Agreement => Needs { runs: true, ..needs(RESULTS, RESULTS, [0, MANY], [0, MANY]) },
             Show::Contour | Show::Surface => needs(&[Of::SURFACES], POINTS, [1, 1], [2, 2]),
             Show::Residuals => needs(MODELS, &[], [1, 1], [0, 0]),
             Show::ObservedPredicted => needs(MODELS, &[], [0, MANY], [0, 0]),
@@ -258,17 +277,17 @@ impl Show {
             Show::Convergence => needs(&[Of::SOLUTION], &[], [0, 0], [0, 0]),
             Show::Solutions => needs(&[Of::SOLUTION], &[], [0, 0], [0, MANY]),
             Show::Verification => needs(&[Of::VERIFICATION], &[], [0, MANY], [0, 0]),
-            Show::Curves => needs(&[Of::RUN, Of::RESULTS], &[], [0, 0], [0, 0]),
-            Show::Xy | Show::Histogram | Show::Box | Show::HeatMap => {
-                Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) }
+            Show::Curves => {
+                Needs { from: Accepts::Only(&[Of::RUN, Of::RESULTS]), ..plot(&[], &["x", "y", "by", "overlay"]) }
             }
+            Show::Xy => {
+                plot(&["x", "y"], &["by", "table", "where", "fit", "bars", "confidence", "log", "joined", "overlay"])
+            }
+            Show::Histogram => plot(&["x"], &["table", "where", "bins"]),
+            Show::Box => plot(&["y"], &["by", "table", "where", "log"]),
+            Show::HeatMap => plot(&["x", "y", "value"], &["table", "where"]),
             Show::Dag => Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) },
         }
-    }
-
-    /// Whether it draws columns that the stage names.
-    pub(super) fn is_plot(self) -> bool {
-        matches!(self, Show::Xy | Show::Curves | Show::Histogram | Show::Box | Show::HeatMap)
     }
 
     pub(super) fn name(self) -> String {

@@ -1,4 +1,4 @@
-//! The runs whose curves are drawn together: of single runs, or of every row of a simulator's results.
+//! The runs whose curves are drawn together: single runs, or every row of a simulator's results.
 
 use super::super::rows::DesignRows;
 use super::super::{Input, Known, Source, StageError};
@@ -9,7 +9,7 @@ use crate::artifact::{Artifact, ArtifactKind, Values};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Inputs of the figure, and the group that each belongs to.
+/// Inputs of the figure, each with its group.
 #[derive(Default)]
 pub(super) struct Runs {
     pub inputs: Vec<(Cow<'static, str>, Source)>,
@@ -19,11 +19,11 @@ pub(super) struct Runs {
     pub notes: Vec<String>,
 }
 
-/// More curves than this are a blot.
+/// Most curves in one figure.
 const MOST: usize = 500;
 
-/// The runs of the stages that the figure names. The runs of a design are the tasks that the simulator made for its rows,
-/// so nothing is computed again.
+/// The runs of the stages of the figure. The runs of a design are the tasks of the simulator for its rows, so nothing is
+/// computed again.
 pub(super) fn runs(figure: &Figure, known: &Known) -> Result<Runs, StageError> {
     let mut found = Runs::default();
     let mut keys: Vec<String> = Vec::new();
@@ -103,7 +103,7 @@ fn add_rows(
 }
 
 impl Params {
-    /// Names of the groups in the order of their numbers, with the symbol of what they differ in.
+    /// Names of the groups in the order of their numbers, with the symbol of the quantity that defines them.
     pub(super) fn group_names(&self) -> Vec<String> {
         let most = self.groups.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
         let sign = self.labels.get("by").map(super::Label::quantity);

@@ -41,7 +41,7 @@ fn ranges(source: Source, params: &Params, response: &Label) -> Result<Vec<Range
     Ok(found)
 }
 
-/// The same from the analysis to compare with, when there is one.
+/// The range in the analysis to compare with, if there is one.
 fn compared(params: &Params, sources: &Sources, response: &Label) -> Result<Vec<Range>, StageError> {
     sources.compare.first().map_or(Ok(Vec::new()), |source| ranges(*source, params, response))
 }
@@ -83,7 +83,7 @@ pub(super) fn range(params: &Params, sources: &Sources) -> Result<RankedBars, St
     let some_set = params.factors.iter().any(|label| !label.group.is_empty());
     for range in &computed {
         let label = label_of(params, range)?;
-        // Where others set a parameter, a column that sets none shows what chance alone does.
+        // Beside factors that set parameters, a column that sets none shows the effect of chance alone.
         if some_set && label.group.is_empty() {
             references.push(("empty column".to_owned(), range.range));
             continue;
@@ -152,7 +152,7 @@ pub(super) fn agreement(params: &Params, sources: &Sources) -> Result<Agreement,
     Ok(Agreement { x_word: "Published".into(), y_word: "Computed".into(), pairs, band: params.band.or(Some(0.1)) })
 }
 
-/// "median −4.4 %, quartiles −7.6, −1.6 %" of the relative deviations, which one misprint does not move.
+/// "median −4.4 %, quartiles −7.6, −1.6 %" of the relative deviations, which one misprint does not change.
 fn note_of(clouds: &[Cloud]) -> String {
     let all = |pick: fn(&Cloud) -> &Vec<f64>| clouds.iter().flat_map(pick).copied().collect::<Vec<_>>();
     let Some(found) = agreement_of(&all(|c| &c.x), &all(|c| &c.y)) else { return String::new() };

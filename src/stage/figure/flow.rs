@@ -12,11 +12,11 @@ const CLASSES: [(&str, &[Class]); 5] = [
     ("tables and figures", &[Class::Presentation]),
 ];
 
-/// The named stages and all that they need, renumbered, in the order of the workflow.
+/// The named stages and all stages that they need, renumbered, in the order of the workflow.
 pub(super) fn outline(last: &[String], context: &Context) -> Vec<Outline> {
     let all = &context.outline;
     let mut wanted: Vec<bool> = all.iter().map(|stage| last.contains(&stage.name)).collect();
-    // A stage comes after those it needs.
+    // A stage comes after the stages that it needs.
     for place in (0..all.len()).rev().filter(|&place| all[place].inputs.iter().all(|&input| input < place)) {
         if wanted[place] {
             all[place].inputs.iter().for_each(|&input| wanted[input] = true);
@@ -41,7 +41,7 @@ pub(super) fn dag(outline: &[Outline]) -> Dag {
     let used: Vec<usize> = (0..CLASSES.len()).filter(|class| found.contains(class)).collect();
     let place = |class: &usize| used.binary_search(class).unwrap_or(0);
     let stages = outline.iter().zip(&found);
-    // A stage named after its kind needs no second line.
+    // A stage with the name of its kind needs no second line.
     let note = |stage: &Outline| if stage.kind == stage.name { String::new() } else { stage.kind.clone() };
     Dag {
         stages: stages

@@ -1,4 +1,4 @@
-//! Rows that a plot of columns cannot draw: stated below the picture, so that nothing is missing silently.
+//! Rows that a plot of columns cannot draw; a footnote states them, so that no row is missing silently.
 
 use super::own::{Drawn, Shown, fitted};
 use super::plot::Direction;
@@ -7,21 +7,10 @@ use super::{Params, Show};
 use crate::artifact::results::Results;
 use crate::stage::StageError;
 
-/// The columns of the figure that must hold numbers.
-fn keys(show: Show) -> &'static [&'static str] {
-    match show {
-        Show::Xy => &["x", "y"],
-        Show::Histogram => &["x"],
-        Show::Box => &["y"],
-        Show::HeatMap => &["x", "y", "value"],
-        _ => &[],
-    }
-}
-
-/// The sentences: rows without a number, values that a logarithmic axis cannot show, groups without the line that was
-/// requested. Runs without a result and runs that are not valid are stated elsewhere.
+/// Sentences on rows without a number, values that a logarithmic axis cannot show, and groups without the requested line.
+/// Other footnotes state runs without a result and runs that are not valid.
 pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String>, StageError> {
-    let keys = keys(params.show);
+    let [keys, _] = params.show.needs().keys;
     if keys.is_empty() {
         return Ok(Vec::new());
     }
@@ -55,7 +44,7 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
     Ok(found)
 }
 
-/// The groups whose points support no line.
+/// Groups whose points do not determine a line.
 fn lines(drawn: &Drawn, x: &Shown, y: &Shown, rows: &[usize]) -> Result<Vec<String>, StageError> {
     let Some(fit) = drawn.plot.fit else { return Ok(Vec::new()) };
     let by = drawn.by()?;

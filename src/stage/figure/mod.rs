@@ -1,7 +1,7 @@
 //! `kind = "figure"`: a picture of the results of other stages, as SVG, PDF and PNG, with its numbers as a table.
 //!
-//! `show` names the figure, `of` the stages it takes its data from, and `compare` the stages with values to set
-//! beside them (published ones, as a rule). What each figure reads:
+//! `show` names the figure, `of` the stages whose results it shows, and `compare` the stages with values to compare
+//! (usually published ones). What each figure reads:
 //!
 //! | `show` | `of` | tables read |
 //! |---|---|---|
@@ -22,8 +22,8 @@
 //! | `curves` | runs, or the results of a simulator on a design | `curve` of every run |
 //! | `dag` | the last stages to be shown | nothing: it shows the workflow |
 //!
-//! A picture depends on the numbers it draws, on its labels (symbols and units of the factors and responses it draws)
-//! and on its style: on nothing else, so it is drawn anew when, and only when, one of these changed.
+//! A picture depends only on the numbers that it draws, on its labels (symbols and units of its factors and responses)
+//! and on its style, so it is drawn anew if and only if one of these changed.
 
 mod config;
 mod curves;
@@ -32,6 +32,7 @@ mod flow;
 mod lost;
 mod model;
 mod own;
+mod parts;
 mod plot;
 mod run;
 mod solution;
@@ -57,7 +58,7 @@ pub use config::{Figure, Names, Show, Width};
 pub use plot::{Bars, Direction, Fit};
 use plot::{Labels, Plot};
 
-/// A factor or response as it is drawn.
+/// The label of a factor or response.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Label {
     key: String,
@@ -67,7 +68,7 @@ struct Label {
     symbol: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     unit: String,
-    /// What it belongs to: the first part of the parameter it sets.
+    /// Its group: the first part of the path that it sets.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     group: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -76,14 +77,14 @@ struct Label {
 
 impl Label {
     fn quantity(&self) -> figure::Quantity {
-        // A column may be called anything; a name is markup by its author's will.
+        // The name of a column is escaped; a name from the workflow's `names` may hold markup.
         let key = text::plain_text(&self.key);
         let name = if self.name.is_empty() && self.symbol.is_empty() { &key } else { &self.name };
         figure::Quantity::new(name, &self.symbol, &self.unit).keyed(&self.key)
     }
 }
 
-/// Everything that decides a picture besides the data.
+/// Parameters of the task: everything that decides a picture besides the data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Params {
     show: Show,
@@ -102,7 +103,7 @@ struct Params {
     series: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     band: Option<f64>,
-    /// Which columns are drawn, by figures of a user's own columns.
+    /// The columns of a plot of the user's own columns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     plot: Option<Plot>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -113,7 +114,7 @@ struct Params {
     /// The stages of a graph.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     outline: Vec<Outline>,
-    /// What becomes of runs that are not valid.
+    /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     invalid: Invalid,
     /// Statements on the runs whose curves are drawn.
@@ -163,7 +164,7 @@ impl Stage for Figure {
             found.push(Complaint::new("points", format!("{points} points is no size of text")).hint("4 to 30"));
         }
         found.extend(Plot::of(self).check(self.show, &|key| self.without_effect(key)));
-        if self.invalid == Some(Invalid::LeaveOut) && !self.show.draws_runs() {
+        if self.invalid == Some(Invalid::LeaveOut) && !self.show.needs().runs {
             found.push(self.without_effect("invalid"));
         }
         if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
@@ -179,7 +180,7 @@ impl Stage for Figure {
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
-        let plot = self.show.is_plot().then(|| Plot::of(self));
+        let plot = self.show.needs().is_plot().then(|| Plot::of(self));
         let labels = plot.as_ref().map(|plot| plot.labels(self.show, known.context, &self.names)).unwrap_or_default();
         let runs = if self.show == Show::Curves { curves::runs(self, known)? } else { curves::Runs::default() };
         let params = Params {
@@ -274,7 +275,7 @@ impl Figure {
             return Ok(Vec::new());
         }
         let mut keys = self.factors.clone();
-        // A surface is drawn over two factors and its note tells the others; any other figure shows those named, or all.
+        // A surface is drawn over two factors, and its note states the others; any other figure shows the named ones, or all.
         if keys.is_empty() || matches!(self.show, Show::Contour | Show::Surface) {
             let artifact = known.load(known.one("of")?)?;
             let found = source::words(&artifact, self.response.list().first().map(String::as_str));
@@ -285,7 +286,7 @@ impl Figure {
             }
         }
         if self.show == Show::Agreement {
-            // Rows are matched by them; their labels are not drawn.
+            // Rows are matched by the factors; their labels are not drawn.
             let unit = |key: &String| known.context.factors.get(key).map_or(String::new(), |own| own.unit.clone());
             return Ok(keys.into_iter().map(|key| Label { unit: unit(&key), key, ..Label::default() }).collect());
         }
@@ -305,7 +306,7 @@ impl Figure {
         Ok(keys.iter().map(label).collect())
     }
 
-    /// Names in the legend: given ones, or those of the stages, where several are drawn together.
+    /// Names in the legend where several stages are drawn together: those of `names`, else those of the stages.
     fn series(&self) -> Vec<String> {
         let stages = self.of.list();
         if stages.len() < 2 {
@@ -372,7 +373,7 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
 /// Resolution of the PNG in dots per inch.
 const DPI: f64 = 300.0;
 
-/// A picture as it is stored: the three files, the words for those who cannot see it, and its numbers.
+/// A stored picture: the three files, a description for those who cannot see it, and its numbers.
 fn picture_artifact(
     picture: &dyn Picture,
     style: &Style,

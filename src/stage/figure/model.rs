@@ -3,9 +3,8 @@
 use super::super::{StageError, artifact_kind};
 use super::source::{Source, Sources, pick, rows_of};
 use super::{Label, Params};
-use crate::artifact::statistics::{
-    Anova, Coefficients, Domains, Residuals as StoredResiduals, Screening, Surfaces, TakenAs,
-};
+use crate::artifact::statistics::{Anova, Residuals as StoredResiduals, Screening};
+use crate::artifact::surfaces::{Coefficients, Domains, Surfaces};
 use figure::Quantity;
 use figure::agreement::{Agreement, Cloud, Pair};
 use figure::axis::{fixed, significant};
@@ -131,18 +130,17 @@ fn middle(scale: Scale, low: f64, high: f64) -> f64 {
     }
 }
 
-/// The ranges over which a response was fitted, and how the model takes each factor.
+/// The ranges over which a response was fitted, and the scale of each factor in the model.
 struct Domain(Vec<(String, [f64; 2], Scale)>);
 
 impl Domain {
     fn read(stored: &Domains, response: &str) -> Self {
         let own = (0..stored.response.len()).filter(|&i| stored.response[i] == response);
-        let log = |i: usize| stored.scale.as_ref().is_some_and(|all| all[i] == TakenAs::Log);
-        let scale = |i: usize| if log(i) { Scale::Log } else { Scale::Linear };
+        let scale = |i: usize| stored.scale.as_ref().map_or(Scale::Linear, |all| all[i]);
         Self(own.map(|i| (stored.factor[i].clone(), [stored.low[i], stored.high[i]], scale(i))).collect())
     }
 
-    /// How the model takes a factor.
+    /// The scale of a factor in the model.
     fn scale(&self, factor: &str) -> Scale {
         self.0.iter().find(|(name, ..)| name == factor).map_or(Scale::Linear, |(_, _, scale)| *scale)
     }
@@ -152,7 +150,7 @@ impl Domain {
     }
 }
 
-/// Points of the runs on which a surface rests, in its two factors.
+/// Points of the runs to which a surface was fitted, in its two factors.
 fn marks(sources: &Sources, x: &Label, y: &Label) -> Result<Vec<[f64; 2]>, StageError> {
     let mut marks: Vec<[f64; 2]> = Vec::new();
     for source in &sources.compare {
@@ -166,7 +164,7 @@ fn marks(sources: &Sources, x: &Label, y: &Label) -> Result<Vec<[f64; 2]>, Stage
     Ok(marks)
 }
 
-/// The fewest decimals that show the number.
+/// The smallest number of decimals that shows the number.
 fn short(v: f64) -> String {
     let exact = |d: &usize| (format!("{v:.d$}").parse::<f64>().unwrap_or(f64::NAN) - v).abs() <= 1e-9 * v.abs();
     (0..6).find(exact).map_or_else(|| significant(v, 4), |d| fixed(v, d))
@@ -239,7 +237,7 @@ struct Effects {
     error: f64,
     margin: Option<(String, f64)>,
     simultaneous: Option<f64>,
-    /// Effects over their standard errors, with the critical value as the margin.
+    /// Effects divided by their standard errors, with the critical value as the margin.
     standardized: bool,
 }
 
@@ -371,13 +369,13 @@ fn term_label(term: &str, params: &Params) -> String {
     term.split('*').map(part).collect::<Vec<_>>().join(" · ")
 }
 
-/// Shares of the sources of an analysis of variance in its total sum of squares.
+/// Fractions of the total sum of squares of an analysis of variance, by source.
 fn shares(params: &Params, source: Source) -> Result<RankedBars, StageError> {
     let response = one_response(params)?;
     let lines = Anova::from_artifact(source.0)?.anova;
     let which = rows_of(&lines.response, &response.key)?;
     let (names, squares) = (pick(&lines.source, &which), pick(&lines.eta2, &which));
-    // Where factors set properties of groups, one that sets nothing is an empty column.
+    // Beside factors that set properties of groups, one that sets nothing is an empty column.
     let grouped = params.factors.iter().any(|l| !l.group.is_empty());
     let mut bars = Vec::new();
     for (name, share) in names.iter().zip(squares).filter(|(name, share)| *name != "total" && share.is_finite()) {

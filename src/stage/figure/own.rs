@@ -6,6 +6,7 @@ use super::super::{Failure, Job, StageError, data};
 use super::plot::{Bars, Direction, Fit, Labels, Plot};
 use super::source::{Source, Sources};
 use super::{Label, Params};
+use crate::artifact::run::Run;
 use crate::artifact::{Column, Table, Values};
 use crate::unit::Conversion;
 use figure::Quantity;
@@ -23,7 +24,7 @@ use stats::sample::{Factor, Response, Sample};
 use stats::summary::{self, Summary};
 use stats::terms::Term;
 
-/// A column that is drawn: what it is, its numbers, and names where its cells are words.
+/// A column of the plot: its quantity, its numbers, and names where its cells are words.
 pub(super) struct Shown {
     pub quantity: Quantity,
     pub values: Vec<f64>,
@@ -55,18 +56,18 @@ impl Shown {
         Ok(Self { quantity: Quantity { unit, ..label.quantity() }, values, names })
     }
 
-    /// A value of the column as it is written in a legend or below a box.
+    /// The text of a value of the column in a legend or below a box.
     pub(super) fn text(&self, value: f64) -> String {
         self.names.get(value as usize).cloned().unwrap_or_else(|| short(value))
     }
 
-    /// The values that make groups, in their order: as numbers ascend, or as names do.
+    /// The values of the groups, in ascending order of numbers or names.
     pub(super) fn distinct(&self) -> Vec<f64> {
         groups(&[&self.values]).into_iter().map(|group| group.key[0]).collect()
     }
 }
 
-/// A number without needless digits.
+/// The shortest text of a number.
 fn short(value: f64) -> String {
     let text = significant(value, 6);
     let plain = text.contains('.') && !text.contains('×');
@@ -193,7 +194,7 @@ pub(super) fn xy(params: &Params, sources: &Sources, job: &Job) -> Result<Xy, Fa
     })
 }
 
-/// The points of one group, with the line that was asked for through all of them.
+/// The points of one group, with the requested line through all of them.
 fn cloud(plot: &Plot, name: String, x: Vec<f64>, y: Vec<f64>) -> Cloud {
     let (line, note) = match plot.fit.and_then(|fit| fitted(fit, &x, &y)) {
         Some((fit, found)) => (Some(band(fit, &found, &x, plot.coverage())), told(fit, &found)),
@@ -217,7 +218,7 @@ fn cloud(plot: &Plot, name: String, x: Vec<f64>, y: Vec<f64>) -> Cloud {
     cloud
 }
 
-/// Least squares of one column on the other; `None` where the points do not support it.
+/// Least squares of one column on the other; `None` where the points do not determine it.
 pub(super) fn fitted(fit: Fit, x: &[f64], y: &[f64]) -> Option<(Fit, Regression)> {
     let sample = Sample {
         factors: vec![Factor::new("x", x.to_vec())],
@@ -276,7 +277,7 @@ fn overlay(job: &Job, x: &Quantity, y: &Quantity) -> Result<Option<bundle::Line>
         }
     };
     let read = |column: &Column, q: &Quantity| {
-        // a head without a unit is in that of the plot
+        // a column without a unit is in that of the plot
         let own = if column.unit.is_empty() { &q.unit } else { &column.unit };
         let to = Conversion::between(own, &q.unit);
         let to = to.map_err(|e| StageError::new(format!("overlay, column `{}`: {e}", column.name)))?;
@@ -294,8 +295,8 @@ pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bu
     let mut all: Vec<(bundle::Line, usize)> = Vec::new();
     let mut quantities: Option<[Quantity; 2]> = None;
     for (k, source) in sources.of.iter().enumerate() {
-        // a run that failed before it was loaded has no curve
-        let Some(table) = source.0.table("curve") else { continue };
+        // a run whose specimen failed has no curve
+        let Some(table) = Run::curve_of(source.0) else { continue };
         let every: Vec<usize> = (0..table.rows()).collect();
         // all curves in the units of the first
         let fixed = |key: &str, i: usize| -> Result<Label, StageError> {
@@ -325,7 +326,7 @@ pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bu
     Ok(Bundle { x, y, groups, band: "one standard deviation".into(), measured })
 }
 
-/// Per cent for a strain, else the unit that is declared; none where the field's is to be taken.
+/// Per cent for a strain, else the declared unit; `None` for the unit of the field.
 fn curve_unit(label: &Label) -> String {
     if label.key.ends_with("strain") { "%".to_owned() } else { label.unit.clone() }
 }

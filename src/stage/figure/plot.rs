@@ -17,7 +17,7 @@ pub enum Fit {
     ThroughOrigin,
 }
 
-/// What the bars of a plot show, over the rows that agree in `x` and `by`.
+/// The bars of a plot, over the rows with equal `x` and `by`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Bars {
@@ -27,7 +27,7 @@ pub enum Bars {
     Interval,
 }
 
-/// Which columns of a table are drawn, and how. Every key has its own figures; where it has no effect it is refused.
+/// The columns of a plot, and how they are drawn. Every key is for certain figures, and is refused for others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct Plot {
@@ -40,34 +40,34 @@ pub(super) struct Plot {
     /// Column in the cells of a `heat-map`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<String>,
-    /// Column by whose values points, curves or boxes are grouped.
+    /// Column whose values group points, curves or boxes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
-    /// Table of the result that the columns are in; its main table when not given.
+    /// Table of the result with the columns; by default its main table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table: Option<String>,
-    /// Only rows in which these columns have these values.
+    /// Draws only rows in which these columns have these values.
     #[serde(rename = "where", skip_serializing_if = "BTreeMap::is_empty")]
     pub only: BTreeMap<String, String>,
     /// Line through the points of each group of an `xy`, with its confidence band.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fit: Option<Fit>,
-    /// Mean and bars in place of the points of an `xy` that share their `x`.
+    /// Draws the mean with bars in place of the points of an `xy` with equal `x`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bars: Option<Bars>,
-    /// Coverage of bands and bars, 0.95 when not given.
+    /// Coverage of bands and bars, 0.95 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub confidence: Option<f64>,
-    /// Axes with equal ratios: `["x"]`, `["y"]` or both.
+    /// Logarithmic axes: `["x"]`, `["y"]` or both.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub log: Vec<Direction>,
-    /// Join the points of each group of an `xy`.
+    /// Joins the points of each group of an `xy` by lines.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub joined: bool,
     /// CSV or workbook, beside the workflow, whose columns `x` and `y` are drawn over the others (`xy`, `curves`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlay: Option<String>,
-    /// Number of bins of a `histogram`; chosen from the scatter when not given.
+    /// Number of bins of a `histogram`; by default from the scatter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bins: Option<usize>,
 }
@@ -82,7 +82,7 @@ pub enum Direction {
     Y,
 }
 
-/// Columns as they are drawn: by their key in [`Plot`].
+/// Labels of the columns by their key in [`Plot`].
 pub(super) type Labels = BTreeMap<String, Label>;
 
 impl Plot {
@@ -105,7 +105,7 @@ impl Plot {
         }
     }
 
-    /// Names and values of the keys that were given.
+    /// Names and values of the keys that are set.
     fn given(&self) -> Vec<&'static str> {
         let keys = [
             ("x", self.x.is_some()),
@@ -125,23 +125,9 @@ impl Plot {
         keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect()
     }
 
-    /// Keys that a figure needs, and keys that it can have beside them.
-    fn keys(show: Show) -> (&'static [&'static str], &'static [&'static str]) {
-        match show {
-            Show::Xy => {
-                (&["x", "y"], &["by", "table", "where", "fit", "bars", "confidence", "log", "joined", "overlay"])
-            }
-            Show::Curves => (&[], &["x", "y", "by", "overlay"]),
-            Show::Histogram => (&["x"], &["table", "where", "bins"]),
-            Show::Box => (&["y"], &["by", "table", "where", "log"]),
-            Show::HeatMap => (&["x", "y", "value"], &["table", "where"]),
-            _ => (&[], &[]),
-        }
-    }
-
     /// Complaints about keys without effect, and keys that are missing.
     pub(super) fn check(&self, show: Show, idle: &dyn Fn(&str) -> Complaint) -> Vec<Complaint> {
-        let (needs, takes) = Self::keys(show);
+        let [needs, takes] = show.needs().keys;
         let given = self.given();
         let without = given.iter().filter(|key| !needs.contains(key) && !takes.contains(key)).map(|key| idle(key));
         let missing = needs.iter().filter(|key| !given.contains(key)).map(|key| {
@@ -194,7 +180,7 @@ const KNOWN: [(&str, &str, &str); 4] = [
     ("stress", "Axial stress", r"\sigma"),
 ];
 
-/// A column as it is drawn: a factor or response with its symbol and unit, any other by its name.
+/// The label of a column: a factor or response has its symbol and unit, any other column its name.
 fn label(column: &str, context: &Context, names: &BTreeMap<String, String>) -> Label {
     let factor = context.factors.get(column).map(|f| (f.symbol.clone(), f.unit.clone()));
     let response = context.responses.get(column).map(|r| (r.symbol.clone(), r.unit.clone()));

@@ -2,6 +2,7 @@
 
 use super::super::StageError;
 use super::super::specimen::stored;
+use super::parts::{MM, groups, modes};
 use super::source::Sources;
 use super::{Params, space};
 use crate::artifact::run::{CrackMode, Cracks as StoredCracks, Curve as Stored, Run};
@@ -14,9 +15,6 @@ use figure::curve::{Curve, StressStrain};
 use figure::rose::Rose;
 use figure::specimen::{Outline, Specimen};
 use math::elementary::atan2;
-
-/// Metres to millimetres.
-pub(super) const MM: f64 = 1e3;
 
 pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<StressStrain, StageError> {
     let mut curves = Vec::new();
@@ -42,7 +40,7 @@ fn curve_of(run: &Run) -> Result<&Stored, StageError> {
     run.curve.as_ref().ok_or_else(|| StageError::new("the run has no stress–strain curve"))
 }
 
-/// Numbers of a declared unit in the unit that they are drawn in.
+/// Converts numbers from their declared unit to the unit of the figure.
 fn shown(values: &[f64], from: &str, to: &str) -> Vec<f64> {
     Conversion::between(from, to).unwrap_or_else(|e| panic!("BUG: {from} in {to}: {e}")).of_all(values.to_vec())
 }
@@ -52,13 +50,6 @@ fn response(run: &Run, name: &str, unit: &str) -> Option<f64> {
     let at = run.responses.response.iter().position(|own| own == name)?;
     let value = Conversion::between(&run.responses.unit[at], unit).ok()?.of(run.responses.value[at]);
     Some(value).filter(|value| value.is_finite())
-}
-
-/// The modes that occur, in the order in which they are drawn, and the index of each crack's mode among them.
-pub(super) fn modes(cracks: &StoredCracks) -> (Vec<CrackMode>, Vec<usize>) {
-    let found: Vec<CrackMode> = CrackMode::ALL.into_iter().filter(|mode| cracks.mode.contains(mode)).collect();
-    let index = cracks.mode.iter().map(|own| found.iter().position(|mode| mode == own).unwrap_or(0)).collect();
-    (found, index)
 }
 
 /// Number of cracks of each mode up to each axial strain of the curve.
@@ -109,14 +100,7 @@ pub(super) fn specimen(sources: &Sources) -> Result<Box<dyn Picture>, StageError
     }))
 }
 
-/// The group of each ball among those that occur, and their names, in the order of their numbers.
-pub(super) fn groups(stored: &StoredSpecimen) -> (Vec<usize>, Vec<String>) {
-    let used: Vec<i64> = (0..stored.groups.len() as i64).filter(|number| stored.group_of.contains(number)).collect();
-    let group = stored.group_of.iter().map(|own| used.iter().position(|number| number == own).unwrap_or(0)).collect();
-    (group, used.iter().map(|&number| stored.groups[number as usize].clone()).collect())
-}
-
-/// What cracks and forces are drawn in.
+/// The frame of cracks and forces.
 struct Ground {
     outline: Outline,
     /// Lower left corner in mm.
@@ -127,7 +111,7 @@ struct Ground {
     polygons: Vec<Vec<[f64; 2]>>,
 }
 
-/// Domain and polygons: of the specimen when it is given, else around the points.
+/// Domain and polygons of the specimen if there is one, else the box around the points.
 fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
     if let Some(specimen) = sources.compare.first() {
         let specimen = stored(specimen.0)?;
@@ -150,7 +134,7 @@ fn crack_list(run: &Run) -> Result<CrackList, StageError> {
         return Err(StageError::new("cracks are drawn in the plane, and these are in space"));
     }
     let (length, to_mm) = (shown(&cracks.size, "m", "mm"), |row: usize, axis: usize| cracks.position[[row, axis]] * MM);
-    // The line of a crack is across its normal.
+    // The line of a crack is perpendicular to its normal.
     let crack = |i: usize| Crack {
         at: [to_mm(i, 0), to_mm(i, 1)],
         angle: atan2(cracks.normal[[i, 0]], -cracks.normal[[i, 1]]),

@@ -4,13 +4,13 @@ use super::super::StageError;
 use super::source::{Sources, pick};
 use super::{Label, Params};
 use crate::artifact::Table;
-use crate::artifact::calibration::{Alternatives, Evaluations, Solution, Solved, Verification as Stored, VerifiedRuns};
+use crate::artifact::calibration::{Solution, Verification as Stored};
 use crate::unit::Conversion;
 use figure::convergence::{Convergence, Descent};
 use figure::solutions::{SolutionSet, Solutions};
 use figure::verification::{Check, Verification};
 
-/// The target sets in the order in which they appear.
+/// The target sets in the order of their first rows.
 fn distinct(sets: &[i64]) -> Vec<i64> {
     let mut found: Vec<i64> = Vec::new();
     for set in sets {
@@ -26,7 +26,7 @@ fn rows_of(sets: &[i64], set: i64) -> Vec<usize> {
     (0..sets.len()).filter(|&row| sets[row] == set).collect()
 }
 
-/// Prefix of a series when several stages are drawn together.
+/// Prefix of the name of a series when several stages are drawn together.
 fn prefixed(params: &Params, input: usize, name: &str) -> String {
     match params.series.get(input) {
         Some(series) => format!("{series}, {name}"),
@@ -37,7 +37,7 @@ fn prefixed(params: &Params, input: usize, name: &str) -> String {
 pub(super) fn convergence(params: &Params, sources: &Sources) -> Result<Convergence, StageError> {
     let mut runs = Vec::new();
     for (k, source) in sources.of.iter().enumerate() {
-        let history = Evaluations::from_table(&Solution::from_artifact(source.0)?.history)?;
+        let history = Solution::from_artifact(source.0)?.history;
         for set in distinct(&history.set) {
             let rows = rows_of(&history.set, set);
             let effort = rows.iter().map(|&row| history.evaluation[row] as f64).collect();
@@ -49,7 +49,7 @@ pub(super) fn convergence(params: &Params, sources: &Sources) -> Result<Converge
 }
 
 pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions, StageError> {
-    let first = Solution::from_artifact(sources.first()?.0)?.solution;
+    let first = Solution::from_artifact(sources.first()?.0)?.solution.point;
     let labels: Vec<&Label> = params.factors.iter().filter(|f| first.column(&f.key).is_some()).collect();
     if labels.is_empty() {
         return Err(StageError::new("the solutions hold no factor of the workflow"));
@@ -62,10 +62,9 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
     let mut sets: Vec<SolutionSet> = Vec::new();
     for (k, source) in sources.of.iter().enumerate() {
         let stored = Solution::from_artifact(source.0)?;
-        let (best, further) = (points(&stored.solution)?, points(&stored.solution_set)?);
-        let others = Alternatives::from_table(&stored.solution_set)?.set;
-        for (set, point) in Solved::from_table(&stored.solution)?.set.into_iter().zip(best) {
-            let rows = std::iter::once(point).chain(pick(&further, &rows_of(&others, set))).collect();
+        let (best, further) = (points(&stored.solution.point)?, points(&stored.solution_set.point)?);
+        for (set, point) in stored.solution.set.into_iter().zip(best) {
+            let rows = std::iter::once(point).chain(pick(&further, &rows_of(&stored.solution_set.set, set))).collect();
             sets.push(SolutionSet { name: prefixed(params, k, &format!("target {set}")), rows, misfit: Vec::new() });
         }
     }
@@ -80,7 +79,7 @@ pub(super) fn solutions(params: &Params, sources: &Sources) -> Result<Solutions,
 /// Values of the runs, and the target of each set and response.
 pub(super) fn verification(params: &Params, sources: &Sources) -> Result<Verification, StageError> {
     let Stored { summary, runs, not_valid } = Stored::from_artifact(sources.first()?.0)?;
-    let of_run = VerifiedRuns::from_table(&runs)?.set;
+    let (of_run, runs) = (runs.set, runs.runs);
     let sets = distinct(&summary.set);
     let mut checks = Vec::new();
     let both = |label: &&Label| runs.column(&label.key).is_some() && summary.response.contains(&label.key);

@@ -1,4 +1,4 @@
-//! Reading the inputs of a figure, with errors that name the missing table or column and the existing ones.
+//! The inputs of a figure, with errors that name the missing table or column and the existing ones.
 
 use super::super::{Job, StageError, artifact_kind};
 use crate::artifact::{Artifact, ArtifactKind, Table, Values};
@@ -43,8 +43,8 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Names that occur in an artifact: of columns, and in its columns `factor`, `source` and `term` in the rows of the
-/// response, in the order of first sight.
+/// Names in an artifact, in the order of their first occurrence: those of columns, and the cells of its columns `factor`,
+/// `source` and `term` in the rows of the response.
 pub(super) fn words(artifact: &Artifact, response: Option<&str>) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for (_, table) in artifact.tables() {
@@ -72,13 +72,13 @@ impl Rows<'_> {
         self.table.rows()
     }
 
-    /// The numbers of a column in the unit in which they are drawn.
+    /// The numbers of a column in the unit of the figure.
     pub(super) fn reals(self, column: &str, unit: &str) -> Result<Vec<f64>, StageError> {
         Ok(self.table.numbers(column, unit)?)
     }
 }
 
-/// Row numbers whose response is the one that is drawn.
+/// Indices of the rows of the response of the figure.
 pub(super) fn rows_of(responses: &[String], wanted: &str) -> Result<Vec<usize>, StageError> {
     let rows: Vec<usize> = (0..responses.len()).filter(|&row| responses[row] == wanted).collect();
     if rows.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::super::specimen::stored;
 use super::super::{StageError, shapes};
-use super::run::{MM, groups, modes};
+use super::parts::{MM, groups, modes};
 use super::source::Sources;
 use crate::artifact::run::Run;
 use crate::artifact::shapes::Shapes;
@@ -28,7 +28,7 @@ fn frame(stored: &StoredSpecimen) -> Solid {
     Solid { low: half.map(|edge| -edge), high: half, y_up: true, round, ..Solid::default() }
 }
 
-/// A specimen in space: cut open through its middle, where rigid clumps would be hidden by the mortar around them.
+/// A specimen in space, cut open through its middle if it holds rigid clumps, which the mortar would hide.
 pub(super) fn solid(stored: &StoredSpecimen) -> Solid {
     let (group, groups) = groups(stored);
     let clumps = stored.clump_of.iter().any(|&clump| clump >= 0);
@@ -42,7 +42,7 @@ pub(super) fn solid(stored: &StoredSpecimen) -> Solid {
     }
 }
 
-/// All cracks of a run in space, in the frame of its specimen where that is given.
+/// All cracks of a run in space, in the frame of its specimen if that is an input.
 pub(super) fn cracks(run: &Run, sources: &Sources) -> Result<Solid, StageError> {
     let cracks = run.cracks.as_ref().ok_or_else(|| StageError::new("the run has no table of cracks"))?;
     let (found, mode) = modes(cracks);

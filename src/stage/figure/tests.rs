@@ -1,15 +1,15 @@
 use super::*;
 
 use crate::artifact::calibration::{
-    Alternatives, Evaluations, Prediction, Solution, Solved, Summary, Verification, VerifiedRuns,
+    Alternatives, Answer, Effort, Evaluations, Parameters, Prediction, Solution, Solved, Summary, Verification,
+    VerifiedRuns,
 };
+use crate::artifact::notes::NoteTable;
 use crate::artifact::range::{LevelValues, Levels, Range, Ranges};
 use crate::artifact::run::{CrackMode, Cracks, Curve, Forces, Responses, Run, States};
 use crate::artifact::specimen::Specimen;
-use crate::artifact::statistics::{
-    Anova, Coefficients, Domains, Effects, Fits, Limits, NoteTable, Paths, PrincipalAxes, Residuals, Screening,
-    Selections, Stationary, Surfaces, Variances,
-};
+use crate::artifact::statistics::{Anova, Effects, Fits, Limits, Residuals, Screening, Variances};
+use crate::artifact::surfaces::{Coefficients, Domains, Paths, PrincipalAxes, Selections, Stationary, Surfaces};
 use crate::artifact::{ContentHash, Group, Node, Numbered, Values};
 use crate::stage::{Factor, FileInput, Input, Library, Outcome, Response};
 use ndarray::{Array2, Array3};

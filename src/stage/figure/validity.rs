@@ -1,4 +1,4 @@
-//! What a figure does with runs that are not valid, and its statement below the picture.
+//! The treatment of runs that are not valid in a figure, and the footnote on them.
 
 use super::super::StageError;
 use super::super::invalid::{Invalid, sentence};
@@ -8,17 +8,10 @@ use crate::artifact::results::Results;
 use crate::artifact::validity::{Verdict, faults, of_runs};
 use crate::artifact::{Artifact, ArtifactKind};
 
-impl Show {
-    /// Whether it draws the single runs of a table, so that some can be left out.
-    pub(super) fn draws_runs(self) -> bool {
-        matches!(self, Self::Xy | Self::Curves | Self::Histogram | Self::Box | Self::HeatMap | Self::Agreement)
-    }
-}
-
 impl Figure {
-    /// The choice: of what draws the runs of a table that of statistics, of a picture of one run to draw it.
+    /// The default: a figure of a table of runs treats them as statistics do, a figure of one run draws it.
     pub(super) fn choice(&self) -> Invalid {
-        self.invalid.unwrap_or(if self.show.draws_runs() { Invalid::LeaveOut } else { Invalid::Keep })
+        self.invalid.unwrap_or(if self.show.needs().runs { Invalid::LeaveOut } else { Invalid::Keep })
     }
 }
 
@@ -28,7 +21,7 @@ impl Figure {
 /// A run is not valid and refused.
 pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String>, StageError> {
     let mut found = params.notes.clone();
-    // Of curves the choice was made when the runs were chosen.
+    // For curves the setting was applied when the runs were chosen.
     let all = sources.of.iter().chain(&sources.compare).filter(|_| params.show != Show::Curves);
     for (index, source) in all.enumerate() {
         let whose = params.series.get(index).map_or_else(String::new, |name| format!("{name}: "));
@@ -49,7 +42,7 @@ fn of_source(params: &Params, artifact: &Artifact) -> Result<Vec<String>, StageE
     if artifact.is(ArtifactKind::RESULTS) {
         let runs = Results::table(artifact)?;
         let judged = params.invalid.judge(runs)?;
-        let verdict = if params.show.draws_runs() { judged.verdict() } else { Verdict::NotValid };
+        let verdict = if params.show.needs().runs { judged.verdict() } else { Verdict::NotValid };
         return Ok(of_runs(runs, verdict));
     }
     if artifact.is(ArtifactKind::RUN) && params.invalid == Invalid::Refuse {

@@ -1,15 +1,15 @@
-//! Models to and from the artifact `surfaces`.
+//! Converts models to and from the artifact `surfaces`.
 
 use super::super::StageError;
 use super::unreadable;
 use crate::artifact::Artifact;
-use crate::artifact::statistics::{CodedFactors, CodedTerms, FittedModel, Surfaces, TakenAs};
+use crate::artifact::surfaces::{CodedFactors, CodedTerms, FittedModel, Surfaces};
 use math::scale::Scale;
 use ndarray::Array2;
 use stats::model::{Axis, Model};
 use stats::terms::Term;
 
-/// A model as it is stored.
+/// The stored form of a model.
 pub(super) fn stored(model: &Model) -> FittedModel {
     let of = |pick: fn(&Axis) -> f64| model.axes.iter().map(pick).collect::<Vec<f64>>();
     let count = model.terms.len();
@@ -34,12 +34,8 @@ pub(super) fn stored(model: &Model) -> FittedModel {
 }
 
 /// Scales of the factors of a model; `None` when all are linear.
-pub(super) fn scales(axes: &[&Axis]) -> Option<Vec<TakenAs>> {
-    let taken = |axis: &&Axis| match axis.scale {
-        Scale::Linear => TakenAs::Linear,
-        Scale::Log => TakenAs::Log,
-    };
-    axes.iter().any(|axis| axis.scale != Scale::Linear).then(|| axes.iter().map(taken).collect())
+pub(super) fn scales(axes: &[&Axis]) -> Option<Vec<Scale>> {
+    axes.iter().any(|axis| !axis.scale.is_linear()).then(|| axes.iter().map(|axis| axis.scale).collect())
 }
 
 /// The models of an artifact `surfaces`, by response.
@@ -56,10 +52,7 @@ fn read(stored: FittedModel) -> Result<Model, StageError> {
         stored;
     let axis = |(i, name): (usize, &String)| Axis {
         name: name.clone(),
-        scale: match factors.scale.as_ref().map_or(TakenAs::Linear, |all| all[i]) {
-            TakenAs::Linear => Scale::Linear,
-            TakenAs::Log => Scale::Log,
-        },
+        scale: factors.scale.as_ref().map_or(Scale::Linear, |all| all[i]),
         centre: factors.centre[i],
         half: factors.half[i],
         low: factors.low[i],

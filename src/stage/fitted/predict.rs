@@ -1,10 +1,10 @@
-//! Predictions of fitted models at chosen points, and the way up and down from the centre of each surface.
+//! Predictions of fitted models at chosen points, and the paths of steepest ascent and descent from the centre.
 
 use super::super::columns::Rows;
 use super::super::notes::Notes;
 use super::super::{Complaint, Context};
 use super::Fitting;
-use crate::artifact::statistics::{Paths, Predictions};
+use crate::artifact::surfaces::{Paths, Predictions};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stats::canonical::steepest_path;
@@ -12,11 +12,11 @@ use stats::model::Prediction;
 use stats::regression::Regression;
 use std::collections::BTreeMap;
 
-/// Points at which models are asked, and how sure the intervals are.
+/// Points of prediction, and the coverage of the intervals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Predict {
-    /// Points as values of factors in their units; a response is predicted where all factors of its model are given.
+    /// Points as values of factors in their units; a response is predicted at points with all factors of its model.
     pub at: Vec<BTreeMap<String, f64>>,
     /// Coverage of confidence and prediction intervals.
     #[serde(default = "confidence")]
@@ -39,7 +39,7 @@ pub(in super::super) fn check_predict(predict: Option<&Predict>, context: &Conte
     found
 }
 
-/// Every response at every point that gives all its factors.
+/// Predicts every response at every point with all its factors.
 fn asked(found: &[(&Fitting, Regression)], predict: &Predict) -> Vec<(String, usize, Prediction)> {
     let ask = |(fitting, regression): &'_ (&Fitting, Regression), number: usize| {
         let point: Option<Vec<f64>> = regression
@@ -53,7 +53,7 @@ fn asked(found: &[(&Fitting, Regression)], predict: &Predict) -> Vec<(String, us
     found.iter().flat_map(|own| (0..predict.at.len()).filter_map(move |number| ask(own, number))).collect()
 }
 
-/// How a prediction extrapolates; empty when it does not.
+/// In which way a prediction extrapolates; empty when it does not.
 fn beyond((_, _, p): &(String, usize, Prediction)) -> String {
     match (p.outside.is_empty(), p.far) {
         (false, _) => format!("{} outside the domain", p.outside.join(", ")),
@@ -62,7 +62,7 @@ fn beyond((_, _, p): &(String, usize, Prediction)) -> String {
     }
 }
 
-/// Remarks on predictions that extrapolate.
+/// Notes on predictions that extrapolate.
 pub(super) fn extrapolations(found: &[(&Fitting, Regression)], predict: &Predict, notes: &mut Notes) {
     for own in asked(found, predict).iter().filter(|own| !beyond(own).is_empty()) {
         notes.add(&own.0, format!("prediction {} extrapolates: {}", own.1 + 1, beyond(own)));
@@ -90,7 +90,7 @@ pub(super) fn prediction_table(found: &[(&Fitting, Regression)], predict: &Predi
 /// Radii of the steepest paths, in coded units.
 const RADII: [f64; 7] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5];
 
-/// The steepest way up and down from the centre, factor by factor.
+/// The paths of steepest ascent and descent from the centre, factor by factor.
 pub(super) fn path_table(found: &[(&Fitting, Regression)]) -> Paths {
     let ways = |(fitting, regression): &(&Fitting, Regression)| {
         let way = |up: bool| {

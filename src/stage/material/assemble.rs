@@ -1,4 +1,4 @@
-//! From values by path to the microparameters of the contacts that a specimen can have.
+//! Assembles the microparameters of the contacts of a specimen from values by path.
 
 use super::{Material, PairRule, Values};
 use crate::stage::Complaint;
@@ -13,11 +13,11 @@ use std::collections::BTreeMap;
 /// Settings of a stage for all bonds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Bonding {
-    /// Bond of the entries that name none.
+    /// Bond of the entries without a bond of their own.
     pub kind: BondKind,
-    /// Bonds form at gaps up to this share of the mean radius.
+    /// Bonds form at gaps up to this fraction of the mean radius.
     pub gap: f64,
-    /// How a modulus becomes a stiffness.
+    /// Definition of the stiffness by a modulus.
     pub convention: Convention,
     /// Fissures in the specimen.
     pub fissures: Option<Fissures>,
@@ -25,10 +25,10 @@ pub struct Bonding {
     pub values: BTreeMap<Parameter, f64>,
 }
 
-/// What a material is asked for.
+/// What determines the contacts of a specimen besides the values.
 #[derive(Clone, Copy, Debug)]
 pub struct Need<'a> {
-    /// Name of the `[material.NAME]`; none for one that a stage gives.
+    /// Name of the `[material.NAME]`; `None` for one that a stage gives.
     pub name: Option<&'a str>,
     /// Names of the specimen's groups by their number.
     pub groups: &'a [String],
@@ -36,11 +36,11 @@ pub struct Need<'a> {
     pub bonding: &'a Bonding,
 }
 
-/// Where the contacts of two groups get their values.
+/// The source of the values of the contacts of two groups.
 enum Source<'m> {
-    /// From an entry.
+    /// An entry of the material.
     Entry(&'m str),
-    /// By a rule from those of the two groups.
+    /// A rule, applied to the entries of the two groups.
     Rule(PairRule),
 }
 
@@ -48,7 +48,7 @@ impl Material {
     /// The microparameters of every contact that particles of these groups can have, from values by path.
     ///
     /// # Errors
-    /// All that is missing, without effect, of another kind or outside its range.
+    /// All values that are missing, without effect, of another kind or outside their range.
     pub fn contacts(&self, values: &Values, need: Need<'_>) -> Result<Made, Vec<Complaint>> {
         let made = self.made(values, need).map_err(|faults| {
             let place = |fault: Complaint| match need.name {
@@ -100,7 +100,7 @@ impl Material {
         if faults.is_empty() { Ok(made) } else { Err(faults) }
     }
 
-    /// Names of the groups: those of the specimen, or, when it has one, that of the only group of the material.
+    /// Names of the groups: those of the specimen; if it has one group and the material one, that of the material.
     fn group_names(&self, asked: &[String]) -> Result<Vec<String>, Vec<Complaint>> {
         let own: Vec<&String> = self.entries.keys().filter(|name| self.groups_of(name).len() == 1).collect();
         if let ([_], [own]) = (asked, &own[..]) {
@@ -149,8 +149,8 @@ impl Material {
         }
     }
 
-    /// The contact of an entry and what is wrong with its keys and units; what is missing or outside its range the contact tells
-    /// itself.
+    /// The contact of an entry, and the faults of its keys and units; the contact itself reports values that are missing or
+    /// outside their range.
     fn entry_contact(
         &self,
         name: &str,
@@ -170,7 +170,7 @@ impl Material {
             match microparameter(name, key, value, &own) {
                 Ok((parameter, value)) => drop(contact.values.insert(parameter, value)),
                 Err(fault) => {
-                    // A value stands there, only not a right one.
+                    // The value exists, although it is wrong: do not report it as missing.
                     contact.values.extend(Parameter::from_key(key).map(|parameter| (parameter, 1.0)));
                     faults.push(fault);
                 }
@@ -190,7 +190,7 @@ impl Material {
     }
 }
 
-/// The microparameter of a key and its value, deviations over the mean.
+/// The microparameter of a key and its value; deviations are divided by the mean.
 fn microparameter(
     entry: &str,
     key: &str,
@@ -221,11 +221,11 @@ fn microparameter(
     let mean =
         if parameter == Parameter::TensileDeviation { Parameter::TensileStrength } else { Parameter::ShearStrength };
     let mean = all.iter().find(|(key, _)| *key == mean.key()).map(|(_, mean)| mean.value);
-    // Without a mean the contact lacks its strength, which is reported there.
+    // Without a mean the contact lacks its strength, and reports that.
     Ok((parameter, mean.map_or(0.0, |mean| found.value / mean)))
 }
 
-/// Whether a microparameter may be given in units of this dimension.
+/// Whether a microparameter may have units of this dimension.
 pub fn measures(parameter: Parameter, given: Dimension) -> bool {
     let quantity = parameter.declaration().quantity;
     given == dimension(quantity) || (quantity == Quantity::Deviation && given == Dimension::NONE)

@@ -1,16 +1,17 @@
-//! Materials that a stage gives: microparameters by formula, or a calibrated set.
+//! Materials from the result of a stage: microparameters by formula, or a calibrated set.
 //!
 //! * A run (of a `formula` or `command` stage) gives values by name: `sigma_c` for every group, `rock_sigma_c` for one. They
-//!   take the place of those of the stage's own `material`, where it has one.
-//! * A solution gives factors; they are put into the material of the calibration, or that of its simulator.
+//!   replace those of the stage's own `material`, if it has one.
+//! * A solution gives factors; they are applied to the material of the calibration, or that of its simulator.
 
 use super::{Entry, Material, Microparameter, PairRule, Value};
+use crate::artifact::calibration::Solution;
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Artifact, ArtifactKind};
 use crate::stage::{Context, Parameter, Point, StageError};
 use crate::unit::Unit;
 
-/// A material and the point of the factor space at which it stands.
+/// A material and a point of the factor space.
 pub struct GivenMaterial {
     /// The values.
     pub material: Material,
@@ -18,7 +19,7 @@ pub struct GivenMaterial {
     pub point: Point,
 }
 
-/// The material that stage `name` gave; `set` counts the sets of a solution from 1, `groups` are those of the specimen.
+/// The material in the result of stage `name`; `set` counts the sets of a solution from 1, `groups` are those of the specimen.
 ///
 /// # Errors
 /// The artifact holds no microparameters, or not this set.
@@ -42,9 +43,9 @@ pub fn given(
         let message = format!("stage `{name}` gives factors, and there is no material to put them into");
         return Err(StageError::new(message).hint("give the calibration its `material`"));
     };
-    let table = artifact.table("solution").ok_or_else(|| StageError::new(format!("`{name}` holds no solution")))?;
+    let solution = Solution::from_artifact(artifact)?.solution;
     let mut point = Point::new();
-    for column in &table.columns {
+    for column in &solution.point.columns {
         if let Some(factor) = context.factors.get(&column.name) {
             let values = column.numbers(&factor.unit)?;
             let value = values.get(set.wrapping_sub(1)).copied().filter(|value| value.is_finite());
@@ -58,10 +59,10 @@ pub fn given(
     Ok(GivenMaterial { material, point })
 }
 
-/// The material that a stage starts from: its own, or that of its simulator.
+/// The material of a stage: its own, or that of its simulator.
 fn base(name: &str, context: &Context) -> Option<Material> {
     let mut name = name;
-    // A calibration names a simulator, which names a material or a stage that gives one.
+    // A calibration names a simulator; a simulator names a material, or a stage whose result is one.
     for _ in 0..context.sketches.len() {
         let sketch = context.sketches.get(name)?;
         match (&sketch.material, &sketch.simulator) {

@@ -75,7 +75,7 @@ impl<'de> Deserialize<'de> for EntryTable {
     }
 }
 
-/// A quantity of any kind, or a formula; what it stands for decides later which kind is right.
+/// A quantity of any kind, or a formula; its key decides later which kind is right.
 struct ValueText(Value);
 
 impl<'de> Deserialize<'de> for ValueText {
@@ -160,7 +160,7 @@ impl JsonSchema for EntryTable {
     }
 }
 
-/// What an editor shows on a microparameter.
+/// The text that an editor shows for a microparameter.
 fn about(one: &parameter::Declaration) -> String {
     let laws = one.laws.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     let default = if one.default.is_nan() { String::new() } else { format!("; {} when not given", one.default) };

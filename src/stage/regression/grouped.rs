@@ -1,17 +1,17 @@
 //! One fit per group of rows: `by = ["R_min", "ratio"]`.
 //!
 //! The result is an artifact `groups`: table `groups`, one row per response, group and term, with the quality of the fit
-//! beside it and, for fits through the origin, the same terms with a constant; `residuals`; `notes`. A group that does not
-//! support its model has a row with the reason. Later stages read `groups` as a table of runs.
+//! and, for fits through the origin, the same terms with a constant; `residuals`; `notes`. A group whose rows do not
+//! determine its model has a row with the reason. Later stages read `groups` as a table of runs.
 
 use super::super::columns::{Rows, refused, runs};
 use super::super::fitted::Fitting;
 use super::super::notes::Notes;
 use super::super::{Failure, Job, StageError};
-use super::origin::Beside;
 use crate::artifact::groups::{GroupFits, GroupResiduals, Groups};
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Artifact, Column, Table, Values};
+use crate::stage::fitted::origin::Beside;
 use math::distribution::t_for_coverage;
 use serde::{Deserialize, Serialize};
 use stats::diagnostics::Residual;
@@ -19,11 +19,11 @@ use stats::groups::{Grouped, groups};
 use stats::regression::{Coefficient, Regression, Settings, regress};
 use stats::sample::Sample;
 
-/// Everything that decides fits by groups.
+/// Parameters of the task: everything that decides fits by groups.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Params {
     pub fittings: Vec<Fitting>,
-    /// Columns whose equal values make a group.
+    /// Columns by which rows are grouped.
     pub by: Vec<String>,
     pub through_origin: bool,
     pub outlier_alpha: f64,
@@ -31,7 +31,7 @@ pub(super) struct Params {
     pub confidence: f64,
 }
 
-/// A column that groups are made by.
+/// A column by which rows are grouped.
 struct By<'a> {
     name: &'a str,
     unit: &'a str,
@@ -44,7 +44,7 @@ struct By<'a> {
 struct Found<'a> {
     response: &'a str,
     group: Grouped,
-    /// Runs of the group that have no value, or were left out.
+    /// Number of runs of the group that have no value or were left out.
     missing: usize,
     fit: Result<(Regression, Option<Beside>), String>,
 }
@@ -114,7 +114,7 @@ fn missing(sample: &Sample, response: &str) -> usize {
     own.map_or(0, |own| own.values.iter().filter(|value| value.is_none()).count())
 }
 
-/// The values that make a group, as texts.
+/// The values of a group as texts.
 fn key_texts(by: &[By], group: &Grouped) -> Vec<String> {
     let text = |(by, value): (&By, &f64)| {
         let name = by.labels.get(*value as usize).cloned().unwrap_or_else(|| value.to_string());
@@ -123,7 +123,7 @@ fn key_texts(by: &[By], group: &Grouped) -> Vec<String> {
     by.iter().zip(&group.key).map(text).collect()
 }
 
-/// Adds the columns that groups were made by, after the column of the response.
+/// Adds the columns of the groups, after the column of the response.
 fn with_key<R>(mut table: Table, by: &[By], rows: &[R], group: impl Fn(&R) -> &Grouped) -> Table {
     let column = |(k, by): (usize, &By)| {
         let values = rows.iter().map(|row| group(row).key[k]);
@@ -157,7 +157,7 @@ fn group_table(found: &[Found], by: &[By], params: &Params) -> Table {
     };
     let end =
         |sign: f64| rows.reals(|Line(_, fit)| fit.and_then(|(fit, c, _)| Some(c.estimate + sign * reach(fit, c)?)));
-    // only fits through the origin stand beside the same terms with a constant
+    // only fits through the origin are compared with the same terms and a constant
     let beside = |pick: fn(&Beside, &str) -> Option<f64>| {
         let value = |Line(_, fit): &Line| fit.and_then(|(_, c, beside)| pick(beside?, &c.term));
         params.through_origin.then(|| rows.reals(value))
@@ -212,6 +212,9 @@ fn notes<'a>(found: &[Found], by: &[By], not_valid: &'a NotValid) -> Notes<'a> {
         notes.add(found.response, format!("{}: no fit: {why}", key_texts(by, &found.group).join(", ")));
     }
     for found in found {
+        if let Ok((fit, _)) = &found.fit {
+            notes.one_level(found.response, &format!("{}: ", key_texts(by, &found.group).join(", ")), &fit.model.axes);
+        }
         let missing = found.missing;
         if missing > 0 {
             let group = key_texts(by, &found.group).join(", ");

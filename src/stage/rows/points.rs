@@ -1,4 +1,4 @@
-//! The rows of a design, known by content.
+//! The rows of a design, identified by their content.
 
 use super::factor_columns;
 use crate::artifact::{Artifact, Column, Values};
@@ -10,7 +10,7 @@ use math::occurrence::occurrences;
 pub struct DesignRows {
     /// Names of the factors, ascending.
     factors: Vec<String>,
-    /// Of each row: the bits of its values, factor by factor, and its replicate.
+    /// For each row the bits of its values, factor by factor, and its replicate.
     words: Vec<u64>,
 }
 
@@ -18,7 +18,7 @@ impl DesignRows {
     /// The rows of a design.
     ///
     /// # Errors
-    /// It has none, or a factor column holds no numbers.
+    /// It has no rows, or a factor column does not hold numbers.
     pub fn of(design: &Artifact, context: &Context) -> Result<Self, StageError> {
         let mut columns = factor_columns(design, context)?;
         columns.sort_by(|a, b| a.name.cmp(&b.name));
@@ -48,7 +48,7 @@ impl DesignRows {
         Ok(Self { factors: columns.iter().map(|column| column.name.clone()).collect(), words })
     }
 
-    /// The rows that [`DesignRows::factors`] and [`DesignRows::words`] gave.
+    /// Rows from the output of [`DesignRows::factors`] and [`DesignRows::words`].
     pub fn from_parts(factors: Vec<String>, words: Vec<u64>) -> Option<Self> {
         words.len().is_multiple_of(factors.len() + 1).then_some(Self { factors, words })
     }
@@ -73,7 +73,7 @@ impl DesignRows {
         &self.words
     }
 
-    /// The name of a row, different from that of every other row over the same factors.
+    /// The name of a row, which is unique among rows over the same factors.
     pub fn name(&self, index: usize) -> &[u64] {
         let width = self.factors.len() + 1;
         &self.words[index * width..(index + 1) * width]
@@ -85,7 +85,7 @@ impl DesignRows {
         self.factors.iter().cloned().zip(values).collect()
     }
 
-    /// Which of the equal rows a row is, from 1.
+    /// Number of a row among the rows that are equal to it, from 1.
     pub fn replicate(&self, index: usize) -> u64 {
         self.name(index)[self.factors.len()]
     }

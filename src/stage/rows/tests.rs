@@ -1,6 +1,6 @@
 use super::*;
 use crate::artifact::run::Responses;
-use crate::artifact::{ArtifactKind, Group};
+use crate::artifact::{ArtifactKind, Group, Node};
 use crate::stage::Factor;
 use crate::stage::material::MaterialTable;
 

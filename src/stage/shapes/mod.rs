@@ -9,9 +9,9 @@
 //! | `thickness [mm]`, `height [mm]` | the largest thickness a and height b of the section |
 //! | `exponent` | outline between a rhombus (1), an ellipse (2, where the column is not there) and a box (6 and more) |
 //!
-//! `stl` names files instead, one stone each, with `unit`, the length that they count in. `share` gives the shares of the
-//! shapes by number. `pebbles` says how balls are chosen and `within` how near the clump must come; what is computed and
-//! why: [`shape`].
+//! `stl` names files instead, one stone each, with `unit`, the length of their coordinate 1. `share` gives the fractions of
+//! the shapes by number, `pebbles` the choice of balls, and `within` the largest errors of a clump. What is computed and why:
+//! [`shape`].
 
 mod stored;
 
@@ -39,14 +39,14 @@ use stored::{Stone, store};
 pub struct Shapes {
     /// Table of sections, beside the workflow.
     pub sections: Option<String>,
-    /// Points around each section, 32 when not given.
+    /// Points around each section, 32 by default.
     pub around: Option<usize>,
     /// STL files, one stone each, beside the workflow.
     #[serde(default)]
     pub stl: Vec<String>,
-    /// Length that the STL files count in: `"1 mm"`.
+    /// Length of coordinate 1 in the STL files: `"1 mm"`.
     pub unit: Option<Length>,
-    /// Shares of the shapes by number, in the order of the table or of the files; equal when not given.
+    /// Fractions of the shapes by number, in the order of the table or of the files; equal by default.
     pub share: Option<Vec<f64>>,
     /// How pebbles are chosen.
     #[serde(default)]
@@ -59,10 +59,10 @@ pub struct Shapes {
 #[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PebbleConfig {
-    /// Where candidates come from.
+    /// Source of the candidates.
     #[serde(default)]
     pub method: Method,
-    /// Smallest over largest radius; 0.2 when not given.
+    /// Smallest over largest radius; 0.2 by default.
     pub ratio: Option<f64>,
     /// Taghavi's distance, an angle from 0 to 180 degrees; without it the error decides how many pebbles there are.
     pub distance: Option<f64>,
@@ -72,17 +72,17 @@ pub struct PebbleConfig {
 #[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoundConfig {
-    /// Relative error of the volume; 0.02 when not given.
+    /// Relative error of the volume; 0.02 by default.
     pub volume: Option<f64>,
-    /// Relative error of every principal moment of inertia; 0.05 when not given.
+    /// Relative error of every principal moment of inertia; 0.05 by default.
     pub inertia: Option<f64>,
-    /// Mean distance of the surfaces over the radius of the ball of equal volume; 0.05 when not given.
+    /// Mean distance of the surfaces over the radius of the ball of equal volume; 0.05 by default.
     pub surface: Option<f64>,
-    /// Most pebbles; 60 when not given.
+    /// Most pebbles; 60 by default.
     pub pebbles: Option<usize>,
 }
 
-/// All that decides the shapes besides the files.
+/// Parameters of the task: everything that decides the shapes besides the files.
 #[derive(Debug, Serialize, Deserialize)]
 struct Params {
     around: usize,
@@ -133,7 +133,7 @@ impl Shapes {
         }
     }
 
-    /// Where a setting of the domain stands in the table.
+    /// The key of a setting of the domain in the table.
     fn key(name: &str) -> &'static str {
         match name {
             "ratio" => "pebbles.ratio",
@@ -250,7 +250,7 @@ impl Kind for Shapes {
     const WORKS: &'static [Work] = &[Work { name: "shapes", version: 1, run: make }];
 }
 
-/// A stone as it was read: its name, its surface, and what was mended.
+/// A stone: its name, its surface, and the repairs of the surface.
 type Read = (String, Mesh, String);
 
 fn make(job: &Job) -> Result<Artifact, Failure> {
@@ -285,7 +285,7 @@ fn make(job: &Job) -> Result<Artifact, Failure> {
     Ok(shapes.to_artifact())
 }
 
-/// The stones of a table of sections, in the order in which they come.
+/// The stones of a table of sections, in the order of their first rows.
 fn lofted(table: &Table, around: usize) -> Result<Vec<Read>, StageError> {
     let names = table.texts("shape")?;
     let [position, thickness, height] = ["position", "thickness", "height"].map(|column| table.numbers(column, "m"));

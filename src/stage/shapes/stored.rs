@@ -1,4 +1,4 @@
-//! Shapes as they are stored, and back.
+//! Converts shapes to and from their artifact.
 
 use super::super::StageError;
 use crate::artifact::Artifact;
@@ -9,7 +9,7 @@ use ::shape::mesh::Mesh;
 use ::shape::moments::Moments;
 use ::shape::statistics::Measures;
 
-/// A stone with its clump, as it was made.
+/// A stone with its clump.
 pub(super) struct Stone {
     pub name: String,
     pub share: f64,
@@ -24,9 +24,9 @@ pub(super) struct Stone {
 pub struct Shape {
     /// Its name.
     pub name: String,
-    /// Its share of the stones, by number.
+    /// Its fraction of the stones, by number.
     pub share: f64,
-    /// Intermediate extent, by which it passes a sieve (m).
+    /// Intermediate extent, which decides whether it passes a sieve (m).
     pub breadth: f64,
     /// The clump, lengths in m.
     pub clump: Clump,
@@ -34,7 +34,7 @@ pub struct Shape {
     pub mesh: Mesh,
 }
 
-/// Worst of three errors, with its sign.
+/// The largest of three errors, with its sign.
 fn worst(errors: [f64; 3]) -> f64 {
     errors.into_iter().fold(0.0, |worst: f64, error| if error.abs() > worst.abs() { error } else { worst })
 }

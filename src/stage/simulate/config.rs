@@ -1,4 +1,4 @@
-//! Settings of a `simulate` stage, and the plain parameters that its tasks are made of.
+//! Settings of a `simulate` stage, and the parameters of its tasks.
 
 use super::super::material::{self, Bonding, GivenMaterial, Need};
 use super::super::rows;
@@ -7,6 +7,7 @@ use super::fissures::FissureConfig;
 use super::speed::PlatenSpeed;
 use crate::expression::Measure;
 use crate::unit::{Angle, Length, Pressure};
+use dem::genesis::region::Region;
 use dem::loading::kind::TestKind;
 use dem::loading::material::{BondKind, Material};
 use dem::loading::rig::Machine;
@@ -22,11 +23,12 @@ use serde::{Deserialize, Serialize};
 pub struct Simulate {
     /// The specimen that is tested.
     pub specimen: String,
-    /// The design whose rows are run; the material alone when not given.
+    /// The design whose rows are run; without it there is one run, of the material.
     pub design: Option<String>,
-    /// The `[material.NAME]` with the microparameters that rows vary; or the stage that gives them: by formula, or calibrated.
+    /// The `[material.NAME]` with the microparameters that rows vary, or the stage whose result gives them: formulas, or a
+    /// calibration.
     pub material: String,
-    /// Which set of a calibrated material; the first when not given.
+    /// Number of the set of a calibrated material; the first by default.
     pub set: Option<usize>,
     /// The test.
     pub test: TestKind,
@@ -35,43 +37,43 @@ pub struct Simulate {
     /// Friction of the platens.
     #[serde(default)]
     pub platen_friction: f64,
-    /// Modulus of the contacts with the platens; that of the material when not given.
+    /// Modulus of the contacts with the platens; by default that of the material.
     pub platen_modulus: Option<Pressure>,
-    /// `brazilian`: whole angle of the arc on which curved jaws touch the disc; flat platens when not given.
+    /// `brazilian`: whole angle of the arc on which curved jaws touch the disc; by default platens are flat.
     pub jaw_angle: Option<Angle>,
     /// `biaxial`, `triaxial`: the confining stress.
     pub confinement: Option<Pressure>,
-    /// `bending`: distance of the supports; nine tenths of the width when not given.
+    /// `bending`: distance of the supports; by default nine tenths of the width.
     pub span: Option<Length>,
     /// `bending`: the notch, if any.
     pub notch: Option<Notch>,
-    /// Share of the peak at which the test ends.
+    /// Fraction of the peak stress at which the test ends.
     #[serde(default = "stop_fraction")]
     pub stop_fraction: f64,
-    /// Further strain, over the strain at the peak, for which the stress must stay below that share; 0, but 0.05 for
-    /// `brazilian` and `bending`, where a first contact may fail early.
+    /// Further strain, divided by the strain at the peak, for which the stress must stay below that fraction; 0 by default, but
+    /// 0.05 for `brazilian` and `bending`, where a first contact may fail early.
     pub lasting: Option<f64>,
-    /// Stress that must be passed before the test may end; a hundredth of the bonds' tensile strength when not given.
+    /// Stress that must be exceeded before the test may end; by default a hundredth of the bonds' tensile strength.
     pub seating_stress: Option<Pressure>,
-    /// Strain between two samples; 1/500 of the strain at which the bonds can be expected to fail (tensile strength over
-    /// modulus) when not given.
+    /// Strain between two samples; by default 1/500 of the strain at which the bonds can be expected to fail (tensile strength
+    /// over modulus).
     pub sample_strain: Option<f64>,
-    /// Strain at which a test without a peak is given up; 20 times the strain at which the bonds can be expected to fail
-    /// when not given.
+    /// Strain at which a test without a peak is stopped; by default 20 times the strain at which the bonds can be expected to
+    /// fail.
     pub strain_limit: Option<f64>,
-    /// Steps after which a test is given up.
+    /// Number of steps after which a test is stopped.
     #[serde(default = "max_steps")]
     pub max_steps: u64,
-    /// Shares of the peak at which the state is kept.
+    /// Fractions of the peak stress at which the state is stored.
     #[serde(default = "snapshots")]
     pub snapshots: Vec<f64>,
-    /// Whether the forces between the discs are kept with these states, for force chains.
+    /// Whether the forces between the discs are stored with these states, for force chains.
     #[serde(default)]
     pub forces: bool,
     /// Local damping.
     #[serde(default = "damping")]
     pub damping: f64,
-    /// Masses that move the bodies: their own, or of one critical time step.
+    /// Masses of the bodies: their own, or masses that give all the same critical time step.
     #[serde(default)]
     pub masses: Masses,
     /// Whether different rows share packings.
@@ -80,7 +82,7 @@ pub struct Simulate {
     /// How bonds form and act.
     #[serde(default)]
     pub bond: BondConfig,
-    /// Fissures laid into the specimen before it is bonded.
+    /// Fissures that are put into the specimen before it is bonded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fissures: Option<FissureConfig>,
 }
@@ -96,21 +98,21 @@ pub enum PackingChoice {
     Own,
 }
 
-/// How bonds form and act.
+/// Formation and law of bonds.
 #[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BondConfig {
-    /// Parallel bond, contact bond or none, where an entry of the material says nothing else.
+    /// Law of the bonds of entries of the material that name none.
     pub kind: BondKind,
-    /// Bonds form at gaps up to this share of the mean radius; 0: where particles overlap.
+    /// Bonds form at gaps up to this fraction of the mean radius; with 0, where particles overlap.
     pub gap: f64,
-    /// Radius multiplier of the contacts that have none of their own in the material.
+    /// Radius multiplier of contacts for which the material has none.
     pub radius_multiplier: Option<f64>,
-    /// Moment factor of the contacts that have none of their own in the material.
+    /// Moment factor of contacts for which the material has none.
     pub moment_factor: Option<f64>,
-    /// Friction angle of the bonds that have none of their own in the material.
+    /// Friction angle of bonds for which the material has none.
     pub friction_angle: Option<Angle>,
-    /// How a modulus becomes a stiffness.
+    /// Definition of the stiffness by a modulus.
     pub convention: Convention,
 }
 
@@ -157,7 +159,7 @@ fn damping() -> f64 {
     Machine::default().damping
 }
 
-/// What decides a simulation besides its specimen and seed.
+/// Parameters of the task: everything that decides a simulation besides its specimen and seed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Params {
     pub(super) material: Material,
@@ -184,10 +186,10 @@ impl Simulate {
         })
     }
 
-    /// The material, and the point at which a calibration left it.
+    /// The material, and the point of a calibrated one.
     ///
     /// # Errors
-    /// The stage that should give it does not.
+    /// The result of the stage under `material` is not a material.
     pub(super) fn given(&self, known: &Known) -> Result<GivenMaterial, StageError> {
         if let Some(material) = known.context.materials.get(&self.material) {
             return Ok(GivenMaterial { material: material.clone(), point: Point::new() });
@@ -197,7 +199,7 @@ impl Simulate {
         material::given(input.stage, &*known.load(input)?, self.set.unwrap_or(1), groups, known.context)
     }
 
-    /// What the stage says on all bonds.
+    /// The settings of the stage for all bonds.
     fn bonding(&self) -> Bonding {
         Bonding { fissures: self.fissures.as_ref().map(FissureConfig::made), ..self.bond.bonding() }
     }
@@ -207,11 +209,14 @@ impl Simulate {
         Need { name: context.materials.contains_key(&self.material).then_some(&self.material), groups, bonding }
     }
 
-    /// All that is wrong with settings and material.
+    /// All faults of settings and material.
     pub(super) fn faults(&self, context: &Context) -> Vec<Complaint> {
         let mut faults = self.setting_faults();
         faults.extend(self.bond.faults());
         faults.extend(self.fissures.iter().flat_map(FissureConfig::faults));
+        let region = context.sketches.get(&self.specimen).and_then(|sketch| sketch.region);
+        let suits = |region: Region| self.test.suits(&region.into(), region.dimension());
+        faults.extend(region.and_then(|region| suits(region).err()).map(|e| Complaint::new("test", e.to_string())));
         let named = context.materials.get(&self.material);
         if self.set.is_some() && named.is_some() {
             let message = format!("`set` has no effect: [material.{}] is no calibrated one", self.material);
@@ -233,7 +238,7 @@ impl Simulate {
             }
         }));
         let bonding = self.bonding();
-        // Without the specimen there is another fault.
+        // Without the specimen there is another fault, reported elsewhere.
         if unresolved.is_empty() && context.sketches.get(&self.specimen).is_some_and(|sketch| !sketch.groups.is_empty())
         {
             faults.extend(material.contacts(&values, self.need(context, &bonding)).err().unwrap_or_default());
@@ -241,7 +246,7 @@ impl Simulate {
         faults
     }
 
-    /// A value of a factor that formulas of the material may name: one that the design varies.
+    /// A value of a factor that the design varies, so that formulas of the material may name it.
     fn factor(&self, context: &Context, name: &str) -> Option<Measure> {
         let design = context.sketches.get(self.design.as_ref()?)?;
         let varied = design.factors.as_ref().is_none_or(|factors| factors.iter().any(|factor| factor == name));

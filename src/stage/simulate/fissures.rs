@@ -1,4 +1,4 @@
-//! Fissures of a `simulate` stage: their places, and what acts on them.
+//! Fissures of a `simulate` stage: their positions, and the law of their joints.
 
 use super::super::Complaint;
 use crate::unit::{Angle, Intensity, Length, Pressure, Stiffness};
@@ -7,7 +7,7 @@ use dem::loading::fissure::{Fissure, Fissures};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Fissures laid into the specimen before it is bonded, each with smooth joints.
+/// Fissures that are put into the specimen before it is bonded, each with smooth joints.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FissureConfig {
@@ -18,17 +18,17 @@ pub struct FissureConfig {
     pub network: Option<NetworkConfig>,
     /// Friction on them.
     pub friction: f64,
-    /// Dilation angle; 0 when not given.
+    /// Dilation angle; 0 by default.
     pub dilation: Option<Angle>,
-    /// Normal stiffness per area; that of the contacts of the first group when not given.
+    /// Normal stiffness per area; by default that of the contacts of the first group.
     pub kn: Option<Stiffness>,
-    /// Shear stiffness per area; goes with `kn`.
+    /// Shear stiffness per area; needs `kn`.
     pub ks: Option<Stiffness>,
-    /// Tensile strength of bonded fissures; they are open when not given.
+    /// Tensile strength of bonded fissures; without it they are open.
     pub tensile_strength: Option<Pressure>,
-    /// Cohesion of bonded fissures; goes with `tensile_strength`.
+    /// Cohesion of bonded fissures; needs `tensile_strength`.
     pub cohesion: Option<Pressure>,
-    /// Friction angle of their bond; 0 when not given.
+    /// Friction angle of their bond; 0 by default.
     pub friction_angle: Option<Angle>,
 }
 
@@ -36,14 +36,14 @@ pub struct FissureConfig {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointConfig {
-    /// Its middle from that of the specimen: along the width, the axis of loading and (in space) the depth; the middle
-    /// itself when not given.
+    /// Its middle relative to that of the specimen: along the width, the axis of loading and (in space) the depth; 0 by
+    /// default.
     pub centre: Option<Vec<Length>>,
     /// Angle below the horizontal.
     pub dip: Angle,
-    /// Azimuth of the steepest descent, from the width towards the depth; 0 when not given, and in the plane.
+    /// Azimuth of the steepest descent, from the width towards the depth; 0 by default and in the plane.
     pub direction: Option<Angle>,
-    /// Length, or diameter of the disc; it cuts through the specimen when not given.
+    /// Length, or diameter of the disc; by default it cuts through the specimen.
     pub length: Option<Length>,
 }
 
@@ -59,13 +59,13 @@ pub struct NetworkConfig {
     pub exponent: f64,
     /// Mean angle below the horizontal.
     pub dip: Angle,
-    /// Azimuth of the mean dip; 0 when not given, and in the plane.
+    /// Azimuth of the mean dip; 0 by default and in the plane.
     pub direction: Option<Angle>,
     /// κ of Fisher's law (space) or von Mises' law (plane); 0 has no preferred orientation.
     pub concentration: f64,
 }
 
-/// Most fissures per square (cubic) metre of a network whose sizes all are the smallest.
+/// Largest number of fissures per square (cubic) metre, counted as if all had the smallest size.
 const DENSEST: f64 = 1e8;
 
 impl NetworkConfig {
@@ -99,7 +99,7 @@ impl NetworkConfig {
 }
 
 impl FissureConfig {
-    /// As the loading tests take them.
+    /// The fissures in the types of the loading tests.
     pub(super) fn made(&self) -> Fissures {
         let centre = |one: &JointConfig, k: usize| one.centre.as_ref().and_then(|x| x.get(k)).map_or(0.0, |x| x.get());
         let fissure = |one: &JointConfig| Fissure {
@@ -121,7 +121,7 @@ impl FissureConfig {
         }
     }
 
-    /// All that is wrong with them.
+    /// All faults of the settings.
     pub(super) fn faults(&self) -> Vec<Complaint> {
         let mut faults = Vec::new();
         let mut check = |good: bool, key: &str, message: String| {

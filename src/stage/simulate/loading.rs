@@ -1,4 +1,4 @@
-//! The test of a `simulate` stage: its settings as the loading tests take them, and what is wrong with them.
+//! The test of a `simulate` stage: its settings in the types of the loading tests, and their faults.
 
 use super::super::Complaint;
 use super::Simulate;
@@ -7,9 +7,9 @@ use dem::loading::rig::{Machine, Platens};
 use dem::loading::settings::{Loading, Particulars, Rule};
 use dem::loading::speed::{Speed, Threshold};
 
-/// Platens faster than this cannot be a quasi-static test of anything (m/s).
+/// Largest platen speed; no test is quasi-static above it (m/s).
 const FASTEST: f64 = 1.0;
-/// Most steps that may be asked for.
+/// Largest value of `max_steps`.
 const MOST_STEPS: u64 = 1_000_000_000;
 
 impl Simulate {
@@ -42,7 +42,7 @@ impl Simulate {
         }
     }
 
-    /// What is wrong with the settings of the test.
+    /// Faults of the settings of the test.
     pub(super) fn setting_faults(&self) -> Vec<Complaint> {
         let share = |x: f64| x > 0.0 && x < 1.0;
         let positive = |x: f64| x > 0.0 && x.is_finite();
@@ -83,7 +83,7 @@ impl Simulate {
         }
     }
 
-    /// Settings that the kind of test needs or has no use for.
+    /// Settings that the kind of test needs or does not use.
     fn particular_faults(&self) -> Vec<Complaint> {
         let confined = matches!(self.test, TestKind::Biaxial | TestKind::Triaxial);
         let (disc, beam) = (self.test == TestKind::Brazilian, self.test == TestKind::Bending);

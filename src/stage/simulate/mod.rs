@@ -1,20 +1,20 @@
 //! `kind = "simulate"`: a loading test on a specimen, once or per design row and replicate.
 //!
-//! Rows are microparameter sets: the material with the row's factors put in. Factors may set numbers of the test and of the
-//! specimen too ([`vary`](super::vary)); rows that change the specimen stand on packings of their own. Equal rows of a design are replicates, each
-//! on its own packing. Whether *different* rows share packings is a setting:
-//! * `packing = "shared"`: replicate k of every row stands on replicate k of the specimen. Differences between rows
-//!   are then free of packing noise, one packing serves a whole design, and calibration compares like with like.
-//! * `packing = "own"`: every row and replicate has a packing of its own, drawn from its content. All runs then scatter
-//!   alike, which is what pure error, lack of fit and the F-tests of an analysis of variance assume.
+//! A row is a set of microparameters: the material with the row's factors applied. Factors may set numbers of the test and
+//! of the specimen too ([`vary`](super::vary)); rows that change the specimen have packings of their own. Equal rows of a
+//! design are replicates, each on its own packing. Whether *different* rows share packings is a setting:
+//! * `packing = "shared"`: replicate k of every row uses replicate k of the specimen. Differences between rows are then
+//!   free of packing noise, and one packing serves a whole design.
+//! * `packing = "own"`: every row and replicate has a packing of its own, whose seed follows from the row's content. All
+//!   runs then have independent scatter, which pure error, lack of fit and the F-tests of an analysis of variance assume.
 //!
 //! Each test declares its responses ([`TestKind::responses`](dem::loading::kind::TestKind::responses)), in SI units:
 //! `uniaxial` gives `UCS`, `E`, `nu` by the published definitions (peak stress; tangent modulus around half of it; strain
 //! ratio there), `tension` `sigma_t`, `E`, `nu`, `brazilian` `sigma_t`, `biaxial` and `triaxial` `q`, `sigma_1`, `sigma_3`,
-//! `bending` `f_b`, and each a few more. What is computed and why: [`dem::loading`].
+//! `bending` `f_b`, and each test a few more. What is computed and why: [`dem::loading`].
 //!
-//! `material` names a `[material.NAME]`, or a stage that gives one ([`material`](super::material)): a `formula` stage whose
-//! responses are microparameters, or a calibration, of whose solution `set` picks the target set.
+//! `material` names a `[material.NAME]`, or a stage whose result is one ([`material`](super::material)): a `formula` stage
+//! whose responses are microparameters, or a calibration; `set` chooses the target set of its solution.
 
 mod config;
 mod fissures;
@@ -79,7 +79,7 @@ impl Stage for Simulate {
     }
 
     fn forecast(&self, ahead: &Ahead) -> Forecast {
-        // The specimen of the stage itself serves as the first of its replicates.
+        // The result of the specimen's stage is its first replicate.
         let specimens = |design: &Forecast, rows: usize| match self.packing {
             PackingChoice::Own => TaskForecast::Exactly(rows),
             PackingChoice::Shared if self.varies_specimen(ahead.context) => TaskForecast::AtMost(rows),
@@ -105,7 +105,7 @@ impl Stage for Simulate {
     fn sample(&self, known: &Known, point: &Point, number: u64) -> Result<Task, StageError> {
         self.concerned(known, point)?;
         let given = self.given(known)?;
-        // What a row varies stands above what was calibrated.
+        // Values of the row replace calibrated ones.
         let mut point = point.clone();
         for (name, value) in given.point {
             point.entry(name).or_insert(value);
@@ -130,7 +130,7 @@ impl Stage for Simulate {
 }
 
 impl Simulate {
-    /// Whether a factor of its design sets numbers of its specimen, or of a stage that the specimen is made from.
+    /// Whether a factor of its design sets numbers of its specimen, or of a stage from which the specimen is made.
     fn varies_specimen(&self, context: &Context) -> bool {
         let design = self.design.as_ref().and_then(|design| context.sketches.get(design));
         let factors = design.and_then(|sketch| sketch.factors.as_ref());
@@ -140,7 +140,7 @@ impl Simulate {
         own.into_iter().any(makes)
     }
 
-    /// Refuses a row that varies what is neither of this stage, nor of its specimen, nor of its material.
+    /// Refuses a row with a factor that sets a value of neither this stage, nor its specimen, nor its material.
     fn concerned(&self, known: &Known, point: &Point) -> Result<(), StageError> {
         for name in point.keys() {
             let paths = known.context.factors.get(name).map_or(&[][..], |factor| &factor.sets);
@@ -159,7 +159,7 @@ impl Simulate {
     }
 }
 
-/// The replicate of the specimen that belongs to one row and replicate of a design alone.
+/// The number of the specimen's replicate for one row and replicate of a design with `packing = "own"`.
 fn own_packing(point: &Point, number: u64) -> u64 {
     let text: Vec<String> =
         point.iter().map(|(name, value)| format!("{name}={:016x}", (value + 0.0).to_bits())).collect();
@@ -171,14 +171,16 @@ impl Kind for Simulate {
     const ABOUT: &'static str = "a loading test on a specimen, once or per design row";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS, ArtifactKind::RUN];
     const CLASS: Class = Class::Simulation;
+    /// 4: the rate is judged by wave transits before failure, no longer by an absolute strain in a step and speed; the strain
+    /// rate of a tension test is that between its grips, and a rate that is given is that of the piece in tension and bending.
     /// 3: thresholds and sampling follow from the specimen where the workflow gives none, checks say what they mean.
     /// 2: the same numbers in another layout: states and their centres stand beside the curve, positions and normals are
     /// `position_x`, `normal_x`, ….
-    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 3, run: simulate }, GATHER];
+    const WORKS: &'static [Work] = &[Work { name: "simulate", version: 4, run: simulate }, GATHER];
     const FAR: Option<&'static str> = Some("simulate");
 }
 
-/// Looks at the run between two reports of progress.
+/// Observes the run between two reports of progress.
 const REPORT_EVERY: usize = 50;
 
 fn simulate(job: &Job) -> Result<Artifact, Failure> {
@@ -196,7 +198,7 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
 fn tested<S: Space>(job: &Job, piece: &Piece<S>) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
-    for warning in params.test.warnings(piece, &params.material).map_err(|faults| fail(&faults))? {
+    if let Some(warning) = params.test.warning(piece, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));
     }
     let mut seen = 0;

@@ -1,4 +1,4 @@
-//! The record of a test as it is stored: a [`Run`].
+//! Converts the record of a test to its artifact, a [`Run`].
 
 use crate::artifact::Artifact;
 use crate::artifact::run::{Checks, CrackMode, Cracks, Curve, Energies, Forces, Quantities, Responses, Run, States};
@@ -15,10 +15,10 @@ use dem::space::Tuple;
 use dem::{Space, Vector};
 use ndarray::{Array2, Array3};
 
-/// Points of the stored curve.
+/// Number of points of the stored curve.
 const CURVE_POINTS: usize = 400;
 
-/// The storable form of a record.
+/// The artifact of a record.
 pub(super) fn artifact<S: Space>(record: &TestRecord<S>, test: &Loading, material: &Material) -> Artifact {
     let snapshots = &record.run.snapshots;
     let run = Run {
@@ -43,13 +43,13 @@ fn responses<S: Space>(record: &TestRecord<S>, kind: TestKind) -> Vec<(&'static 
     kind.responses().iter().map(|response| (response.name, (response.read)(&record.values), response.unit)).collect()
 }
 
-/// Warnings on the rate of loading, and why the run is not valid.
+/// Sentences on the rate of loading, and on why the run is not valid.
 fn warnings<S: Space>(record: &TestRecord<S>) -> Vec<String> {
-    let rate = record.judgement.warnings().into_iter().map(|warning| warning.to_string());
+    let rate = record.judgement.warning().into_iter().map(|warning| warning.to_string());
     rate.chain(record.invalid().map(|check| format!("{}{check}", Run::NOT_VALID))).collect()
 }
 
-/// One value of every item.
+/// A column with one value of every item.
 fn each<T, V>(items: &[T], pick: impl Fn(&T) -> V) -> Vec<V> {
     items.iter().map(pick).collect()
 }
@@ -131,7 +131,7 @@ fn cracks<S: Space>(cracks: &[CrackEvent<S>], material: &Material) -> Cracks {
     }
 }
 
-/// A vector of every crack.
+/// Columns with a vector of every crack.
 fn rows<S: Space>(cracks: &[CrackEvent<S>], pick: impl Fn(&CrackEvent<S>) -> Vector<S>) -> Array2<f64> {
     Array2::from_shape_fn((cracks.len(), S::DIMENSION), |(crack, axis)| pick(&cracks[crack]).at(axis))
 }

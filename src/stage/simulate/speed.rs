@@ -1,4 +1,4 @@
-//! `platen_speed`: how fast a test is driven, and whether it adapts.
+//! `platen_speed`: the speed of a test, and whether it adapts.
 
 use crate::unit::{Rate, Velocity};
 use dem::loading::pace::Pace;
@@ -9,11 +9,11 @@ use serde::de::{self, Deserialize, Deserializer, MapAccess};
 use std::borrow::Cow;
 use std::fmt;
 
-/// How fast a test is driven: `"0.02 m/s"`, `{ strain_rate = "0.1 s^-1" }`, `{ transits = 100 }`, each of these with
+/// The speed of a test: `"0.02 m/s"`, `{ strain_rate = "0.1 s^-1" }`, `{ transits = 100 }`, each of these with
 /// `adaptive = true`, or `"adaptive"`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlatenSpeed {
-    /// The speed; the slow one where it adapts.
+    /// The speed; of an adaptive test the slow one.
     pub speed: Speed,
     /// Whether it adapts.
     #[serde(default)]
@@ -22,13 +22,13 @@ pub struct PlatenSpeed {
 
 /// The slow speed of `"adaptive"`: that of a strong quasi-static test.
 const ADAPTIVE: Speed = Speed::Transits(80.0);
-/// The word for it.
+/// The word in a workflow.
 const WORD: &str = "adaptive";
 /// The keys of its table.
 const KEYS: [&str; 4] = ["speed", "strain_rate", "transits", WORD];
 
 impl PlatenSpeed {
-    /// One speed from start to end.
+    /// A constant speed.
     pub const fn fixed(speed: Speed) -> Self {
         Self { speed, pace: Pace::Fixed }
     }
@@ -77,7 +77,7 @@ impl<'de> de::Visitor<'de> for Visitor {
         }
     }
 
-    /// A hole: the value was faulty and that was reported already.
+    /// Placeholder for a faulty value whose fault has been reported.
     fn visit_unit<E: de::Error>(self) -> Result<PlatenSpeed, E> {
         Ok(PlatenSpeed::fixed(Speed::Each(0.02)))
     }

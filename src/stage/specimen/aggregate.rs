@@ -19,9 +19,9 @@ pub struct AggregateConfig {
     pub group: String,
     /// Law of the gradation.
     pub gradation: GradationName,
-    /// Share of aggregate; not for `table`.
+    /// Area fraction of aggregate; not for `table`.
     pub content: Option<f64>,
-    /// Largest size; the last class bound when not given.
+    /// Largest size; by default the last class bound.
     pub max_size: Option<Length>,
     /// Exponent of `fuller`.
     pub exponent: Option<f64>,
@@ -31,12 +31,12 @@ pub struct AggregateConfig {
     pub classes: Vec<Length>,
     /// Fewest and most vertices of a polygon.
     pub vertices: [usize; 2],
-    /// Whether a polygon has the area of the circle of its size or lies in it.
+    /// Whether a polygon has the area of the circle of its size or is inscribed in it.
     pub area: SizeRule,
-    /// How the vertex angles are drawn.
+    /// Distribution of the vertex angles.
     #[serde(default = "random_angles")]
     pub angles: AngleLaw,
-    /// Smallest share of its circle that a polygon fills.
+    /// Smallest fraction of its circle that a polygon fills.
     #[serde(default = "least_fill")]
     pub least_fill: f64,
     /// Least distance between polygons.
@@ -45,15 +45,15 @@ pub struct AggregateConfig {
     /// Least distance from a polygon to the outline.
     #[serde(default = "gap")]
     pub wall_gap: Length,
-    /// Tries to place a polygon before giving up.
+    /// Most attempts to place a polygon.
     #[serde(default = "attempts")]
     pub attempts: usize,
-    /// Sizes within a class: all the middle one, or uniform.
+    /// Sizes within a class: all in the middle, or uniform.
     #[serde(default = "middle")]
     pub class_size: ClassSize,
     /// Density of the aggregate.
     pub density: Density,
-    /// What mass and inertia of a clump are computed from.
+    /// Shape from which mass and inertia of a clump are computed.
     #[serde(default = "union")]
     pub mass: ClumpMass,
 }
@@ -62,7 +62,7 @@ pub struct AggregateConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum GradationName {
-    /// Fuller's solid as a plane section sees it.
+    /// Fuller's curve of a solid, converted to a plane section.
     Walraven,
     /// Power law.
     Fuller,
@@ -103,7 +103,7 @@ impl AggregateConfig {
         self.classes.iter().map(|bound| bound.get()).collect()
     }
 
-    /// The law; settings that it lacks or that have no effect on it are complaints.
+    /// The law, and complaints about settings that it lacks or that have no effect on it.
     fn law(&self) -> Result<Gradation, Vec<Complaint>> {
         let classes = self.classes();
         let max_size = self.max_size.map(Length::get).or(classes.last().copied()).unwrap_or(0.0);
@@ -136,7 +136,7 @@ impl AggregateConfig {
         })
     }
 
-    /// What genesis makes of it, or all that is wrong.
+    /// The aggregate in the types of genesis, or all faults.
     pub(super) fn aggregate(&self) -> Result<Aggregate, Vec<Complaint>> {
         Ok(Aggregate {
             gradation: self.law()?,

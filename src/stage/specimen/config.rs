@@ -1,4 +1,4 @@
-//! Settings of a `specimen` stage, and the recipe they make.
+//! Settings of a `specimen` stage, and the recipe that they define.
 
 use super::super::Complaint;
 use super::aggregate::AggregateConfig;
@@ -20,15 +20,15 @@ use std::collections::BTreeMap;
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Specimen {
-    /// Width of a rectangle or box, across the axis of loading.
+    /// Width of a rectangle or box, perpendicular to the axis of loading.
     pub width: Option<Length>,
     /// Height of a rectangle, box or cylinder, along the axis of loading.
     pub height: Option<Length>,
-    /// Depth of a box, or thickness of a disc in the solid, the second axis across.
+    /// Depth of a box, or thickness of a disc in space, along the third axis.
     pub depth: Option<Length>,
     /// Diameter of a disc or cylinder, instead of a width.
     pub diameter: Option<Length>,
-    /// Ball porosity (overlaps counted twice) to which the balls are packed. It decides with the radius how many there are.
+    /// Ball porosity (overlaps counted twice) of the packing. With the radius it determines the number of balls.
     pub porosity: Option<f64>,
     /// Packing to a stress or as a lattice, instead of `porosity`.
     pub packing: Option<PackingConfig>,
@@ -47,17 +47,17 @@ pub struct Specimen {
     pub sieve: Option<SieveConfig>,
     /// Radii and numbers, for `classes`.
     pub classes: Option<ClassesConfig>,
-    /// Whether the stated radii give way to the porosity or stress, or the number of balls does.
+    /// Whether the radii are scaled to reach the porosity or stress, or the number of balls is adapted.
     #[serde(default)]
     pub gives_way: GivesWay,
     /// Density of the balls.
     pub density: Density,
-    /// Group of the balls, as the material names it; a material of one group fits under any name.
+    /// Group of the balls in the material; a material of one group fits under any name.
     #[serde(default = "balls")]
     pub group: String,
-    /// Several groups and their shares of the volume, instead of `group`: `{ quartz = 0.3, feldspar = 0.7 }`.
+    /// Several groups and their fractions of the volume, instead of `group`: `{ quartz = 0.3, feldspar = 0.7 }`.
     pub groups: Option<BTreeMap<String, f64>>,
-    /// Largest share of balls with too few contacts (3 in the plane, 4 in the solid) at a fixed porosity.
+    /// Largest fraction of balls with too few contacts (3 in the plane, 4 in space) at a fixed porosity.
     #[serde(default)]
     pub floaters: f64,
     /// Polygons of aggregate, in the plane.
@@ -76,7 +76,7 @@ pub enum SizeName {
     Uniform,
     /// Uniform by volume.
     UniformByVolume,
-    /// Log-normal, cut at the ratio.
+    /// Log-normal, truncated at the ratio.
     LogNormal,
     /// Masses that pass sieves.
     Sieve,
@@ -90,7 +90,7 @@ pub enum SizeName {
 pub struct SieveConfig {
     /// Increasing diameters.
     pub diameters: Vec<Length>,
-    /// Share of the mass below each, from 0 to 1.
+    /// Fraction of the mass below each, from 0 to 1.
     pub passing: Vec<f64>,
 }
 
@@ -110,19 +110,19 @@ pub struct ClassesConfig {
 pub struct PackingConfig {
     /// Mean stress of the packing.
     pub stress: Option<Pressure>,
-    /// Contact modulus while packing; only stress over modulus counts. 30 GPa when not given.
+    /// Contact modulus during packing; only stress over modulus matters. 30 GPa by default.
     pub modulus: Option<Pressure>,
-    /// Allowed deviation of the stress; 0.01 when not given.
+    /// Largest relative deviation of the stress; 0.01 by default.
     pub tolerance: Option<f64>,
-    /// Ball porosity of the cloud at which the balls are counted; 0.16 in the plane and 0.36 in the solid when not given.
+    /// Ball porosity that determines the number of balls; by default 0.16 in the plane and 0.36 in space.
     pub cloud_porosity: Option<f64>,
-    /// Mean unbalanced force over mean contact force that counts as rest; 0.001 when not given.
+    /// Mean unbalanced force over mean contact force that counts as equilibrium; 0.001 by default.
     pub equilibrium: Option<f64>,
-    /// What happens to balls with too few contacts; they are enlarged when not given.
+    /// Treatment of balls with too few contacts; by default they are enlarged.
     pub floaters: Option<Floaters>,
-    /// Largest share of them that is left alone; 0.002 when not given.
+    /// Largest fraction of them without treatment; 0.002 by default.
     pub floater_share: Option<f64>,
-    /// A regular lattice instead of a stress; it has one radius, which gives way to the height.
+    /// A regular lattice instead of a stress; it has one radius, which is adapted to the height.
     pub lattice: Option<Lattice>,
 }
 
@@ -139,21 +139,21 @@ fn cloud_porosity(region: &Region) -> f64 {
     if region.dimension() == 2 { 0.16 } else { 0.36 }
 }
 
-/// A setting that is needed and lacks, or is given and has no effect.
+/// The complaint about a setting that is missing, or has no effect.
 fn misfit(key: &str, needed: bool, because: &str) -> Complaint {
     let message =
         if needed { format!("{because} needs `{key}`") } else { format!("`{key}` has no effect on {because}") };
     Complaint::new(key, message)
 }
 
-/// Which of the settings (key, given, needed, allowed) do not fit to what is asked for.
+/// The settings (key, set, needed, allowed) that are missing or have no effect.
 fn misfits(because: &str, settings: &[(&str, bool, bool, bool)]) -> Vec<Complaint> {
     let wrong = settings.iter().filter(|(_, given, needed, allowed)| if *given { !allowed } else { *needed });
     wrong.map(|&(key, _, needed, _)| misfit(key, needed, because)).collect()
 }
 
 impl Specimen {
-    fn region(&self) -> Result<Region, Complaint> {
+    pub(super) fn region(&self) -> Result<Region, Complaint> {
         let [width, height, depth, diameter] =
             [self.width, self.height, self.depth, self.diameter].map(|length| length.map(|length| length.get()));
         match (width, height, depth, diameter) {
@@ -254,7 +254,7 @@ impl Specimen {
         }
     }
 
-    /// Groups of the balls and their shares.
+    /// Groups of the balls and their fractions.
     pub(super) fn shares(&self) -> Vec<Share> {
         match &self.groups {
             None => vec![Share { name: self.group.clone(), share: 1.0 }],
@@ -262,7 +262,7 @@ impl Specimen {
         }
     }
 
-    /// The recipe, or all that is wrong with the settings.
+    /// The recipe, or all faults of the settings.
     pub(super) fn recipe(&self) -> Result<Recipe, Vec<Complaint>> {
         let region = self.region().map_err(|fault| vec![fault])?;
         let packing = self.packing(&region);

@@ -1,11 +1,11 @@
-//! Which setting a fault of a recipe is about.
+//! The setting of each fault of a recipe.
 
 use dem::genesis::gradation::GradationError;
 use dem::genesis::packing::PackingError;
 use dem::genesis::polygon::PolygonError;
 use dem::genesis::specimen::SpecimenError;
 
-/// The setting that a fault is about; a key that was not given stands for its table.
+/// The path of the setting of a fault; that of the table for a key that is not set.
 pub(super) fn key(fault: &SpecimenError) -> &'static str {
     match fault {
         SpecimenError::Packing(packing) => packing_key(packing),

@@ -1,4 +1,4 @@
-//! `kind = "specimen"`: balls packed in an outline of the plane or the solid, with polygons of aggregate as rigid clumps.
+//! `kind = "specimen"`: balls packed in an outline of the plane or of space, with polygons of aggregate as rigid clumps.
 //!
 //! | outline | keys |
 //! |---|---|
@@ -13,8 +13,8 @@
 //! `[stage.NAME.stones]` places stones of the shapes of a `shapes` stage, and the balls are the mortar between them, at a
 //! `porosity` of that room. What is computed and why: [`dem::genesis`].
 //!
-//! A packing that fails (overlaps beyond half a radius, no rest) is a result with its reason, as a test without
-//! a peak is: of a design, the rows on that packing have no result, and the others go on.
+//! A packing that fails (overlaps beyond half a radius, no equilibrium) is a result with its reason, like a test without a
+//! peak: the rows of a design on that packing have no result, and the others run.
 
 mod aggregate;
 mod config;
@@ -78,7 +78,7 @@ impl Stage for Specimen {
         let aggregate = self.aggregate.iter().map(|aggregate| aggregate.group.clone());
         let stones = self.stones.iter().map(|stones| stones.group.clone());
         let groups = self.shares().into_iter().map(|share| share.name).chain(aggregate).chain(stones).collect();
-        Sketch { groups, varies: true, ..Sketch::default() }
+        Sketch { groups, region: self.region().ok(), varies: true, ..Sketch::default() }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -125,7 +125,7 @@ fn make(job: &Job) -> Result<Artifact, Failure> {
     made.or_else(|faults| unmade(&recipe, &faults, job))
 }
 
-/// What is stored where packing failed, so that the rows that rest on this specimen alone are without a result.
+/// The artifact of a specimen whose packing failed, so that only the rows on this specimen lack a result.
 fn unmade(recipe: &Recipe, faults: &[SpecimenError], job: &Job) -> Result<Artifact, Failure> {
     let words = faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
     match faults {
@@ -138,7 +138,7 @@ fn unmade(recipe: &Recipe, faults: &[SpecimenError], job: &Job) -> Result<Artifa
     }
 }
 
-/// All that decides a specimen with stones, besides its shapes.
+/// Parameters of the task: everything that decides a specimen with stones, besides its shapes.
 #[derive(Debug, Serialize, Deserialize)]
 struct Mixture {
     recipe: Recipe,

@@ -4,7 +4,7 @@ use crate::artifact::{Table, Values};
 use dem::genesis::mix::MixReport;
 use dem::genesis::quality::Quality;
 
-/// Quantities, values and units; `balls` is the word for what is packed, `groups` the names of its groups.
+/// Quantities, values and units; `balls` is the word for the particles, `groups` the names of their groups.
 pub(super) fn report(quality: &Quality, balls: &str, groups: &[String]) -> Table {
     let fabric = &quality.fabric;
     let held = quality.held;

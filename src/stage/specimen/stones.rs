@@ -14,13 +14,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StonesConfig {
-    /// The `shapes` stage that they are drawn from.
+    /// The `shapes` stage with their shapes.
     pub shapes: String,
     /// Classes of sizes.
     pub classes: Vec<StoneClassConfig>,
-    /// A curve that shares the stones out among the classes, instead of numbers of their own.
+    /// A grading curve that gives the numbers of the classes, instead of numbers of their own.
     pub fuller: Option<FullerConfig>,
-    /// What a size is.
+    /// Definition of the size.
     #[serde(default)]
     pub size: StoneSize,
     /// Sizes within a class.
@@ -28,24 +28,24 @@ pub struct StonesConfig {
     pub within: WithinClass,
     /// Density of the stones.
     pub density: Density,
-    /// Group of their pebbles, as the material names it.
+    /// Group of their pebbles in the material.
     #[serde(default = "stones")]
     pub group: String,
-    /// Least distance between stones; 0.1 mm when not given.
+    /// Least distance between stones; 0.1 mm by default.
     pub gap: Option<Length>,
-    /// Least distance to the outline; that between stones when not given.
+    /// Least distance to the outline; by default that between stones.
     pub wall_gap: Option<Length>,
-    /// Tries to place a stone; 20 000 when not given.
+    /// Most attempts to place a stone; 20 000 by default.
     pub attempts: Option<usize>,
-    /// Number of mortar balls, whose radii then give way to the porosity; it follows from the porosity when not given.
+    /// Number of mortar balls, whose radii are then scaled to reach the porosity; by default it follows from the porosity.
     pub balls: Option<usize>,
     /// Factor on the radii of the mortar for a coarse twin with the same stones: 2 makes an eighth of the balls.
     pub coarsen: Option<f64>,
-    /// Density of the whole specimen; that of the mortar balls follows from it, and `density` has no effect.
+    /// Density of the whole specimen, from which that of the mortar balls follows; `density` then has no effect.
     pub bulk_density: Option<Density>,
 }
 
-/// Stones between two sizes, by number, mass or share of the volume.
+/// Stones between two sizes, by number, mass or fraction of the volume.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StoneClassConfig {
@@ -57,7 +57,7 @@ pub struct StoneClassConfig {
     pub count: Option<usize>,
     /// Their mass in the specimen.
     pub mass: Option<Mass>,
-    /// Their share of the specimen's volume.
+    /// Their fraction of the specimen's volume.
     pub share: Option<f64>,
 }
 
@@ -65,9 +65,9 @@ pub struct StoneClassConfig {
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FullerConfig {
-    /// Share of the specimen's volume that is stones.
+    /// Volume fraction of stones in the specimen.
     pub content: f64,
-    /// Exponent; 0.5 when not given.
+    /// Exponent; 0.5 by default.
     pub exponent: Option<f64>,
 }
 
@@ -120,7 +120,7 @@ impl StonesConfig {
         if faults.is_empty() { Ok(classes) } else { Err(faults) }
     }
 
-    /// What genesis makes of it in a recipe, or all that is wrong.
+    /// The stones in the types of genesis, or all faults.
     pub(super) fn mix(&self, recipe: &Recipe) -> Result<Mix, Vec<Complaint>> {
         let classes = self.classes()?;
         let gap = self.gap.map_or(GAP, Length::get);
@@ -153,7 +153,7 @@ impl StonesConfig {
     }
 }
 
-/// The setting that a fault is about.
+/// The path of the setting of a fault.
 pub(super) fn key(fault: &StoneFault) -> &'static str {
     match fault {
         StoneFault::Value { name, .. } => match *name {
@@ -173,7 +173,7 @@ pub(super) fn key(fault: &StoneFault) -> &'static str {
     }
 }
 
-/// A shape as genesis takes it.
+/// A shape in the type of genesis.
 pub(super) fn template(shape: Shape) -> Template {
     let moments = shape.clump.moments;
     Template {

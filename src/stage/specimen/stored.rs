@@ -1,4 +1,4 @@
-//! A specimen as it is stored, and back.
+//! Converts a specimen to and from its artifact.
 
 use super::super::StageError;
 use super::report::report;
@@ -101,7 +101,7 @@ pub(super) fn store<S: Space>(made: &Specimen<S>, quality: &Quality) -> Stored {
     }
 }
 
-/// A specimen of this outline that could not be made.
+/// The artifact of a specimen of this outline whose packing failed.
 pub(super) fn nothing(region: &Region, density: f64, why: String) -> Stored {
     let [width, height, depth] = region.edges();
     Stored {
@@ -124,10 +124,10 @@ pub(super) fn nothing(region: &Region, density: f64, why: String) -> Stored {
     }
 }
 
-/// The stored specimen in an artifact, as one reads it that needs its balls.
+/// The stored specimen in an artifact, for readers that need its balls.
 ///
 /// # Errors
-/// The artifact is no specimen, or says why the specimen could not be made.
+/// The artifact is not a specimen, or holds the reason why its packing failed.
 pub fn stored(artifact: &Artifact) -> Result<Stored, StageError> {
     let stored = Stored::from_artifact(artifact)?;
     match stored.failure {
@@ -139,7 +139,7 @@ pub fn stored(artifact: &Artifact) -> Result<Stored, StageError> {
 /// The specimen in a stored artifact, for tests on it.
 ///
 /// # Errors
-/// It could not be made; or what is missing or does not fit together.
+/// Its packing failed, or parts of the artifact are missing or inconsistent.
 pub fn load(artifact: &Artifact) -> Result<Loaded, StageError> {
     let stored = stored(artifact)?;
     let region = Region::named(&stored.outline, [stored.width, stored.height, stored.depth]);

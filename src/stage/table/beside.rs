@@ -5,8 +5,8 @@ use super::column_of;
 use crate::artifact;
 use figure::column::{Column, Digits, Values};
 
-/// After each column of numbers that the other table has too: its value, and the deviation of ours in per cent. At the end
-/// the notes of the other table.
+/// Adds, after each column of numbers that both tables have, the value of the other and the deviation of ours in per cent; at
+/// the end the notes of the other table.
 pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String]) -> Result<Vec<Column>, StageError> {
     let keys = by.iter().map(|name| {
         let ours = columns.iter().find(|c| c.key == *name);
@@ -62,7 +62,7 @@ pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String
 /// The column in which the other table says what is odd about a value, such as a misprint.
 const NOTE: &str = "note";
 
-/// Whether two cells name the same row; numbers within a thousandth, because printed ones are rounded.
+/// Whether two cells are equal; numbers within a thousandth, because printed ones are rounded.
 fn equal(ours: &Values, i: usize, theirs: &artifact::Values, j: usize) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-3 * a.abs().max(b.abs()).max(1e-12);
     let number = match theirs {

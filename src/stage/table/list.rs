@@ -1,8 +1,8 @@
-//! Lists that are made from the workflow itself: its factors, its materials, the aggregate of a specimen, ranges.
+//! Lists of declarations of the workflow: its factors, its materials, the aggregate of a specimen, ranges.
 
 use super::super::{Complaint, Context, Known, StageError};
 use super::Table;
-use crate::artifact::statistics::Surfaces;
+use crate::artifact::surfaces::Surfaces;
 use crate::artifact::{self, Artifact};
 use crate::unit::Unit;
 use schemars::JsonSchema;
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum List {
-    /// What factors set, their ranges and levels.
+    /// Factors: the values that they set, ranges and levels.
     Factors,
     /// Microparameters of materials.
     Materials,
@@ -22,7 +22,7 @@ pub enum List {
     Ranges,
 }
 
-/// A list as a task holds it.
+/// A list in the parameters of a task.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Given(Vec<GivenColumn>);
 
@@ -72,7 +72,7 @@ impl Given {
 }
 
 impl Table {
-    /// Settings that a list needs, or that have no effect on it.
+    /// Complaints about settings that a list needs, or that have no effect on it.
     pub(super) fn list_faults(&self, context: &Context) -> Vec<Complaint> {
         let of = self.of.list().len();
         let (wants_of, used): (usize, &[&str]) = match self.list {
@@ -113,7 +113,7 @@ impl Table {
         found
     }
 
-    /// The list, when it is one.
+    /// The list, if the stage prints one.
     pub(super) fn given(&self, known: &Known) -> Result<Option<Given>, StageError> {
         let Some(list) = self.list else { return Ok(None) };
         let load = || known.load(known.one("of")?);
@@ -209,8 +209,8 @@ fn range(factor: &super::super::Factor) -> Option<[f64; 2]> {
     factor.range.or_else(|| Some([low?, factor.levels.iter().copied().reduce(f64::max)?]))
 }
 
-/// Polygons of a specimen by class: the size of a polygon is the diameter of the circle through its vertices, or, when
-/// they lie on none, of the circle of its area.
+/// Polygons of a specimen by class. The size of a polygon is the diameter of the circle through its vertices; if there is
+/// no such circle, that of the circle of its area.
 fn aggregate(specimen: &Artifact, bounds: &[f64]) -> Result<Given, StageError> {
     let made = super::super::specimen::load(specimen)?.plane()?;
     let sizes: Vec<f64> = made.polygons.iter().map(|polygon| size(&polygon.vertices)).collect();
@@ -223,7 +223,7 @@ fn aggregate(specimen: &Artifact, bounds: &[f64]) -> Result<Given, StageError> {
     ))
 }
 
-/// Of a polygon with vertices in order, m.
+/// The size of a polygon with vertices in order, m.
 fn size(vertices: &[[f64; 2]]) -> f64 {
     let Some(&[a, b, c]) = vertices.first_chunk::<3>() else { return 0.0 };
     let minus = |p: [f64; 2], q: [f64; 2]| [p[0] - q[0], p[1] - q[1]];

@@ -8,15 +8,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stats::groups::{Cell, pivot};
 
-/// What is spread over what: `pivot = { down = "R_min", across = "ratio", value = "estimate" }`.
+/// Columns of a pivot table: `pivot = { down = "R_min", across = "ratio", value = "estimate" }`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pivot {
-    /// Column of numbers whose values head the rows.
+    /// Column of numbers whose values are the heads of the rows.
     pub down: String,
-    /// Column of numbers whose values head the columns.
+    /// Column of numbers whose values are the heads of the columns.
     pub across: String,
-    /// Column of numbers in the cells; the mean where several rows meet in one.
+    /// Column of numbers in the cells; the mean where several rows fall in one cell.
     pub value: String,
 }
 
@@ -27,10 +27,10 @@ impl Pivot {
     }
 }
 
-/// The spread columns of the allowed rows. A cell in which no row meets, or only rows without a value, is missing.
+/// The columns of the pivot table over the allowed rows. A cell without rows, or without values, is missing.
 ///
 /// # Errors
-/// A column is not there, or holds words.
+/// A column does not exist, or holds words.
 pub(super) fn spread(
     table: &artifact::Table,
     params: &Params,
@@ -60,7 +60,7 @@ fn with_unit(level: f64, unit: &str) -> String {
     if unit.is_empty() { format!("{level}") } else { format!("{level} {unit}") }
 }
 
-/// Symbol of a column where the spread quantity has one and is a pure number.
+/// Symbol of a column, where the quantity across has a symbol and is a pure number.
 fn heading(across: &Column, level: f64) -> String {
     if across.symbol.is_empty() || !across.unit.is_empty() {
         return String::new();

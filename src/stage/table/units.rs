@@ -1,4 +1,4 @@
-//! Quantities listed row by row (`value,unit`, in SI units) in the units that people read them in.
+//! Converts quantities that a table lists row by row (`value,unit`, in SI units) to the units of readers.
 //!
 //! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`, another quantity that of the
 //! field ([`super::super::units`]).
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// The columns of a table that lists quantities row by row.
 pub(super) const ROWWISE: [&str; 2] = ["value", "unit"];
 
-/// Scales every number of the columns named after `value` to the wanted unit of its row, and names that unit.
+/// Converts every number in columns called after `value` to the unit of its row for readers, and writes that unit.
 pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>) {
     let words = |name: &str| {
         columns.iter().find(|c| c.key == name).and_then(|c| match &c.values {
@@ -46,7 +46,7 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
     }
 }
 
-/// The unit to show a value in, and the conversion to it; its own where it cannot be shown in the one that is wanted.
+/// The unit for readers and the conversion to it; the value's own unit where it cannot be converted.
 fn one(wanted: Option<&String>, unit: &str, value: f64) -> (String, Conversion) {
     let shown = shown_unit(wanted, unit, value);
     let conversion = Conversion::between(unit, &shown).unwrap_or(Conversion::NONE);

@@ -1,4 +1,4 @@
-//! Runs that are not valid in printed tables: shown and marked, left out, or refused, with a statement below the table.
+//! The treatment of runs that are not valid in printed tables: shown and marked, left out, or refused, with a note.
 
 use super::{Params, chosen, chosen_rows, find, named};
 use crate::artifact::results::Results;
@@ -11,10 +11,10 @@ use figure::column::Column;
 /// The column that marks runs that are not valid, where the table would not show it.
 const MARK: &str = "validity";
 
-/// The columns of one input, and the statements on the runs behind them; no column where its only run is left out.
+/// The columns of one input, and the statements on its runs; no columns where its only run is left out.
 ///
 /// # Errors
-/// There is no such table or column, or a run is not valid and refused.
+/// There is no such table or column, or a run is refused because it is not valid.
 pub(super) fn printed(artifact: &Artifact, params: &Params) -> Result<(Vec<Column>, Vec<String>), StageError> {
     let table = find(artifact, params.table.as_deref())?;
     if artifact.is(ArtifactKind::RUN) {

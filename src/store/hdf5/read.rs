@@ -6,11 +6,11 @@ use ::hdf5::{AttrValue, DType, Dataset, File, VlenStringReadOptions};
 use std::cell::Cell;
 use std::collections::HashMap;
 
-/// Deflate packs at most about 1032 bytes into one; more than that is a damaged shape.
+/// Deflate compresses by a factor of about 1032 at most; a shape that needs more is damaged.
 const MOST_PACKED: u64 = 1100;
-/// No group or dataset takes fewer bytes of a file: its name, its link and its header.
+/// Fewest bytes that a group or dataset takes in a file: its name, its link and its header.
 const LEAST_NODE: u64 = 24;
-/// No stored object is this large.
+/// Larger than any stored object.
 const MOST_BYTES: u64 = 1 << 36;
 
 /// Reads an image back: the artifact and the text of its task.
@@ -31,7 +31,7 @@ pub(in crate::store) fn decode(image: Vec<u8>) -> Result<(Artifact, String), Hdf
 
 type Attributes = HashMap<String, AttrValue>;
 
-/// Opens the image and chooses the reader of its layout; so far there is one.
+/// Opens the image and chooses the reader of its layout; there is one layout so far.
 fn open(image: Vec<u8>) -> Result<(File, Attributes), Hdf5Error> {
     let file = File::from_bytes(image)?;
     let attributes = file.root().attrs()?;
@@ -49,9 +49,9 @@ fn allowance(file: u64) -> u64 {
 /// One bounded walk through a file.
 struct Walk {
     file: u64,
-    /// Bytes that may still be read: the sum over all datasets is bounded, not only each.
+    /// Bytes that may still be read: the sum over all datasets is bounded, not only the size of each.
     left: Cell<u64>,
-    /// Nodes that may still be met: a group may hold others that it is itself a part of.
+    /// Nodes that may still be visited: in a damaged file a group may contain itself.
     nodes: Cell<u64>,
 }
 
@@ -149,7 +149,7 @@ impl Walk {
         Ok(dataset.read_vlen_strings(VlenStringReadOptions::new().with_max_payload_bytes(most))?)
     }
 
-    /// Takes the bytes a shape asks for from the allowance, before the library allocates them.
+    /// Subtracts the bytes that a shape needs from the allowance, before the library allocates them.
     fn reserve(&self, dataset: &Dataset, shape: &[u64], place: &str) -> Result<(), Hdf5Error> {
         let size = dataset.element_size()?;
         let bytes = shape.iter().try_fold(size.max(1), |product, &n| product.checked_mul(n)).unwrap_or(u64::MAX);
@@ -161,7 +161,7 @@ impl Walk {
         Ok(())
     }
 
-    /// Takes one node from those that a file of this size can hold.
+    /// Subtracts one node from those that a file of this size can hold.
     fn count(&self, place: &str) -> Result<(), Hdf5Error> {
         let left = self.nodes.get().checked_sub(1);
         self.nodes.set(left.ok_or_else(|| unexpected(place, "a value", "more values than the file has room for"))?);
@@ -178,7 +178,7 @@ fn insert(nodes: &mut Group, link: &str, place: &str, node: Node) -> Result<(), 
     Ok(())
 }
 
-/// A text attribute that is left out when it is empty.
+/// A text attribute, which files leave out when it is empty.
 fn optional_text(attributes: &Attributes, place: &str, name: &str) -> Result<String, Hdf5Error> {
     if attributes.contains_key(name) { attribute_text(attributes, place, name) } else { Ok(String::new()) }
 }

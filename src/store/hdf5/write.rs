@@ -8,11 +8,11 @@ use ::hdf5::{AttrValue, DatasetBuilder, EnumTypeBuilder, FileBuilder, GroupBuild
 const COMPRESS_FROM: usize = 4096;
 /// Compression level: the third takes five times as long and saves 2 % of the results of a campaign.
 const LEVEL: u32 = 1;
-/// Longest text kept inside an object's header, which holds 64 kB in all.
+/// Longest text that is stored inside an object's header, which holds 64 kB in all, bytes.
 const MOST_INLINE: usize = 8192;
-/// Padded texts up to this many bytes are not worth a second form.
+/// Padded texts up to this many bytes in all are written padded in any case.
 const MOST_PADDED: usize = 1 << 20;
-/// Aim for the bytes of one chunk: readers of a part of a large array need not unpack all of it.
+/// Desired size of one chunk, bytes: a reader of a part of a large array need not decompress all of it.
 const CHUNK: usize = 1 << 20;
 /// Most rows of one chunk. The HDF5 library 2.0 refuses to open a dataset whose chunk has a longer edge: it wants the edge in
 /// three bytes where the file has four.
@@ -37,7 +37,7 @@ pub(in crate::store) fn encode(artifact: &Artifact, task_text: impl Into<String>
     Ok(file.finish()?)
 }
 
-/// What nodes can be put into: the file's root and every group.
+/// What nodes can be written into: the file's root and every group.
 trait Parent {
     fn dataset(&mut self, link: &str) -> &mut DatasetBuilder;
     fn group(&mut self, link: &str) -> GroupBuilder;

@@ -21,10 +21,10 @@ use std::sync::Arc;
 
 /// Length of a record, bytes.
 pub(in crate::store) const RECORD: usize = 128;
-/// Where the key and the content stand in a record.
+/// Offsets of the key and the content in a record.
 pub(super) const KEY: usize = 0;
 pub(super) const CONTENT: usize = 32;
-/// What the checksum and the mark are taken of.
+/// The bytes under the checksum and the mark.
 const BODY: usize = 104;
 
 /// The bytes of a record.
@@ -75,7 +75,8 @@ pub(in crate::store) fn unpack(mark: &Mark, bytes: &[u8; RECORD], origin: &Arc<O
     })
 }
 
-/// A record of version 1, which had the whole digest, as one of this version without a mark. A damaged one stays damaged.
+/// Converts a record of version 1, which had the whole digest, into one of this version without a mark. A damaged record
+/// stays damaged.
 pub(super) fn from_version_1(old: &[u8; RECORD]) -> [u8; RECORD] {
     let sound = blake3::hash(&old[..120]).as_bytes()[..8] == old[120..];
     let mut bytes = [0; RECORD];
@@ -90,7 +91,7 @@ fn hash(bytes: &[u8], from: usize) -> [u8; 32] {
     hash
 }
 
-/// The eight bytes from `place` on, as a number.
+/// The number in the eight bytes from `place` on.
 pub(super) fn word(bytes: &[u8], place: usize) -> u64 {
     bytes[place..].first_chunk().map_or(0, |word| u64::from_le_bytes(*word))
 }

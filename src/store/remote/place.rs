@@ -1,7 +1,7 @@
 //! A remote that is a folder: of a shared disk, or of one that is carried.
 //!
-//! It is reached as a store is: without links, plain files only, with bounds; what is new is written under another name, read
-//! back, and renamed.
+//! It is read and written as a store is: no links, plain files only, with bounds; a new file is written under another name,
+//! read back, and renamed.
 
 use super::{MOST_SEGMENT, RemoteError};
 use crate::store::disk::Disk;
@@ -36,7 +36,7 @@ impl Place {
         }
     }
 
-    /// The same, made when there is no folder or an empty one.
+    /// As [`Place::open`], but makes the remote when there is no folder or an empty one.
     pub(super) fn make(path: &Path) -> Result<Self, RemoteError> {
         let empty = match std::fs::read_dir(path) {
             Ok(mut entries) => entries.next().is_none(),
@@ -84,16 +84,16 @@ impl Place {
         self.put(SEGMENTS, &format!("{name}.sig"), bytes).map(|_| ())
     }
 
-    /// An object of this size; none when there is none. One of another size is read up to one byte more.
+    /// An object of this size; `None` when there is none. Of a larger one, one byte more than the size is read.
     pub(super) fn object(&self, id: &ObjectId, size: u64) -> Result<Option<Vec<u8>>, StoreError> {
         match self.read(&id.folder(), &id.file_name(), size) {
-            // Larger than recorded: not even read.
+            // Larger than recorded: it is not read.
             Err(StoreError::Strange { .. }) => Ok(Some(Vec::new())),
             other => other,
         }
     }
 
-    /// Writes a new file; whether none of this name was there.
+    /// Writes a new file; false when the name is taken.
     pub(super) fn put(&self, folder: &str, name: &str, bytes: &[u8]) -> Result<bool, StoreError> {
         self.0.write_new(folder, name, bytes, false)
     }

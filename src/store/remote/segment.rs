@@ -1,5 +1,5 @@
-//! The bytes of a segment: for each origin the head of a journal, the number of its records in eight bytes, and these, as in a
-//! journal but without marks. Its name is the blake3 of all of it.
+//! The bytes of a segment: for each origin the head of a journal, the number of its records in eight bytes, and the records,
+//! as in a journal but without marks. Its name is the blake3 of all of its bytes.
 
 use crate::store::journal::{HEAD, RECORD, head, pack, read_head, unpack};
 use crate::store::{Mark, Record};
@@ -17,12 +17,12 @@ pub(super) fn write(mut records: Vec<Record>) -> Vec<u8> {
     bytes
 }
 
-/// The records of a segment of this name; none when its bytes are not those of its name, or no records.
+/// The records of a segment of this name; `None` when its bytes do not give its name or are not records.
 pub(super) fn read(name: &str, bytes: &[u8]) -> Option<Vec<Record>> {
     if blake3::hash(bytes).to_hex().as_str() != name {
         return None;
     }
-    // Nobody's mark: what others wrote is never taken for one's own.
+    // Without a mark: another user's record is never taken for an own one.
     let mark = Mark::of(&[0; 32]);
     let (mut records, mut rest) = (Vec::new(), bytes);
     while !rest.is_empty() {

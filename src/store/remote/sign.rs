@@ -1,4 +1,4 @@
-//! Who pushed a segment: signatures of SSH keys, as git has them.
+//! Signatures of segments by SSH keys, as git has them: who pushed a segment.
 //!
 //! OpenSSH's own `ssh-keygen -Y` signs and verifies. So keys in an agent and on hardware tokens work, a list of allowed
 //! signers means what it means to ssh and git (validity, certificates, namespaces), and no second reader of keys can
@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// What keeps a signature of something else from being taken for one of a segment.
+/// The namespace of the signatures, so that a signature of another kind of file is not taken for one of a segment.
 const NAMESPACE: &str = "flow-store";
 
 /// How a push is signed.
@@ -16,21 +16,21 @@ const NAMESPACE: &str = "flow-store";
 pub enum Signing {
     /// With this key: a private key, or a public one whose private part an agent has.
     Key(PathBuf),
-    /// Not at all.
+    /// Unsigned.
     None,
 }
 
-/// Whose segments are taken.
+/// The signers whose segments are taken.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Trust {
     /// Those of the signers in this file, in the format of `ssh-keygen`'s allowed signers.
     Signers(PathBuf),
-    /// Anybody's.
+    /// Any segment, signed or not.
     Anybody,
 }
 
 impl Signing {
-    /// The signature of these bytes; none when nothing is signed.
+    /// The signature of these bytes; `None` when the push is unsigned.
     pub(super) fn sign(&self, bytes: &[u8]) -> Result<Option<Vec<u8>>, String> {
         let Self::Key(key) = self else { return Ok(None) };
         let mut command = Command::new("ssh-keygen");
@@ -40,13 +40,13 @@ impl Signing {
 }
 
 impl Trust {
-    /// Who signed these bytes.
+    /// The principal who signed these bytes.
     pub(super) fn signer(&self, bytes: &[u8], signature: Option<&[u8]>) -> Result<String, String> {
         let file = match self {
             Self::Anybody => return Ok("anybody".to_owned()),
             Self::Signers(file) => file,
         };
-        let signature = signature.ok_or("nobody has signed it; `--unsigned` takes it all the same")?;
+        let signature = signature.ok_or("it is not signed; `--unsigned` takes it all the same")?;
         let mut kept = tempfile::NamedTempFile::new().map_err(|error| error.to_string())?;
         kept.write_all(signature).map_err(|error| error.to_string())?;
         let mut find = Command::new("ssh-keygen");
@@ -69,15 +69,15 @@ impl Trust {
     }
 }
 
-/// Why a program gave nothing: a signature is judged by what it says, and by nothing when it could not be run.
+/// Why a program gave no output.
 enum Trouble {
     /// It could not be run.
     NotRun(String),
-    /// The last line of what it complains of.
+    /// It failed with this last line on standard error.
     Said(String),
 }
 
-/// Runs a program on these bytes; its output.
+/// Runs a program with these bytes on standard input and returns its output.
 fn run(mut command: Command, bytes: &[u8]) -> Result<Vec<u8>, Trouble> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let unrun = |error: std::io::Error| Trouble::NotRun(format!("`ssh-keygen` of OpenSSH cannot be run: {error}"));
@@ -85,11 +85,11 @@ fn run(mut command: Command, bytes: &[u8]) -> Result<Vec<u8>, Trouble> {
     let written = child.stdin.take().map(|mut input| input.write_all(bytes));
     let output = child.wait_with_output().map_err(unrun)?;
     if output.status.success() {
-        // It may have known enough before it had read all.
+        // The program may end before it has read all.
         let _ = written;
         return Ok(output.stdout);
     }
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     let last = said.lines().rev().find(|line| !line.trim().is_empty());
-    Err(Trouble::Said(last.unwrap_or("it says nothing").trim().to_owned()))
+    Err(Trouble::Said(last.unwrap_or("it gave no reason").trim().to_owned()))
 }

@@ -195,11 +195,14 @@ pub(super) fn solution() -> Artifact {
     let factors = |ec: Vec<f64>, mu: Vec<f64>| table().reals_column("Ec", "GPa", "", ec).reals_column("mu", "", "", mu);
     let solved = Solved {
         set: vec![1, 2],
+        point: factors(vec![12.0, 18.0], vec![0.7, 1.2]),
         misfit: vec![1e-4, 2e-3],
         evaluations: vec![20, 1],
         failed: vec![0, 0],
         stop: words(["", ""]),
+        met: vec![Answer::Yes; 2],
         free: vec![0.0, 0.0],
+        ..Solved::default()
     };
     let history = Evaluations {
         set: vec![1, 1, 2],
@@ -208,21 +211,26 @@ pub(super) fn solution() -> Artifact {
         best: vec![0.5, 1e-4, 2e-3],
         recommended: vec![f64::NAN; 3],
         failure: words(["", "", ""]),
+        ..Evaluations::default()
     };
-    let others = Alternatives { set: vec![1, 2] }.to_table();
     let solution = Solution {
-        solution: solved.to_table().with_after("set", factors(vec![12.0, 18.0], vec![0.7, 1.2])),
+        solution: solved,
+        parameters: Parameters::default(),
         prediction: Prediction::default(),
-        history: history.to_table(),
-        solution_set: others.with_after("set", factors(vec![13.0, 17.0], vec![0.8, 1.1])),
+        history,
+        effort: Effort::default(),
+        solution_set: Alternatives { set: vec![1, 2], point: factors(vec![13.0, 17.0], vec![0.8, 1.1]) },
+        notes: NoteTable::default(),
     };
     solution.to_artifact()
 }
 
 pub(super) fn verification() -> Artifact {
-    let runs =
-        VerifiedRuns { set: vec![1, 1, 2, 2], specimen: vec![1, 2, 1, 2], failure: words(["", "", "", "no peak"]) };
-    let ucs = table().reals_column("UCS", "MPa", "", vec![30.0, 31.0, 40.0, f64::NAN]);
+    let runs = VerifiedRuns {
+        set: vec![1, 1, 2, 2],
+        specimen: vec![1, 2, 1, 2],
+        runs: table().reals_column("UCS", "MPa", "", vec![30.0, 31.0, 40.0, f64::NAN]),
+    };
     let summary = Summary {
         set: vec![1, 2],
         response: words(["UCS", "UCS"]),
@@ -235,8 +243,8 @@ pub(super) fn verification() -> Artifact {
         error_of_mean_percent: vec![1.0, 2.0],
         low: vec![f64::NAN; 2],
         high: vec![f64::NAN; 2],
-        target_inside: words(["unknown", "unknown"]),
+        target_inside: vec![Answer::Unknown; 2],
         n: vec![2, 1],
     };
-    Verification { summary, runs: runs.to_table().with_after("specimen", ucs), not_valid: None }.to_artifact()
+    Verification { summary, runs, not_valid: None }.to_artifact()
 }

@@ -71,6 +71,23 @@ fn constant_responses_and_one_level_factors() {
     assert_eq!(regression_faults(&table, &["const", "b"]), wanted);
 }
 
+/// `b = Σxy/Σx²`, which one level gives as the mean of y over x, with the error of a mean.
+#[test]
+fn one_level_gives_a_slope_through_the_origin() {
+    let mut table = table();
+    table.factors[1].values = vec![4.0; 6];
+    table.responses[0] = Response::new("y", vec![8.0, 9.0, 7.5, 8.5, 8.25, 7.75]);
+    let found = regress(&table, "y", &[Term::parse("b").unwrap()], &regression::Settings::default()).unwrap();
+    let slope = &found.natural[0];
+    assert!((slope.estimate - 49.0 / 6.0 / 4.0).abs() < 1e-14, "{slope:?}");
+    // numpy: std([8, 9, 7.5, 8.5, 8.25, 7.75], ddof=1)/sqrt(6)/4
+    assert!((slope.std_error.unwrap() - 0.055_119_818_980_512_31).abs() < 1e-14, "{slope:?}");
+    // Two such factors are one column twice.
+    table.factors[0].values = vec![2.0; 6];
+    let faults = regression_faults(&table, &["a", "b"]);
+    assert!(matches!(&faults[..], [Fault::Aliased { .. }]), "{faults:?}");
+}
+
 #[test]
 fn aliased_terms_are_named_with_their_partners() {
     let mut table = table();

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod agreement;
+mod close;
 mod faults;
 mod identities;
 mod models;

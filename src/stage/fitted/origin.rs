@@ -1,4 +1,4 @@
-//! A fit through the origin beside the same terms with a constant: whether the origin is where the data point.
+//! Compares a fit through the origin with the same terms and a constant, to show whether the data support the origin.
 
 use stats::regression::{Coefficient, Settings, regress};
 use stats::sample::Sample;
@@ -6,7 +6,7 @@ use stats::terms::Term;
 
 /// The same terms with a constant.
 pub(in super::super) struct Beside {
-    /// The constant; through the origin it is zero by assumption.
+    /// The constant, which is zero by assumption in a fit through the origin.
     pub constant: Coefficient,
     /// R² about the mean.
     pub r2: f64,
@@ -15,7 +15,7 @@ pub(in super::super) struct Beside {
 }
 
 impl Beside {
-    /// `None` where there are too few rows for the constant.
+    /// The comparison; `None` where there are too few rows for a constant.
     pub(in super::super) fn of(sample: &Sample, response: &str, terms: &[Term], settings: &Settings) -> Option<Self> {
         let with = super::with_constant(terms);
         let mut found = regress(sample, response, &with, settings).ok()?;
