@@ -135,6 +135,12 @@ pub(super) fn workers(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|jobs| (1..=MOST).contains(jobs)).ok_or_else(wanted)
 }
 
+/// What was read from the attached remote since the last call.
+pub(super) fn fetched(store: &Store) -> Option<String> {
+    let (count, remote) = store.take_fetched()?;
+    Some(format!("{count} {} fetched from {remote}", if count == 1 { "result was" } else { "results were" }))
+}
+
 /// Prints what is wrong with the store or the system.
 pub(super) fn system(error: &dyn std::error::Error) -> Exit {
     err!("error: {error}");

@@ -1,7 +1,7 @@
 //! `flow report`: a campaign as one page that can be sent to a colleague.
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, fetched, system};
 use super::output;
 use super::store::bytes;
 use crate::report::{Asked, Paper, gather, page};
@@ -36,6 +36,9 @@ impl Report {
         let paper = gather(&workflow, asked, &store).map_err(|e| system(&e))?;
         for damage in store.take_damages() {
             err!("warning: {damage}");
+        }
+        if let Some(line) = fetched(&store).filter(|_| !self.campaign.common.quiet) {
+            err!("{line}");
         }
         let html = page(&paper);
         if self.output == Path::new("-") {

@@ -1,11 +1,11 @@
 //! `flow run`: computes what is missing.
 
-use super::common::{Campaign, system, workers};
+use super::common::{Campaign, fetched, system, workers};
 use super::notes::notes;
 use super::progress::{Ahead, Progress, task_name};
 use super::site;
 use super::{Exit, complete};
-use crate::cluster::Site;
+use crate::cluster::{Site, scheduler};
 use crate::exec::cores;
 use crate::plan::Workflow;
 use crate::report::duration;
@@ -99,6 +99,9 @@ impl Run {
         for damage in store.take_damages() {
             err!("warning: {damage}");
         }
+        if let Some(line) = fetched(&store).filter(|_| !self.campaign.common.quiet) {
+            err!("{line}");
+        }
         let did = report.count().ran + report.count().failed > 0;
         let recorded = did.then(|| record(&workflow, &self.campaign.sets, &report, started, &store));
         let number = recorded.transpose().map_err(|e| system(&e))?;
@@ -137,6 +140,15 @@ impl Run {
                     err!("error: {error}");
                     Exit::BadInput
                 })?;
+                let missing = scheduler::missing(&site);
+                if !missing.is_empty() && !self.dry_run {
+                    err!(
+                        "error: `--executor slurm` needs {}, which this machine has not\n  run it on a login node of the \
+                         cluster, see that the commands are in PATH, or leave the option out to compute here",
+                        missing.iter().map(|program| format!("`{program}`")).collect::<Vec<_>>().join(", ")
+                    );
+                    return Err(Exit::BadInput);
+                }
                 Ok(Some(Cluster { site, leave: Arc::default() }))
             }
         }
@@ -256,7 +268,7 @@ fn unmet(workflow: &Workflow, report: &Report, store: &Store) -> Vec<(String, St
     let why = |stage: &StageReport| {
         let StageStatus::Done(content) = &stage.status else { return None };
         let index = workflow.position(&stage.name)?;
-        let why = workflow.stages[index].stage.unmet(&*store.get(content).ok()?)?;
+        let why = workflow.stages[index].stage.demands()?.unmet(&*store.get(content).ok()?)?;
         Some((stage.name.clone(), why))
     };
     report.stages.iter().filter_map(why).collect()

@@ -34,10 +34,14 @@ enum What {
     Du,
     /// Remove results that none of the named workflows can reach; without --yes it only lists them.
     Gc(Gc),
-    /// Copy all results to a remote, a folder that others can read, and sign the list of them.
+    /// Copy all results to a remote, a folder or a bucket that others can read, and sign the list of them.
     Push(share::Push),
     /// Take results of people whom you trust from a remote; each result is proven first.
     Pull(share::Pull),
+    /// Read what this store lacks from a remote, each result when it is first needed; once, until it is detached.
+    Attach(share::Attach),
+    /// Read nothing more from the attached remote.
+    Detach,
     /// Copy a remote to another one, with its signatures.
     Mirror(share::Mirror),
     /// Compute some results of a workflow again and compare: equal bits prove them.
@@ -64,6 +68,8 @@ impl StoreCommand {
             What::Gc(gc) => self.collect(gc),
             What::Push(push) => push.go(&self.common),
             What::Pull(pull) => pull.go(&self.common),
+            What::Attach(attach) => attach.go(&self.common),
+            What::Detach => self.detach(),
             What::Mirror(mirror) => mirror.go(),
             What::Audit(audit) => audit.go(&self.common),
         };
@@ -94,6 +100,12 @@ impl StoreCommand {
                 store.path(&record.object()).display()
             );
         }
+        Ok(Exit::Done)
+    }
+
+    fn detach(&self) -> Result<Exit, Exit> {
+        let there = self.common.open()?.detach().map_err(|error| system(&error))?;
+        out!("{}", if there { "detached; what was fetched stays" } else { "no remote was attached" });
         Ok(Exit::Done)
     }
 

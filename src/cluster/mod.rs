@@ -11,6 +11,8 @@
 //! * **Workers pull.** One job per task costs a second of the scheduler each; a fixed chunk per job waits for the slowest.
 //! * **The lists of a queue grow, and workers linger.** A calibration asks for twenty runs, sees them, and asks for twenty
 //!   more: workers that wait a moment for the next list spare each generation the wait in the scheduler's queue.
+//! * **Lines of tasks stay in the lists** ([`lists`]): the submitter knows a task by its key, a worker by its number, and both read
+//!   the line of a task when they need it, one list at a time. So 100,000 tasks take no more memory than a run here.
 //! * **A task is begun once.** Its marker in the queue can be made only once, even where locks do not reach other nodes, and
 //!   no worker reads the reports of others before it begins a task. Tasks that a lost worker had begun are not taken over by the other
 //!   workers: what has used up the memory of one would use up theirs. The submitter sends each of them again, alone, once,
@@ -22,6 +24,7 @@
 //! * **Nothing of the site is in a key.** A result does not depend on where its task ran.
 
 pub mod line;
+pub mod lists;
 pub mod message;
 pub mod post;
 pub mod scheduler;

@@ -3,6 +3,7 @@
 use super::script::{self, Order};
 use super::site::{Commands, Kind, Site};
 use std::collections::HashMap;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -42,6 +43,22 @@ pub fn of(site: &Site) -> Box<dyn Scheduler> {
         (Kind::Commands, Some(commands)) => Box::new(Generic(commands.clone())),
         (Kind::Slurm | Kind::Commands, _) => Box::new(Slurm),
     }
+}
+
+/// The programs that a site's scheduler is spoken to with and that are not there.
+pub fn missing(site: &Site) -> Vec<String> {
+    let programs: Vec<String> = match (site.scheduler, &site.commands) {
+        (Kind::Commands, Some(Commands { submit, alive, cancel, .. })) => {
+            [submit, alive, cancel].into_iter().filter_map(|command| command.first().cloned()).collect()
+        }
+        (Kind::Slurm | Kind::Commands, _) => words(&["sbatch", "squeue", "scancel"]),
+    };
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let is_there = |program: &String| match program.contains('/') {
+        true => Path::new(program).is_file(),
+        false => std::env::split_paths(&path).any(|folder| folder.join(program).is_file()),
+    };
+    programs.into_iter().filter(|program| !is_there(program)).collect()
 }
 
 /// Longest wait for an answer of a scheduler.

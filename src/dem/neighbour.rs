@@ -2,22 +2,26 @@
 //!
 //! Pairs come out sorted by (i, j) with i < j, for every grid.
 
+use std::ops::Range;
+
 /// Gives `put` the pairs of balls whose surfaces are nearer than `margin`, in order. Balls of the same body are left out.
 ///
 /// `positions` have three coordinates, the third 0 in the plane.
 pub(crate) fn pairs(positions: &[[f64; 3]], radii: &[f64], bodies: &[u32], margin: f64, mut put: impl FnMut(u32, u32)) {
     let largest = radii.iter().copied().fold(0.0, f64::max);
     let grid = Grid::new(positions, 2.0 * largest + margin);
+    // In the order of the cells, so that the search reads memory one after the other.
+    let lined: Vec<([f64; 3], f64)> =
+        grid.members.iter().map(|&j| (positions[j as usize], radii[j as usize])).collect();
     let mut found = Vec::new();
     for (i, x) in positions.iter().enumerate() {
-        grid.visit_around(x, |j| {
-            let j = j as usize;
-            if j > i && bodies[i] != bodies[j] {
-                let reach = radii[i] + radii[j] + margin;
-                let y = &positions[j];
-                let d2: f64 = (0..3).map(|k| (y[k] - x[k]) * (y[k] - x[k])).sum();
-                if d2 < reach * reach {
-                    found.push(j as u32);
+        grid.visit_around(x, |members| {
+            for (&j, (y, radius)) in grid.members[members.clone()].iter().zip(&lined[members]) {
+                let reach = radii[i] + radius + margin;
+                let [a, b, c] = [y[0] - x[0], y[1] - x[1], y[2] - x[2]];
+                let near = a * a + b * b + c * c < reach * reach;
+                if near && j as usize > i && bodies[i] != bodies[j as usize] {
+                    found.push(j);
                 }
             }
         });
@@ -79,16 +83,15 @@ impl Grid {
         (cell[2] * self.cells[1] + cell[1]) * self.cells[0] + cell[0]
     }
 
-    fn visit_around(&self, x: &[f64; 3], mut visit: impl FnMut(u32)) {
+    /// Calls `visit` with stretches of `members`: those in the cell of `x` and in the cells around it.
+    fn visit_around(&self, x: &[f64; 3], mut visit: impl FnMut(Range<usize>)) {
         let home = self.cell(x);
         let span = |k: usize| home[k].saturating_sub(1)..=(home[k] + 1).min(self.cells[k] - 1);
         for z in span(2) {
             for y in span(1) {
                 // Cells that follow one another along x hold their members one after the other.
                 let [a, b] = [*span(0).start(), *span(0).end()].map(|x| self.index([x, y, z]));
-                for &j in &self.members[self.starts[a] as usize..self.starts[b + 1] as usize] {
-                    visit(j);
-                }
+                visit(self.starts[a] as usize..self.starts[b + 1] as usize);
             }
         }
     }

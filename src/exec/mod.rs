@@ -3,12 +3,12 @@
 //! `--jobs` bounds everything. The pool has that many threads. A piece of work given to it runs on one of them; what that
 //! work does in parallel through rayon (the statistics) runs on the same threads. A simulation brings threads of its own,
 //! because they meet at a barrier in every step: it asks its [`Share`] how many, again and again while it runs. The shares
-//! of all running pieces of work together are never more than the budget, except for the moment between the start of new
-//! work and the next question of the others.
+//! of all running pieces of work together are the whole budget (what does not divide goes to those that began first), and
+//! never more, except for the moment between the start of new work and the next question of the others.
 
+use std::collections::BTreeSet;
 use std::num::NonZero;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A pool of threads whose work may borrow what outlives `'scope`.
 pub struct Threads<'pool, 'scope> {
@@ -46,8 +46,14 @@ impl<'scope> Threads<'_, 'scope> {
 #[derive(Clone)]
 struct Budget {
     cores: usize,
-    /// Pieces of work that hold a share.
-    holders: Arc<AtomicUsize>,
+    holders: Arc<Mutex<Holders>>,
+}
+
+/// Pieces of work that hold a share, by number; those that began first have the smallest.
+#[derive(Default)]
+struct Holders {
+    numbers: BTreeSet<usize>,
+    begun: usize,
 }
 
 impl Budget {
@@ -56,25 +62,39 @@ impl Budget {
     }
 
     fn share(&self) -> Share {
-        self.holders.fetch_add(1, Ordering::Relaxed);
-        Share(self.clone())
+        let mut holders = self.holders();
+        holders.begun += 1;
+        let number = holders.begun;
+        holders.numbers.insert(number);
+        Share { budget: self.clone(), number }
+    }
+
+    fn holders(&self) -> MutexGuard<'_, Holders> {
+        // Nothing panics while it holds the lock.
+        self.holders.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// The share of one piece of work in the budget; it is given back when it is dropped.
-pub struct Share(Budget);
+pub struct Share {
+    budget: Budget,
+    number: usize,
+}
 
 impl Share {
     /// Threads that this work may use now: at least one, all of the budget when nothing else runs. The number changes as
     /// other work starts and ends, so long work asks again.
     pub fn threads(&self) -> usize {
-        (self.0.cores / self.0.holders.load(Ordering::Relaxed).max(1)).max(1)
+        let holders = self.budget.holders();
+        let (all, cores) = (holders.numbers.len().max(1), self.budget.cores);
+        let before = holders.numbers.range(..self.number).count();
+        (cores / all + usize::from(before < cores % all)).max(1)
     }
 }
 
 impl Drop for Share {
     fn drop(&mut self) {
-        self.0.holders.fetch_sub(1, Ordering::Relaxed);
+        self.budget.holders().numbers.remove(&self.number);
     }
 }
 
@@ -94,7 +114,7 @@ mod tests {
         let first = budget.share();
         assert_eq!(first.threads(), 8);
         let others: Vec<Share> = (0..2).map(|_| budget.share()).collect();
-        assert_eq!([first.threads(), others[0].threads(), others[1].threads()], [2, 2, 2]);
+        assert_eq!([first.threads(), others[0].threads(), others[1].threads()], [3, 3, 2]);
         let many: Vec<Share> = (0..20).map(|_| budget.share()).collect();
         assert_eq!(first.threads(), 1);
         drop((others, many));

@@ -76,7 +76,13 @@ fn document(paper: &Paper, title: &str, body: &Markup, scripts: &[&str]) -> Stri
             body { (body) script nonce=(nonce) { @for script in scripts { (PreEscaped(script)) } } }
         }
     };
-    page.into_string()
+    printable(page.into_string())
+}
+
+/// A page without control characters, which no parser of HTML takes: texts of a workflow may hold them.
+fn printable(page: String) -> String {
+    let control = |c: char| c.is_control() && !['\n', '\r', '\t'].contains(&c);
+    if page.contains(control) { page.replace(control, "\u{fffd}") } else { page }
 }
 
 /// Nothing is loaded, and of scripts and styles only those with the page's own mark count: no handlers, no attributes.

@@ -5,7 +5,6 @@
 //! of its result, so it is known before anything ran. A run that an earlier campaign made has no node: it stands with the
 //! task that gathers it ([`Task::cached`]), and counts there.
 
-use super::TaskReport;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::key::{task_text, text_without_inputs};
 use crate::stage::{Source, Task};
@@ -36,6 +35,21 @@ pub enum TaskState {
     Failed(String),
     /// A task that it needs failed.
     Skipped,
+}
+
+/// One task, for people and programs.
+#[derive(Clone, Debug)]
+pub struct TaskReport {
+    /// Index of its stage in the workflow.
+    pub stage: usize,
+    /// Its design row.
+    pub row: Option<usize>,
+    /// Its state.
+    pub state: TaskState,
+    /// Its text, when its inputs are known and it is not done.
+    pub text: Option<String>,
+    /// The object that holds its result.
+    pub object: Option<ObjectId>,
 }
 
 /// How many tasks stand where.

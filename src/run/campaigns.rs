@@ -117,12 +117,37 @@ impl<'a> Past<'a> {
         seconds.get((seconds.len() * 19).div_ceil(20).checked_sub(1)?).copied()
     }
 
+    /// What the tasks of each row of a stage took together, from what was recorded.
+    pub(super) fn row_seconds(&self, stage: &str) -> Option<RowSeconds> {
+        let old = remembered(self.store, self.memos.get(stage)?)?;
+        let mut rows: HashMap<Option<usize>, f64> = HashMap::new();
+        for (row, key) in &old {
+            *rows.entry(*row).or_default() += self.store.seconds(key).ok()?.unwrap_or(0.0);
+        }
+        let designed: Vec<f64> = rows.iter().filter_map(|(row, seconds)| row.is_some().then_some(*seconds)).collect();
+        let mean = designed.iter().sum::<f64>() / designed.len().max(1) as f64;
+        Some(RowSeconds { rows, mean })
+    }
+
     /// Mean duration of a task of a stage, seconds, from what was recorded.
     pub fn seconds(&self, stage: &str) -> Option<f64> {
         let old = remembered(self.store, self.memos.get(stage)?)?;
         let seconds = old.iter().filter_map(|(_, key)| self.store.seconds(key).ok()?);
         let (sum, count) = seconds.fold((0.0, 0_u32), |(sum, count), seconds| (sum + seconds, count + 1));
         (count > 0).then(|| sum / f64::from(count))
+    }
+}
+
+/// Seconds that the tasks of the rows of a stage took.
+pub(super) struct RowSeconds {
+    rows: HashMap<Option<usize>, f64>,
+    mean: f64,
+}
+
+impl RowSeconds {
+    /// Seconds of a row; their mean for a new one.
+    pub(super) fn of(&self, row: Option<usize>) -> f64 {
+        self.rows.get(&row).copied().unwrap_or(self.mean)
     }
 }
 

@@ -4,8 +4,8 @@
 //! among the remaining tasks, so that they seldom reach for the same task again.
 
 use super::board::NodeId;
+use super::queue::Queue;
 use crate::store::Waiting;
-use std::collections::BTreeSet;
 use std::time::Duration;
 
 /// Longest pause between two looks.
@@ -55,18 +55,14 @@ impl Elsewhere {
         self.tasks.first().map(|(node, waiting)| (*node, waiting.holder.to_string()))
     }
 
-    /// Takes the task to start next: the first one, or one at a random index once another process was met.
-    pub(super) fn next(&self, ready: &mut BTreeSet<NodeId>) -> Option<NodeId> {
+    /// Takes the task to start next: the longest one, or one at a random index once another process was met.
+    pub(super) fn next(&self, ready: &mut Queue) -> Option<NodeId> {
         if self.met == 0 {
-            return ready.pop_first();
+            return ready.take_longest();
         }
-        let (first, last) = (*ready.first()?, *ready.last()?);
         // A new index each time: the neighbours of an old one are soon taken by another process.
         let number = (u64::from(std::process::id()) << 20 | self.met as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let from = first + (number >> 33) as usize % (last - first + 1);
-        let node = *ready.range(from..).next()?;
-        ready.remove(&node);
-        Some(node)
+        ready.take_at((number >> 33) as usize)
     }
 }
 
@@ -78,7 +74,8 @@ mod tests {
     fn every_task_is_taken_once_wherever_one_begins() {
         for met in 0..20 {
             let elsewhere = Elsewhere { met, ..Elsewhere::default() };
-            let mut ready: BTreeSet<NodeId> = [3, 4, 9, 11].into();
+            let mut ready = Queue::default();
+            [3, 4, 9, 11].into_iter().for_each(|node| ready.put(node));
             let mut taken: Vec<NodeId> = std::iter::from_fn(|| elsewhere.next(&mut ready)).collect();
             if met == 0 {
                 assert_eq!(taken, [3, 4, 9, 11]);

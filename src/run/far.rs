@@ -1,6 +1,7 @@
 //! Tasks that workers on other machines compute, as the run loop sees them: by key, whichever queue they are in.
 
-use crate::artifact::{ContentHash, Key};
+use crate::artifact::{ContentHash, FirstBytes, Key};
+use crate::cluster::lists::MOST_LINES;
 use crate::cluster::post::Reports;
 use crate::cluster::scheduler::{self, Alive};
 use crate::cluster::site::Needs;
@@ -8,6 +9,7 @@ use crate::cluster::{Cause, Line, Message, News, Post, Scheduler, Site};
 use crate::stage::Progress;
 use crate::store::{Store, StoreError};
 use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -31,15 +33,26 @@ pub(super) enum Heard {
     Word(String),
 }
 
-/// A task that was handed over, and where it stands.
+/// A task that was handed over, and where it stands. There may be a million of them.
+#[derive(Clone, Copy)]
 struct Handed {
-    post: usize,
-    task: usize,
-    /// How often a worker that had begun it was lost without a message, and how often the scheduler ended it.
-    gone: usize,
-    ended: usize,
-    /// A worker reported the result (with its seconds) at this time, and the result is not visible in the store yet.
-    done: Option<(f64, Instant)>,
+    post: u32,
+    task: u32,
+    tries: Tries,
+}
+
+/// How often a worker that had begun a task was lost without a message, and how often the scheduler ended it.
+#[derive(Clone, Copy, Default)]
+struct Tries {
+    gone: u8,
+    ended: u8,
+}
+
+/// Tasks to be listed for workers with equal needs.
+struct Fresh {
+    needs: Needs,
+    tasks: Vec<(Key, Tries)>,
+    lines: Vec<String>,
 }
 
 /// What happens to the workers when the run ends.
@@ -59,9 +72,11 @@ pub(super) struct Far<'a> {
     program: PathBuf,
     session: String,
     posts: Vec<Post>,
-    handed: HashMap<Key, Handed>,
+    handed: HashMap<Key, Handed, BuildHasherDefault<FirstBytes>>,
+    /// Tasks with results that a worker reported (with its seconds) at this time and that are not visible in the store yet.
+    reported: HashMap<Key, (f64, Instant)>,
     /// Tasks to be listed.
-    fresh: Vec<(Needs, Key, Line, usize, usize)>,
+    fresh: Vec<Fresh>,
     asked: Option<Receiver<(usize, Result<Alive, String>)>>,
     asked_at: Instant,
     waiting: Option<String>,
@@ -76,7 +91,7 @@ const LATE: Duration = Duration::from_secs(30);
 /// Shortest and longest pause between two looks at the reports.
 const PAUSE: (Duration, Duration) = (Duration::from_millis(20), Duration::from_millis(500));
 /// A task fails when the scheduler has ended its worker this many times.
-const MOST_ENDED: usize = 5;
+const MOST_ENDED: u8 = 5;
 
 impl<'a> Far<'a> {
     /// A cluster with the workers that an earlier submitter left; also returns a message on these, or an error when they
@@ -90,7 +105,8 @@ impl<'a> Far<'a> {
             program: std::env::current_exe().unwrap_or_else(|_| "flow".into()),
             session: format!("{}-{:x}", now.as_secs(), std::process::id()),
             posts: Vec::new(),
-            handed: HashMap::new(),
+            handed: HashMap::default(),
+            reported: HashMap::new(),
             fresh: Vec::new(),
             asked: None,
             asked_at: Instant::now(),
@@ -113,10 +129,9 @@ impl<'a> Far<'a> {
                     post.active(),
                     post.jobs().join(", ")
                 ));
-                for (task, entry) in post.entries.iter().enumerate() {
-                    let handed = Handed { post: self.posts.len(), task, gone: 0, ended: 0, done: None };
-                    self.handed.insert(entry.key, handed);
-                }
+                let number = self.posts.len() as u32;
+                let handed = |task| Handed { post: number, task, tries: Tries::default() };
+                self.handed.extend(post.keys().zip((0..).map(handed)));
                 self.posts.push(post);
             }
         }
@@ -126,6 +141,11 @@ impl<'a> Far<'a> {
     /// Whether tasks of this stage go to the workers; `far` says whether their work does as a rule.
     pub(super) fn takes(&self, stage: &str, far: bool) -> bool {
         self.site.sends(stage, far)
+    }
+
+    /// Whether workers were never asked for.
+    pub(super) fn is_unused(&self) -> bool {
+        self.posts.is_empty()
     }
 
     /// Whether a task was handed over already.
@@ -141,9 +161,48 @@ impl<'a> Far<'a> {
         }
     }
 
-    /// Hands a task over; it is listed with the others at the next [`Far::send`].
-    pub(super) fn put(&mut self, stage: &str, key: Key, line: Line) {
-        self.fresh.push((self.site.needs(stage), key, line, 0, 0));
+    /// Hands a task over; it is listed when there are enough for a list, or at the next [`Far::send`].
+    ///
+    /// # Errors
+    /// The store cannot be written.
+    pub(super) fn put(&mut self, stage: &str, key: Key, line: &Line) -> Result<(), StoreError> {
+        self.collect(self.site.needs(stage), key, Tries::default(), line.to_text())
+    }
+
+    fn collect(&mut self, needs: Needs, key: Key, tries: Tries, line: String) -> Result<(), StoreError> {
+        let number = match self.fresh.iter().position(|fresh| fresh.needs == needs) {
+            Some(number) => number,
+            None => {
+                self.fresh.push(Fresh { needs, tasks: Vec::new(), lines: Vec::new() });
+                self.fresh.len() - 1
+            }
+        };
+        let fresh = &mut self.fresh[number];
+        fresh.tasks.push((key, tries));
+        fresh.lines.push(line);
+        if fresh.lines.len() < MOST_LINES {
+            return Ok(());
+        }
+        let full = self.fresh.swap_remove(number);
+        self.list(full)
+    }
+
+    /// Writes a list.
+    fn list(&mut self, fresh: Fresh) -> Result<(), StoreError> {
+        let known = self.posts.iter().position(|post| post.needs == fresh.needs);
+        let number = match known {
+            Some(number) => number,
+            None => {
+                let name = format!("{}-{}", self.session, self.posts.len() + 1);
+                self.posts.push(Post::open(self.store, &name, fresh.needs)?);
+                self.posts.len() - 1
+            }
+        };
+        let first = self.posts[number].list(fresh.tasks.iter().map(|(key, _)| *key), &fresh.lines)?;
+        for ((key, tries), task) in fresh.tasks.into_iter().zip(first..) {
+            self.handed.insert(key, Handed { post: number as u32, task: task as u32, tries });
+        }
+        Ok(())
     }
 
     /// Stops handing over: workers finish the tasks that they have begun.
@@ -158,31 +217,11 @@ impl<'a> Far<'a> {
     /// # Errors
     /// The store cannot be written, or no worker can be had.
     pub(super) fn send(&mut self) -> Result<Vec<String>, String> {
-        let words = |error: StoreError| error.to_string();
         if self.draining {
             return Ok(Vec::new());
         }
-        while let Some((needs, ..)) = self.fresh.first() {
-            let needs = needs.clone();
-            let (same, others) = std::mem::take(&mut self.fresh).into_iter().partition(|(other, ..)| *other == needs);
-            self.fresh = others;
-            let known = self.posts.iter().position(|post| post.needs == needs);
-            let number = match known {
-                Some(number) => number,
-                None => {
-                    let name = format!("{}-{}", self.session, self.posts.len() + 1);
-                    self.posts.push(Post::open(self.store, &name, needs).map_err(words)?);
-                    self.posts.len() - 1
-                }
-            };
-            let post = &mut self.posts[number];
-            let mut lines = Vec::with_capacity(same.len());
-            for (_, key, line, gone, ended) in same {
-                let task = post.entries.len() + lines.len();
-                self.handed.insert(key, Handed { post: number, task, gone, ended, done: None });
-                lines.push(line);
-            }
-            post.list(lines).map_err(words)?;
+        while let Some(fresh) = self.fresh.pop() {
+            self.list(fresh).map_err(|error| error.to_string())?;
         }
         let mut messages = Vec::new();
         let store = std::path::absolute(self.store.root()).unwrap_or_else(|_| self.store.root().to_owned());
@@ -206,33 +245,33 @@ impl<'a> Far<'a> {
         for number in 0..self.posts.len() {
             let Reports { news, words } = self.posts[number].read()?;
             heard.extend(words.into_iter().map(Heard::Word));
-            self.sort(number, news, &mut heard);
+            self.sort(number, news, &mut heard)?;
         }
-        self.ask(&mut heard);
+        self.ask(&mut heard)?;
         self.settle_late(&mut heard);
         self.quiet = if heard.is_empty() { (self.quiet * 2).min(PAUSE.1) } else { PAUSE.0 };
         Ok(heard)
     }
 
-    fn sort(&mut self, number: usize, news: Vec<(usize, News)>, heard: &mut Vec<Heard>) {
+    fn sort(&mut self, number: usize, news: Vec<(usize, News)>, heard: &mut Vec<Heard>) -> Result<(), StoreError> {
         for (task, news) in news {
-            let key = self.posts[number].entries[task].key;
+            let key = self.posts[number].key(task);
             // A task that was listed again is another task of another post by now.
-            let Some(handed) = self.handed.get_mut(&key).filter(|handed| (handed.post, handed.task) == (number, task))
-            else {
+            let is_it = |handed: &Handed| (handed.post as usize, handed.task as usize) == (number, task);
+            if !self.handed.get(&key).is_some_and(is_it) {
                 continue;
-            };
+            }
             match news {
                 News::Message(Message::Begun { .. }) => heard.push(Heard::Begun(key)),
                 News::Message(Message::Stands { fraction, note, warning, .. }) => {
                     heard.push(Heard::Stands(key, Progress { fraction, note, warning }));
                 }
                 News::Message(Message::Done { seconds, .. }) => {
-                    handed.done = Some((seconds, Instant::now()));
+                    self.reported.insert(key, (seconds, Instant::now()));
                     heard.push(Heard::Done(key, seconds));
                 }
                 News::Message(Message::Failed { why, .. }) => heard.push(Heard::Failed(key, why)),
-                News::Message(Message::Stopped { cause, .. }) => self.stopped(key, cause, heard),
+                News::Message(Message::Stopped { cause, .. }) => self.stopped(key, cause, heard)?,
                 News::Message(Message::Elsewhere { .. }) => heard.push(Heard::Open(key)),
                 News::Message(Message::Lost { input, why, .. }) => match ContentHash::from_hex(&input) {
                     Some(input) => {
@@ -241,20 +280,21 @@ impl<'a> Far<'a> {
                     }
                     None => heard.push(Heard::Failed(key, why)),
                 },
-                News::Gone { machine, words } => self.lost(key, (&machine, &words), heard),
+                News::Gone { machine, words } => self.lost(key, (&machine, &words), heard)?,
                 News::Message(Message::Started { .. } | Message::Ended { .. }) => {}
             }
         }
+        Ok(())
     }
 
     /// A worker ended a task before its end.
-    fn stopped(&mut self, key: Key, cause: Cause, heard: &mut Vec<Heard>) {
-        let Some(handed) = self.handed.get_mut(&key) else { return };
-        let post = &self.posts[handed.post];
+    fn stopped(&mut self, key: Key, cause: Cause, heard: &mut Vec<Heard>) -> Result<(), StoreError> {
+        let Some(handed) = self.handed.get(&key).copied() else { return Ok(()) };
+        let needs = &self.posts[handed.post as usize].needs;
         match cause {
-            Cause::Time | Cause::Store => self.list_again(key, Needs::clone),
+            Cause::Time | Cause::Store => return self.list_again(key, handed.tries, Needs::clone),
             Cause::WholeTime => {
-                let time = post.needs.time.map_or(0.0, |time| time.get());
+                let time = needs.time.map_or(0.0, |time| time.get());
                 heard.push(Heard::Failed(
                     key,
                     format!(
@@ -263,65 +303,64 @@ impl<'a> Far<'a> {
                     ),
                 ));
             }
-            Cause::Signal if handed.ended + 1 < MOST_ENDED => {
-                handed.ended += 1;
-                self.list_again(key, |needs| if needs.alone { needs.clone() } else { needs.again() });
+            Cause::Signal if handed.tries.ended + 1 < MOST_ENDED => {
+                let tries = Tries { ended: handed.tries.ended + 1, ..handed.tries };
+                let again = |needs: &Needs| if needs.alone { needs.clone() } else { needs.again() };
+                return self.list_again(key, tries, again);
             }
             Cause::Signal => heard.push(Heard::Failed(
                 key,
-                format!("the scheduler ended its worker {MOST_ENDED} times{}", memory(&post.needs)),
+                format!("the scheduler ended its worker {MOST_ENDED} times{}", memory(needs)),
             )),
         }
+        Ok(())
     }
 
     /// A task whose worker is gone is tried once more, alone on a worker.
-    fn lost(&mut self, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) {
-        let Some(handed) = self.handed.get_mut(&key) else { return };
-        let post = &self.posts[handed.post];
-        handed.gone += 1;
-        if handed.gone > 1 {
+    fn lost(&mut self, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) -> Result<(), StoreError> {
+        let Some(handed) = self.handed.get(&key).copied() else { return Ok(()) };
+        if handed.tries.gone > 0 {
             let (machine, words) = at;
+            let memory = memory(&self.posts[handed.post as usize].needs);
             heard.push(Heard::Failed(
                 key,
-                format!(
-                    "its worker on {machine} ended without a word, the second time alone{}: {words}",
-                    memory(&post.needs)
-                ),
+                format!("its worker on {machine} ended without a word, the second time alone{memory}: {words}"),
             ));
-            return;
+            return Ok(());
         }
-        self.list_again(key, Needs::again);
+        self.list_again(key, Tries { gone: 1, ..handed.tries }, Needs::again)
     }
 
     /// Takes a task out of its queue and lists it again, for workers with the needs that `needs` makes of the old ones.
-    fn list_again(&mut self, key: Key, needs: impl Fn(&Needs) -> Needs) {
-        let Some(handed) = self.handed.get(&key) else { return };
-        let post = &mut self.posts[handed.post];
-        let line = post.entries[handed.task].line.clone();
-        self.fresh.push((needs(&post.needs), key, line, handed.gone, handed.ended));
-        post.over(handed.task);
+    fn list_again(&mut self, key: Key, tries: Tries, needs: impl Fn(&Needs) -> Needs) -> Result<(), StoreError> {
+        let Some(handed) = self.handed.get(&key) else { return Ok(()) };
+        let (post, task) = (&mut self.posts[handed.post as usize], handed.task as usize);
+        let line = post.line(task)?;
+        post.over(task);
+        let needs = needs(&post.needs);
+        self.collect(needs, key, tries, line)
     }
 
     /// Asks the scheduler at most once a minute which jobs exist, and reads its answer when there is one.
-    fn ask(&mut self, heard: &mut Vec<Heard>) {
+    fn ask(&mut self, heard: &mut Vec<Heard>) -> Result<(), StoreError> {
         if let Some(inbox) = &self.asked {
             match inbox.try_recv() {
                 Ok((number, alive)) => {
                     self.asked = None;
                     // No answer says nothing about the jobs.
                     if let Ok(alive) = alive {
-                        self.compare(number, alive, heard);
+                        self.compare(number, alive, heard)?;
                     }
                 }
                 Err(TryRecvError::Disconnected) => self.asked = None,
                 Err(TryRecvError::Empty) => {}
             }
-            return;
+            return Ok(());
         }
         // One question for one queue at a time, so that there is one a minute whatever the number of queues.
         let wanted: Vec<usize> = (0..self.posts.len()).filter(|&number| self.posts[number].active() > 0).collect();
         if wanted.is_empty() || self.asked_at.elapsed() < ASK_EACH {
-            return;
+            return Ok(());
         }
         let turn = self.asked_at.elapsed().as_nanos() as usize % wanted.len();
         let number = wanted[turn];
@@ -334,26 +373,28 @@ impl<'a> Far<'a> {
             let _ = answers.send((number, scheduler.alive(&queue, &jobs)));
         });
         self.asked = Some(inbox);
+        Ok(())
     }
 
     /// Compares a queue with the jobs that exist.
-    fn compare(&mut self, number: usize, alive: Alive, heard: &mut Vec<Heard>) {
+    fn compare(&mut self, number: usize, alive: Alive, heard: &mut Vec<Heard>) -> Result<(), StoreError> {
         let Reports { news, words } = self.posts[number].apply(&alive);
         heard.extend(words.into_iter().map(Heard::Word));
-        self.sort(number, news, heard);
+        self.sort(number, news, heard)?;
         let waiting = alive.waiting.map(|(count, why)| format!("{count} workers wait for a free node ({why})"));
         if waiting.is_some() && waiting != self.waiting {
             heard.extend(waiting.clone().map(Heard::Word));
             self.waiting = waiting;
         }
+        Ok(())
     }
 
     /// Looks again for results that were reported but are not visible; after a while their tasks are computed again.
     fn settle_late(&mut self, heard: &mut Vec<Heard>) {
-        for (key, handed) in &self.handed {
-            match handed.done {
-                Some((_, since)) if since.elapsed() > LATE => heard.push(Heard::Open(*key)),
-                Some((seconds, since)) if since.elapsed() > PAUSE.1 => heard.push(Heard::Done(*key, seconds)),
+        for (key, (seconds, since)) in &self.reported {
+            match since.elapsed() {
+                elapsed if elapsed > LATE => heard.push(Heard::Open(*key)),
+                elapsed if elapsed > PAUSE.1 => heard.push(Heard::Done(*key, *seconds)),
                 _ => {}
             }
         }
@@ -361,8 +402,9 @@ impl<'a> Far<'a> {
 
     /// Forgets a task that has ended, or about which the run decides again.
     pub(super) fn forget(&mut self, key: &Key) {
+        self.reported.remove(key);
         if let Some(handed) = self.handed.remove(key) {
-            self.posts[handed.post].over(handed.task);
+            self.posts[handed.post as usize].over(handed.task as usize);
         }
     }
 

@@ -31,9 +31,9 @@ impl Loop<'_, '_> {
             // Workers do not know of one another, so they could not keep a bound on a program's runs.
             task.at_once.is_none() && far.takes(stage, is_far(task.work))
         };
-        let nodes: Vec<NodeId> = self.ready.iter().copied().filter(goes).collect();
+        let nodes: Vec<NodeId> = self.ready.iter().filter(goes).collect();
         for node in nodes {
-            self.ready.remove(&node);
+            self.ready.remove(node);
             let Some(key) = self.board.key_of(node) else {
                 panic!("BUG: a task was ready before its inputs were known")
             };
@@ -63,12 +63,15 @@ impl Loop<'_, '_> {
             self.store.locate(content).map_err(|error| Box::new(task::Lost { content: *content, error }))
         };
         let inputs = contents.iter().map(locate).collect::<Result<Vec<_>, _>>()?;
-        let past = self.past.as_ref();
-        let read = || past.and_then(|past| past.most_seconds(stage));
-        let seconds = *self.most_seconds.entry(stage.clone()).or_insert_with(read);
+        if !self.most_seconds.contains_key(stage) {
+            let read = self.past().and_then(|past| past.most_seconds(stage));
+            self.most_seconds.insert(stage.clone(), read);
+        }
+        let seconds = self.most_seconds[stage];
         let line = Line::new(self.board.task(node), &key, stage, &inputs, seconds);
-        if let Some(far) = &mut self.far {
-            far.put(stage, key, line);
+        let put = self.far.as_mut().map(|far| far.put(stage, key, &line));
+        if let Some(Err(error)) = put {
+            self.refused.get_or_insert(error.to_string());
         }
         Ok(())
     }
@@ -164,6 +167,12 @@ impl Loop<'_, '_> {
         let working = self.stop.load(Ordering::Relaxed)
             && self.settings.cluster.as_ref().is_some_and(|cluster| cluster.leave.load(Ordering::Relaxed));
         let Some(far) = &mut self.far else { return };
+        let computed = (0..self.workflow.stages.len()).any(|stage| self.board.count(stage).ran > 0);
+        if far.is_unused() && computed && !working {
+            let text = "no workers were asked for: what was computed took moments, here (`here = false` below \
+                        `[stage.NAME]` of the site file sends a stage all the same)";
+            self.watch.event(Event::Word { text });
+        }
         let words = far.end(if working { Leave::Working } else { Leave::Cancel });
         words.iter().for_each(|text| self.watch.event(Event::Word { text }));
     }

@@ -4,7 +4,7 @@
 //!
 //! * the [`board`]: every task known so far, as a graph that grows; equal tasks are one node;
 //! * the [`stages`]: where each stage of the workflow stands;
-//! * a queue of nodes whose inputs are known and whose result is not in the store.
+//! * the [`queue`]: nodes whose inputs are known and whose result is not in the store.
 //!
 //! The loop repeats: ask each stage that can go on for its next step; put its tasks on the board; settle every node
 //! whose inputs are known by looking its key up in the store; start what is ready; wait for one answer. `plan` is the
@@ -25,6 +25,8 @@ mod licences;
 mod memo;
 #[cfg(test)]
 mod pins;
+mod queue;
+mod report;
 mod run_memo;
 mod settings;
 mod stages;
@@ -33,12 +35,13 @@ mod task;
 mod worker;
 
 pub use audit::{Audited, audit};
-pub use board::{TaskCount, TaskState};
+pub use board::{TaskCount, TaskReport, TaskState};
 pub use campaigns::{Past, record};
 pub use commit::commit;
 pub use event::{Event, Silent, Watch};
 pub use forecast::{forecasts, forecasts_of};
 pub use memo::remembered;
+pub use report::Report;
 pub use settings::{Cluster, RunSettings};
 pub use stages::{StageReport, StageStatus};
 pub use worker::{Worked, Worker, program};
@@ -47,62 +50,21 @@ use crate::artifact::{ContentHash, Key};
 use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
-use crate::store::{ObjectId, Store, StoreError};
-use board::{Board, NodeId};
+use crate::store::{Store, StoreError};
+use board::{Board, ByKey, NodeId};
+use campaigns::RowSeconds;
 use elsewhere::Elsewhere;
 use far::Far;
 use licences::Licences;
+use queue::Queue;
 use stages::Stages;
 use std::any::Any;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::cell::OnceCell;
+use std::collections::{HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use streamed::Streamed;
-
-/// The outcome of a campaign.
-pub struct Report {
-    /// Every wanted stage, in the order of the workflow.
-    pub stages: Vec<StageReport>,
-    /// Whether it was interrupted.
-    pub interrupted: bool,
-    /// The store could not be read; what was wrong.
-    pub broken: Option<String>,
-    board: Board,
-    states: Stages,
-}
-
-/// One task, for people and programs.
-#[derive(Clone, Debug)]
-pub struct TaskReport {
-    /// Index of its stage in the workflow.
-    pub stage: usize,
-    /// Its design row.
-    pub row: Option<usize>,
-    /// Where it stands.
-    pub state: TaskState,
-    /// Its text, when its inputs are known and it is not done.
-    pub text: Option<String>,
-    /// The object that holds its result.
-    pub object: Option<ObjectId>,
-}
-
-impl Report {
-    /// The tasks that are known, in the order they became known; none of stages that were remembered.
-    pub fn tasks(&self) -> impl DoubleEndedIterator<Item = TaskReport> {
-        self.board.reports()
-    }
-
-    /// Every object that the campaign rests on.
-    pub fn objects(&self) -> impl DoubleEndedIterator<Item = ObjectId> {
-        self.board.objects().chain(self.states.remembered())
-    }
-
-    /// Counts over all stages.
-    pub fn count(&self) -> TaskCount {
-        self.stages.iter().fold(TaskCount::default(), |sum, stage| sum + stage.tasks)
-    }
-}
 
 /// Runs what is missing of `workflow`, or only decides when the settings say so.
 pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &dyn Watch, stop: &AtomicBool) -> Report {
@@ -121,13 +83,14 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &d
             answers,
             board: Board::default(),
             stages: Stages::new(workflow, &settings.targets, settings.memos),
-            ready: BTreeSet::new(),
+            ready: Queue::default(),
             running: 0,
             elsewhere: Elsewhere::default(),
             licences: Licences::default(),
             far,
-            far_nodes: HashMap::new(),
-            past: cluster.and_then(|_| Past::of(workflow, store).ok()),
+            far_nodes: ByKey::default(),
+            past: OnceCell::new(),
+            row_seconds: HashMap::new(),
             most_seconds: HashMap::new(),
             refused,
             streamed: Streamed::default(),
@@ -187,8 +150,8 @@ struct Loop<'pool, 'env> {
     answers: Sender<Answer>,
     board: Board,
     stages: Stages,
-    /// Nodes to start, in the order they were put on the board.
-    ready: BTreeSet<NodeId>,
+    /// Nodes to start.
+    ready: Queue,
     running: usize,
     /// Tasks that other processes compute.
     elsewhere: Elsewhere,
@@ -196,9 +159,11 @@ struct Loop<'pool, 'env> {
     licences: Licences,
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
-    far_nodes: HashMap<Key, NodeId>,
-    /// Earlier runs, where tasks go to workers: a worker learns how long a task may take.
-    past: Option<Past<'env>>,
+    far_nodes: ByKey,
+    /// Earlier runs, read when something is to be started: long tasks go first, a worker learns how long one may take.
+    past: OnceCell<Option<Past<'env>>>,
+    /// By stage: seconds that the tasks of each row took in earlier runs.
+    row_seconds: HashMap<usize, Option<RowSeconds>>,
     /// By stage: seconds that nearly all of its tasks took less than, in earlier runs.
     most_seconds: HashMap<String, Option<f64>>,
     /// Why the cluster cannot be used any more; then nothing more is started.
@@ -257,7 +222,7 @@ impl Loop<'_, '_> {
         }
         self.listen();
         // What they have finished is found when it is started.
-        self.ready.extend(self.elsewhere.over());
+        self.elsewhere.over().into_iter().for_each(|node| self.ready.put(node));
         if let Some((node, holder)) = self.elsewhere.first().filter(|_| self.running == 0) {
             let (stage, row) = (&self.workflow.stages[self.board.stage(node)].name, self.board.row(node));
             let progress = Progress::note(format!("waits for {holder}"));
@@ -339,14 +304,12 @@ impl Loop<'_, '_> {
                 continue;
             }
             if ended.is_none() && self.forced(node) {
-                self.ready.insert(node);
+                self.ready.put(node);
                 continue;
             }
             match self.store.find(&key) {
                 Ok(Some(record)) => open.extend(self.board.done(node, record.content, ended.is_none())),
-                Ok(None) => {
-                    self.ready.insert(node);
-                }
+                Ok(None) => self.ready.put(node),
                 Err(error) => {
                     self.fatal.get_or_insert(error);
                 }
@@ -365,6 +328,7 @@ impl Loop<'_, '_> {
             return;
         }
         self.hand_over();
+        self.rank();
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
             if !self.licences.admits(node, self.board.task(node).at_once.as_ref()) {
@@ -396,7 +360,7 @@ impl Loop<'_, '_> {
     fn decide_anew(&mut self) {
         self.again = false;
         self.untold.clear();
-        self.ready.clear();
+        self.ready = Queue::default();
         self.elsewhere.clear();
         self.licences.clear();
         self.far_nodes.clear();
@@ -427,7 +391,8 @@ impl Loop<'_, '_> {
         if self.board.is_running(node) {
             self.running -= 1;
         }
-        self.ready.extend(self.licences.release(node, self.board.task(node).at_once.as_ref()));
+        let free = self.licences.release(node, self.board.task(node).at_once.as_ref());
+        free.into_iter().for_each(|node| self.ready.put(node));
         let failure = match answer.result {
             Ok(task::Outcome::Elsewhere(waiting)) => {
                 self.board.stopped(node);

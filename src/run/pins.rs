@@ -154,7 +154,7 @@ table 464517716712
 figure e5375085b080
 agreement 3
 anova 4
-calibrate 5
+calibrate 6
 command 2
 data 3
 design 3

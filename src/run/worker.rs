@@ -5,6 +5,7 @@
 
 use super::{panicked, stages, task};
 use crate::artifact::Artifact;
+use crate::cluster::lists::Lists;
 use crate::cluster::slices::Slices;
 use crate::cluster::{Cause, Line, Message};
 use crate::exec::{Share, Threads, with_threads};
@@ -86,8 +87,7 @@ impl Worker {
                 report: &report,
                 pool,
                 answers,
-                lines: Vec::new(),
-                lists: 0,
+                lists: Lists::default(),
                 slices: Slices::new(self.index, self.of),
                 running: HashMap::new(),
                 lasted: HashMap::new(),
@@ -127,11 +127,10 @@ struct Loop<'pool, 'env> {
     report: &'env Mutex<ReportFile>,
     pool: Threads<'pool, 'env>,
     answers: Sender<Answer>,
-    lines: Vec<Arc<Line>>,
-    lists: usize,
+    lists: Lists,
     slices: Slices,
-    /// Running tasks, and when in the life of the worker each began, seconds.
-    running: HashMap<usize, f64>,
+    /// Running tasks: when in the life of the worker each began, seconds, and its stage.
+    running: HashMap<usize, (f64, String)>,
     /// By stage: the longest duration of a task so far, seconds.
     lasted: HashMap<String, f64>,
     begun: usize,
@@ -177,20 +176,12 @@ impl Loop<'_, '_> {
 
     /// Reads new lists.
     fn look(&mut self) -> Result<(), String> {
-        let first = self.lines.len();
-        while let Some(text) = self.queue.list(self.lists + 1).map_err(|error| error.to_string())? {
-            let lines: Result<Vec<Arc<Line>>, _> =
-                text.lines().map(|line| serde_json::from_str(line).map(Arc::new)).collect();
-            let lines = lines.map_err(|error| {
-                format!("a list cannot be read ({error}): the worker is another version of flow than the submitter")
-            })?;
-            let from = self.lines.len();
-            self.lines.extend(lines);
-            self.slices.add(from..self.lines.len());
-            self.lists += 1;
+        let first = self.lists.tasks();
+        while let Some(tasks) = self.lists.read(self.queue).map_err(|error| error.to_string())? {
+            self.slices.add(tasks);
         }
         // Workers of a later round skip the tasks that are begun.
-        if first < self.lines.len() {
+        if first < self.lists.tasks() {
             let begun = self.queue.begun().map_err(|error| error.to_string())?;
             self.slices.forget(&begun.into_iter().collect());
         }
@@ -208,7 +199,7 @@ impl Loop<'_, '_> {
         let most = if self.worker.alone { 1 } else { self.pool.count() };
         while self.running.len() < most && !(self.worker.alone && self.begun > 0) {
             let Some(task) = self.slices.take() else { return Ok(()) };
-            let line = Arc::clone(&self.lines[task]);
+            let line = self.lists.line(self.queue, task)?;
             // The first task of a worker has as much time as any worker can give it.
             let expected = line.seconds.into_iter().chain(self.lasted.get(&line.stage).copied()).fold(0.0, f64::max);
             if self.begun > 0 && expected > self.left() {
@@ -221,13 +212,13 @@ impl Loop<'_, '_> {
             }
             tell(self.report, &Message::Begun { task }).map_err(|error| error.to_string())?;
             self.begun += 1;
-            self.running.insert(task, self.started.elapsed().as_secs_f64());
+            self.running.insert(task, (self.started.elapsed().as_secs_f64(), line.stage.clone()));
             self.give(task, line);
         }
         Ok(())
     }
 
-    fn give(&self, task: usize, line: Arc<Line>) {
+    fn give(&self, task: usize, line: Line) {
         let (store, report, ending, answers) = (self.store, self.report, self.ending, self.answers.clone());
         let last_report = Mutex::new(None::<Instant>);
         self.pool.give(move |share| {
@@ -248,11 +239,11 @@ impl Loop<'_, '_> {
     }
 
     fn take(&mut self, Answer { task, mut message, fault }: Answer) -> Result<(), String> {
-        let since = self.running.remove(&task).unwrap_or_default();
+        let (since, stage) = self.running.remove(&task).unwrap_or_default();
         match &mut message {
             Message::Done { seconds, .. } => {
                 self.worked.done += 1;
-                let longest = self.lasted.entry(self.lines[task].stage.clone()).or_default();
+                let longest = self.lasted.entry(stage).or_default();
                 *longest = longest.max(*seconds);
             }
             Message::Failed { .. } => self.worked.failed += 1,

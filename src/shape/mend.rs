@@ -76,7 +76,7 @@ pub enum Unsound {
     Number(usize),
     /// More than two facets at an edge.
     #[error(
-        "{facets} facets meet at one edge near {at:?}; a closed surface has two at every edge: export the stone as one solid"
+        "{facets} facets meet at one edge near {at:?} m; a closed surface has two at every edge: export the stone as one solid"
     )]
     Branching {
         /// How many.
@@ -85,11 +85,11 @@ pub enum Unsound {
         at: [f64; 3],
     },
     /// One-sided.
-    #[error("the surface is one-sided near {0:?} (as a Möbius band is) and encloses nothing")]
+    #[error("the surface is one-sided near {0:?} m (as a Möbius band is) and encloses nothing")]
     OneSided([f64; 3]),
     /// A hole too large.
     #[error(
-        "a hole of {edges} edges near {at:?} has {share:.1} % of the surface; at most 5 % is closed: close the surface"
+        "a hole of {edges} edges near {at:?} m has {share:.1} % of the surface; at most 5 % is closed: close the surface"
     )]
     Hole {
         /// Edges of its rim.
@@ -108,7 +108,7 @@ pub enum Unsound {
 }
 
 fn volumes(volumes: &[f64]) -> String {
-    volumes.iter().take(5).map(|v| format!("{v:.3e}")).collect::<Vec<_>>().join(", ")
+    volumes.iter().take(5).map(|v| format!("{v:.3e} m³")).collect::<Vec<_>>().join(", ")
 }
 
 /// The solid that loose triangles enclose.

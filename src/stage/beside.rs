@@ -37,6 +37,14 @@ impl Beside {
         None
     }
 
+    /// The bytes of a file that is named under `key`, where it is small enough to be looked into before anything runs. One
+    /// that cannot be read now is reported when the stage runs.
+    pub fn bytes(&mut self, key: &str, path: &str) -> Option<Vec<u8>> {
+        let full = self.file(key, path)?;
+        let small = plain(&full).is_ok_and(|meta| meta.len() <= READ_BEFORE);
+        small.then(|| std::fs::read(full).ok()).flatten()
+    }
+
     /// As [`Beside::file`], for a key that need not be set.
     pub fn optional(&mut self, key: &str, path: Option<&String>) {
         path.and_then(|path| self.file(key, path));
@@ -48,6 +56,9 @@ impl Beside {
         (!word.is_empty() && plain(&path).is_ok()).then_some(path)
     }
 }
+
+/// Largest file that is read by the check before anything runs, bytes.
+const READ_BEFORE: u64 = 4 << 20;
 
 /// Metadata of a plain file that is not too large. A folder, a pipe and a device are refused before they are opened,
 /// because opening a pipe waits for ever.

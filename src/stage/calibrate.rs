@@ -60,7 +60,7 @@ pub use words::parameters_in_words;
 
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::invalid::Invalid;
-use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
+use super::{Class, Complaint, Context, Demands, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
 use course::Course;
 use params::Params;
@@ -161,6 +161,12 @@ impl Stage for Calibrate {
         Ok(Step::Finish(task))
     }
 
+    fn demands(&self) -> Option<&dyn Demands> {
+        Some(self)
+    }
+}
+
+impl Demands for Calibrate {
     fn unmet(&self, result: &Artifact) -> Option<String> {
         (self.unmet == Unmet::Fail).then(|| record::unmet(result)).flatten()
     }
@@ -205,6 +211,6 @@ impl Kind for Calibrate {
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
     const CLASS: Class = Class::Calibration;
-    // 5: proportional corrections go on after a run without the response
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 5, run: solve::solve }];
+    // 6: beyond its end a curve falls; a run without a peak has the ordinates that its curve reaches. 5: proportional corrections go on after a run without the response
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 6, run: solve::solve }];
 }

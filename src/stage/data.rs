@@ -23,6 +23,7 @@ pub use dialect::{Decimal, Delimiter, Encoding};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::collections::HashSet;
 
 /// Settings of a `data` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -53,9 +54,6 @@ impl Data {
         }
     }
 }
-
-/// Largest file that is read by the check before anything runs, bytes.
-const READ_BEFORE: u64 = 4 << 20;
 
 impl Data {
     /// Columns whose numbers cannot be read in the unit that the workflow declares for their name.
@@ -96,10 +94,7 @@ impl Stage for Data {
     }
 
     fn beside(&self, context: &super::Context, found: &mut Beside) {
-        let Some(path) = found.file("file", &self.file) else { return };
-        // A file that cannot be read now is reported when the stage runs.
-        let small = super::beside::plain(&path).is_ok_and(|meta| meta.len() <= READ_BEFORE);
-        let Some(bytes) = small.then(|| std::fs::read(path).ok()).flatten() else { return };
+        let Some(bytes) = found.bytes("file", &self.file) else { return };
         match parse_as(&bytes, &self.dialect()) {
             Err(StageError { message, hint }) => {
                 let complaint = Complaint::new("file", format!("{}: {message}", self.file));
@@ -154,7 +149,8 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
         return Err(StageError::new("the file has no rows below its first line"));
     }
     let how = Cells { decimal, missing: how.missing.as_deref() };
-    let add = |table, (head, cells): (&String, _)| cells::column(table, head, cells, &how);
+    let mut names = HashSet::new();
+    let add = |table, (head, cells): (&String, _)| cells::column(table, (head, cells), &how, &mut names);
     let table = sheet.heads.iter().zip(sheet.columns).try_fold(Table::default(), add)?;
     Ok((table, said))
 }

@@ -167,9 +167,8 @@ pub trait Stage: Settings + Send + Sync {
     /// The stage is impossible with these inputs, such as with a design that lacks a factor.
     fn next(&self, known: &Known) -> Result<Step, StageError>;
 
-    /// A requirement of the workflow that the computed result does not meet: `flow run` reports it and exits
-    /// with 1.
-    fn unmet(&self, _result: &Artifact) -> Option<String> {
+    /// What the workflow requires of the result, for kinds of which something can be required: only then is it read for that.
+    fn demands(&self) -> Option<&dyn Demands> {
         None
     }
 
@@ -189,6 +188,12 @@ pub trait Stage: Settings + Send + Sync {
     fn sample(&self, _known: &Known, _point: &Point, _number: u64) -> Result<Task, StageError> {
         Err(StageError::new("this stage is no simulator").hint("name a stage of kind simulate or command"))
     }
+}
+
+/// What a workflow requires of the result of a stage.
+pub trait Demands {
+    /// A requirement that the computed result does not meet: `flow run` reports it and exits with 1.
+    fn unmet(&self, result: &Artifact) -> Option<String>;
 }
 
 /// A kind of stage: its config type is the configured stage.

@@ -13,7 +13,8 @@ use super::given::check_given;
 use super::invalid::{Invalid, refused};
 use super::notes::short;
 use super::{
-    Class, Complaint, Context, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Demands, Failure, Input, Job, Kind, Known, Point, Port, Stage, StageError, Step, Task,
+    Work,
 };
 use crate::artifact::calibration::{Answer, Prediction, Solution, Summary, Verification, VerifiedRuns};
 use crate::artifact::results::{Results, Verdicts};
@@ -159,6 +160,12 @@ impl Stage for Verify {
         Ok(Step::Finish(task))
     }
 
+    fn demands(&self) -> Option<&dyn Demands> {
+        Some(self)
+    }
+}
+
+impl Demands for Verify {
     fn unmet(&self, result: &Artifact) -> Option<String> {
         if self.unmet != Unmet::Fail {
             return None;

@@ -32,6 +32,7 @@ impl Place<'_> {
             (lock::FOLDER, "") => lock::is_name(name),
             (object::ASIDE, "") => object::is_aside(name),
             (queue::FOLDER, inside) => queue::is_ours(inside, name),
+            (super::remote::FOLDER, "") => super::attached::is_ours(name),
             _ => false,
         }
     }

@@ -1,4 +1,4 @@
-//! Errors of a store, each with its path and its remedy.
+//! What can go wrong with a store, each fault with its path and its remedy.
 
 use super::folder::Strange;
 use super::hdf5::Hdf5Error;
@@ -42,7 +42,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// The user has no permission for that.
+    /// The user may not do that here.
     #[error(
         "no permission to {doing} {}; ask its owner for it, or name another store with `--store`", path.display()
     )]
@@ -52,7 +52,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// The folder no longer exists.
+    /// The folder is not there any more.
     #[error("the store {} has vanished; bring it back (is its disk still mounted?) and run again", root.display())]
     Vanished {
         /// The store.
@@ -72,7 +72,7 @@ pub enum StoreError {
         /// The store.
         root: PathBuf,
     },
-    /// A file in the store that flow cannot have made: a link, a pipe, a device, or a file larger than any of flow's.
+    /// Something in the store that flow has not made: a link, a pipe, a device, a file larger than any of its own.
     #[error("could not {doing} {}: {why}; move it out of the store and run again", path.display())]
     Strange {
         /// What was being done.
@@ -80,6 +80,12 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
         /// What it is.
+        why: String,
+    },
+    /// The attached remote cannot be read.
+    #[error("{why}; `flow store detach` goes on without this remote")]
+    Far {
+        /// Which one, and why.
         why: String,
     },
     /// Any other fault of the operating system.
@@ -112,24 +118,42 @@ pub enum StoreError {
     Newer {
         /// The object.
         path: PathBuf,
-        /// The error of the reader.
+        /// What the reader says.
         why: Hdf5Error,
     },
 }
 
-/// A file of the store that differs from what was written.
+/// A file of the store that is not what was written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{} is damaged: {why}; {}; the next run computes it again", path.display(),
-    aside.as_ref().map_or("it could not be set aside".to_owned(), |p| format!("it was set aside as {}", p.display()))
-)]
+#[error("{} is damaged: {why}; {aside}; the next run computes it again", path.display())]
 pub struct Damage {
     /// The object.
     pub path: PathBuf,
     /// How it differs from what was written.
     pub why: String,
-    /// Where it was moved; `None` when the store cannot be written.
-    pub aside: Option<PathBuf>,
+    /// Where it is now.
+    pub aside: Aside,
+}
+
+/// What became of a damaged file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Aside {
+    /// It was moved to this path.
+    Moved(PathBuf),
+    /// It is where it was: the store cannot be written.
+    Stays,
+    /// It is in a remote, and was not taken from there.
+    NotTaken,
+}
+
+impl std::fmt::Display for Aside {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Moved(path) => write!(f, "it was set aside as {}", path.display()),
+            Self::Stays => write!(f, "it could not be set aside"),
+            Self::NotTaken => write!(f, "it was not taken"),
+        }
+    }
 }
 
 impl StoreError {
@@ -151,7 +175,7 @@ impl StoreError {
         }
     }
 
-    /// Whether to compute the result again is the remedy; other errors need the store to be repaired.
+    /// Whether the result asked for has to be computed again, rather than the store mended.
     pub fn is_missing(&self) -> bool {
         matches!(self, Self::Missing { .. } | Self::Damaged { .. })
     }

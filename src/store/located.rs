@@ -1,7 +1,7 @@
 //! The store for a process that reads no journal: the list of a worker names the objects of its inputs and their digests.
 
 use super::object::{ObjectId, Seal};
-use super::{Guard, Store, StoreError, lock, locked, prove};
+use super::{Guard, Store, StoreError, lock, locked, object, prove};
 use crate::artifact::{Artifact, ContentHash, Key};
 use std::sync::Arc;
 
@@ -48,12 +48,17 @@ impl Store {
     /// # Errors
     /// As [`Store::get`].
     pub fn locate(&self, content: &ContentHash) -> Result<Located, StoreError> {
-        for record in locked(self.index()?).with_content(content).into_iter().filter(|record| record.own) {
-            if self.has(&record.object())? {
-                return Ok(Located { object: record.object(), seal: record.seal });
+        loop {
+            for record in locked(self.index()?).with_content(content).into_iter().filter(|record| record.own) {
+                if object::is_there(&self.disk, &record.object()) {
+                    return Ok(Located { object: record.object(), seal: record.seal });
+                }
+            }
+            // Workers do not ask the attached remote.
+            if !self.fetch(content)? {
+                return Err(StoreError::Missing { content: *content });
             }
         }
-        Err(StoreError::Missing { content: *content })
     }
 
     /// The artifact that [`Store::locate`] found; size and digest are compared before a byte is decoded.

@@ -15,7 +15,7 @@
 
 use super::disk::Disk;
 use super::folder::{Entry, Folder};
-use super::{Damage, StoreError};
+use super::{Aside, Damage, StoreError};
 use crate::artifact::{ContentHash, Key};
 use std::io::ErrorKind;
 use std::path::PathBuf;
@@ -121,20 +121,20 @@ pub(super) fn set_aside(disk: &Disk, folder: &str, name: &str, why: &str) -> Res
     let path = disk.path(folder, name);
     let damage = |aside| Damage { path: path.clone(), why: why.to_owned(), aside };
     if disk.read_only {
-        return Ok(damage(None));
+        return Ok(damage(Aside::Stays));
     }
-    let (Ok(from), Ok(aside)) = (disk.folder(folder), disk.make_folder(ASIDE)) else { return Ok(damage(None)) };
+    let (Ok(from), Ok(aside)) = (disk.folder(folder), disk.make_folder(ASIDE)) else { return Ok(damage(Aside::Stays)) };
     for number in 1..10_000 {
         let target = format!("{name}.{number}");
         match from.rename_new(name, &aside, &target) {
-            Ok(()) => return Ok(damage(Some(disk.path(ASIDE, &target)))),
+            Ok(()) => return Ok(damage(Aside::Moved(disk.path(ASIDE, &target)))),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
             // Another process was faster.
             Err(error) if error.kind() == ErrorKind::NotFound => break,
             Err(_) => break,
         }
     }
-    Ok(damage(None))
+    Ok(damage(Aside::Stays))
 }
 
 /// Whether a name in `aside/` is one that [`set_aside`] gives.

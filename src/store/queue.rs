@@ -1,31 +1,33 @@
-//! Queues: tasks for the workers of a cluster, and the workers' reports.
+//! Tasks on their way to the workers of a cluster, and what those report.
 //!
 //! ```text
 //! queue/ID/tasks-0001.jsonl   a list of tasks, sealed                      written once by the submitter
 //! queue/ID/round-0001.json   which job was submitted, sealed               written once by the submitter
 //! queue/ID/begun/000017       somebody has begun task 17                   made once, by whoever begins it
-//! queue/ID/worker-….jsonl     the report of a worker, locked while it lives  appended to by that worker
-//! queue/ID/closed             no more tasks are to be begun                 made once by the submitter
+//! queue/ID/worker-….jsonl     what a worker reports, locked while it lives  appended to by that worker
+//! queue/ID/closed             nothing more is to be begun                  made once by the submitter
 //! queue/ID/submitter.lock     locked by the process that looks after it
 //! queue/ID/job-1.sh           what was submitted, for the user alone
 //! queue/ID/log-….txt          what the workers print, written by the scheduler
 //! ```
 //!
-//! **The right to begin a task** is a file that can be made only once; every shared file system guarantees that, also
-//! one whose locks do not reach other nodes. The file stays, so a worker need not read the reports of others before it begins.
+//! **The right to begin a task** is a file that can be made only once, which every shared file system sees to, also
+//! one whose locks do not reach other nodes. It stays, so nobody needs to read what others have done before beginning.
 //!
 //! **A list is sealed**: it begins with a keyed blake3 of itself under a secret that the submitter hands to its workers
-//! inside the job script, and that the next submitter of the same user derives again. So another person who can write to the
+//! inside the job script, and that the next submitter of the same user derives again. Whoever else can write to a shared
 //! store cannot make a worker run a program. Reports carry no results, so a forged one costs time only.
 
+mod report;
+
+pub use report::ReportFile;
+
 use super::disk::Disk;
-use super::folder::{self, Folder, Strange};
+use super::folder::{self, Folder};
 use super::lock::Held;
 use super::{Store, StoreError};
-use std::fs::File;
-use std::io::{ErrorKind, Read, Seek, SeekFrom};
+use std::io::ErrorKind;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Folder of the queues.
 pub(super) const FOLDER: &str = "queue";
@@ -34,10 +36,6 @@ const CLOSED: &str = "closed";
 const SUBMITTER: &str = "submitter.lock";
 /// The largest list that is read.
 const MOST_LIST: u64 = 1 << 32;
-/// Bytes of a report that are read at once.
-const MOST_NEWS: u64 = 1 << 22;
-/// Room that a report reserves at the start, so that it can report a full disk, bytes.
-const ROOM: u64 = 1 << 14;
 
 /// Whether flow makes a folder of this name in this folder of a store.
 pub(super) fn is_folder(folder: &str, name: &str) -> bool {
@@ -77,7 +75,7 @@ impl Store {
         Ok(Queue { disk: self.disk.clone(), inside, name: name.to_owned(), secret: self.mark.queue(name) })
     }
 
-    /// The queue of this name. `secret` is the one in the job script, for a worker that cannot read its submitter's state folder.
+    /// The queue of this name; `secret` is what its submitter handed over, for another user's state folder or none.
     pub fn queue(&self, name: &str, secret: Option<[u8; 32]>) -> Queue {
         let secret = secret.unwrap_or_else(|| self.mark.queue(name));
         Queue { disk: self.disk.clone(), inside: format!("{FOLDER}/{name}"), name: name.to_owned(), secret }
@@ -116,7 +114,7 @@ pub struct Queue {
     secret: [u8; 32],
 }
 
-/// The lock of the process that looks after a queue.
+/// A lock that says that somebody looks after a queue.
 pub struct LookedAfter(#[expect(dead_code, reason = "it is held, and let go when it is dropped")] Held);
 
 impl Queue {
@@ -125,7 +123,7 @@ impl Queue {
         &self.name
     }
 
-    /// The secret for its workers, as hexadecimal digits.
+    /// What its workers are handed, as hexadecimal digits.
     pub fn secret(&self) -> String {
         blake3::Hash::from_bytes(self.secret).to_hex().to_string()
     }
@@ -144,7 +142,7 @@ impl Queue {
         self.disk.folder(&self.inside).map_err(|error| self.fail("open the folder", "", error))
     }
 
-    /// Writes list number `number`, which must be new.
+    /// Writes list number `number`, which nobody has written before.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -152,7 +150,7 @@ impl Queue {
         self.put(list_name(number), text)
     }
 
-    /// Writes the note on submission number `number`, for the process that looks after the queue next.
+    /// Notes submission number `number`, for whoever looks after the queue next.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -168,7 +166,7 @@ impl Queue {
         }
     }
 
-    /// List number `number`; `None` when there is none yet, an error when its seal is not that of this queue.
+    /// List number `number`; none when there is none yet, an error when its seal is not that of this queue.
     ///
     /// # Errors
     /// The store cannot be read, or the list was not written by the submitter.
@@ -176,7 +174,12 @@ impl Queue {
         self.sealed(list_name(number))
     }
 
-    /// The note on submission number `number`; `None` when there is none.
+    /// The error that a list which was there is not, or has lost a line.
+    pub fn lacks(&self, number: usize) -> StoreError {
+        self.fail("read", &list_name(number), ErrorKind::NotFound.into())
+    }
+
+    /// The note on submission number `number`; none when there is none.
     ///
     /// # Errors
     /// As [`Queue::list`].
@@ -219,7 +222,7 @@ impl Queue {
         Ok(self.path().join(name))
     }
 
-    /// Begins a task; false when it has been begun before.
+    /// Begins a task, once and for all; whether nobody has begun it before.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -248,7 +251,7 @@ impl Queue {
         Ok(begun)
     }
 
-    /// Closes the queue: no more tasks are to be begun.
+    /// Says that nothing more is to be begun.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -256,12 +259,12 @@ impl Queue {
         self.disk.write_new(&self.inside, CLOSED, b"", false).map(|_| ())
     }
 
-    /// Whether the queue is closed or removed.
+    /// Whether nothing more is to be begun; also when the queue is gone.
     pub fn is_closed(&self) -> bool {
         self.folder().is_ok_and(|folder| folder.entry(CLOSED).is_ok()) || !self.path().is_dir()
     }
 
-    /// Takes the lock of the process that looks after the queue; `None` while another process holds it.
+    /// Looks after the queue, unless another process of the same node, or of all nodes where locks reach those, does.
     pub fn look_after(&self) -> Option<LookedAfter> {
         let folder = self.folder().ok()?;
         let file = folder.open(SUBMITTER, true).or_else(|_| folder.create(SUBMITTER, 0o600)).ok()?;
@@ -269,69 +272,6 @@ impl Queue {
             Err(std::fs::TryLockError::WouldBlock) => None,
             Ok(()) | Err(std::fs::TryLockError::Error(_)) => Some(LookedAfter(Held(file))),
         }
-    }
-
-    /// A new report, locked while this process lives.
-    ///
-    /// # Errors
-    /// The store cannot be written.
-    pub fn report(&self, name: &str) -> Result<ReportFile, StoreError> {
-        let name = format!("worker-{name}.jsonl");
-        let file = self.folder()?.create(&name, 0o644).map_err(|error| self.fail("create", &name, error))?;
-        // Readers hold the lock for a moment only. It fails on a file system without locks.
-        let _ = file.lock();
-        // Some file systems cannot reserve room.
-        let _ = rustix::fs::fallocate(&file, rustix::fs::FallocateFlags::KEEP_SIZE, 0, ROOM);
-        Ok(ReportFile {
-            file: Held(file),
-            path: self.disk.path(&self.inside, &name),
-            disk: Arc::new(self.disk.clone()),
-        })
-    }
-
-    /// Names of the workers' reports.
-    ///
-    /// # Errors
-    /// The store cannot be read.
-    pub fn reports(&self) -> Result<Vec<String>, StoreError> {
-        let mut names = Vec::new();
-        let is_report = |name: &str| name.starts_with("worker-") && name.ends_with(".jsonl");
-        let listed = self.folder()?.list(|name, _| names.extend(is_report(name).then(|| name.to_owned())));
-        listed.map_err(|error| self.fail("list", "", error))?;
-        names.sort_unstable();
-        Ok(names)
-    }
-
-    /// The complete lines of a report from byte `from` on, their length in bytes, and whether its worker holds its lock.
-    ///
-    /// # Errors
-    /// The store cannot be read.
-    pub fn news(&self, report: &str, from: u64) -> Result<(String, u64, bool), StoreError> {
-        let read = |file: &mut File| -> std::io::Result<(String, u64, bool)> {
-            folder::ask_anew(&*file);
-            // Asked before reading: a worker that has ended writes no more.
-            let held = matches!(file.try_lock_shared(), Err(std::fs::TryLockError::WouldBlock));
-            if !held {
-                let _ = file.unlock();
-            }
-            file.seek(SeekFrom::Start(from))?;
-            let mut bytes = Vec::new();
-            file.take(MOST_NEWS).read_to_end(&mut bytes)?;
-            let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-            bytes.truncate(whole);
-            Ok((String::from_utf8_lossy(&bytes).into_owned(), whole as u64, held))
-        };
-        match self.folder()?.open(report, false).and_then(|mut file| read(&mut file)) {
-            Err(error) if Strange::is(&error) => Ok((String::new(), 0, false)),
-            other => other.map_err(|error| self.fail("read", report, error)),
-        }
-    }
-
-    /// The last line that a job has printed, for the reader of an error.
-    pub fn last_words(&self, log: &str) -> Option<String> {
-        let text = self.folder().ok()?.read(log, MOST_NEWS).ok()?;
-        let text = String::from_utf8_lossy(&text);
-        text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(|line| line.chars().take(300).collect())
     }
 }
 
@@ -343,89 +283,5 @@ fn round_name(number: usize) -> String {
     format!("round-{number:04}.json")
 }
 
-/// The report of a worker.
-pub struct ReportFile {
-    file: Held,
-    path: PathBuf,
-    disk: Arc<Disk>,
-}
-
-impl ReportFile {
-    /// Appends one line.
-    ///
-    /// # Errors
-    /// The store cannot be written.
-    pub fn say(&mut self, line: &str) -> Result<(), StoreError> {
-        let written = folder::write(&self.file.0, format!("{line}\n").as_bytes());
-        written.map_err(|error| self.disk.fail("write", &self.path, error))
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::store::Mark;
-
-    fn store(folder: &std::path::Path) -> Store {
-        Store::open_as(&folder.join("store"), Mark::of(&[1; 32])).unwrap()
-    }
-
-    #[test]
-    fn a_task_is_begun_once() {
-        let folder = tempfile::tempdir().unwrap();
-        let queue = store(folder.path()).make_queue("q-1").unwrap();
-        assert!(queue.begin(3).unwrap());
-        assert!(!queue.begin(3).unwrap());
-        assert_eq!(queue.begun().unwrap(), [3]);
-    }
-
-    #[test]
-    fn a_list_of_anybody_else_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = store(folder.path());
-        let queue = store.make_queue("q-1").unwrap();
-        assert_eq!(queue.list(1).unwrap(), None);
-        queue.put_list(1, "a\nb\n").unwrap();
-        assert_eq!(queue.list(1).unwrap().as_deref(), Some("a\nb\n"));
-        assert!(queue.put_list(1, "c\n").is_err(), "a list is written once");
-        let other = store.queue("q-1", Some([7; 32])).list(1).unwrap_err().to_string();
-        assert!(other.contains("not the list that was submitted"), "{other}");
-        // The list of one number does not stand in for that of another.
-        std::fs::copy(queue.path().join("tasks-0001.jsonl"), queue.path().join("tasks-0002.jsonl")).unwrap();
-        assert!(queue.list(2).is_err());
-    }
-
-    #[test]
-    fn reports_are_read_line_by_line_and_tell_whether_their_worker_lives() {
-        let folder = tempfile::tempdir().unwrap();
-        let queue = store(folder.path()).make_queue("q-1").unwrap();
-        let mut report = queue.report("a").unwrap();
-        report.say("one").unwrap();
-        let names = queue.reports().unwrap();
-        assert_eq!(queue.news(&names[0], 0).unwrap(), ("one\n".to_owned(), 4, true));
-        assert_eq!(queue.news(&names[0], 4).unwrap(), (String::new(), 0, true));
-        folder::write(&report.file.0, b"torn").unwrap();
-        drop(report);
-        assert_eq!(queue.news(&names[0], 4).unwrap(), (String::new(), 0, false));
-    }
-
-    #[test]
-    fn what_lies_in_a_queue_is_known_and_goes_with_gc() {
-        let folder = tempfile::tempdir().unwrap();
-        let store = store(folder.path());
-        let queue = store.make_queue("q-1").unwrap();
-        queue.put_list(1, "a\n").unwrap();
-        queue.begin(0).unwrap();
-        queue.put_script(1, "x").unwrap();
-        queue.close().unwrap();
-        drop(queue.report("w").unwrap());
-        assert!(store.verify().unwrap().strangers.is_empty());
-        std::fs::write(queue.path().join("mine.txt"), "x").unwrap();
-        assert_eq!(store.verify().unwrap().strangers.len(), 1);
-        store.sweep(&Default::default(), true).unwrap();
-        assert!(queue.path().join("mine.txt").is_file());
-        std::fs::remove_file(queue.path().join("mine.txt")).unwrap();
-        store.sweep(&Default::default(), true).unwrap();
-        assert!(!queue.path().exists() && queue.is_closed());
-    }
-}
+mod tests;

@@ -1,5 +1,4 @@
-//! Remotes: folders through which users share results. A remote holds objects and lists of them, and nothing in it is
-//! believed unchecked.
+//! Results on their way to others: a remote holds objects and lists of them, and nothing in it is believed unseen.
 //!
 //! ```text
 //! REMOTE/flow.remote                 says that flow made this folder
@@ -8,17 +7,26 @@
 //! REMOTE/segments/HASH.sig           who pushed it: an SSH signature of it                         sign.rs
 //! ```
 //!
-//! **Pushing** writes the objects that no segment lists, then one segment: an interrupted push leaves objects that no segment
-//! lists. Nothing is replaced or deleted. **Pulling** lists the segments alone, never the objects.
+//! **Pushing** writes the objects that no segment lists, then one segment: a push that is torn leaves objects that nobody
+//! looks at. Nothing is replaced or deleted. **Pulling** lists the segments alone, never the objects.
 //!
 //! **What is checked, in this order**: the segment against its name; its signature against those whom the user allows; the
 //! object's size and digest against its record, before a byte of it is decoded; its values and the text of its task against
-//! content hash and key. So an object proves which task and which values it holds. That the task gives these values is the
-//! signer's claim; `flow store audit` computes some of them again, and equal bits prove it.
+//! content hash and key. So an object proves what it is; that its values are what the task gives is the word of the signer,
+//! and `flow store audit` computes some of them again, which equal bits make a proof.
 
+mod access;
+mod address;
+mod bucket;
+mod credentials;
+mod folder;
+mod mirror;
 mod place;
 mod segment;
 mod sign;
+
+pub use address::Address;
+pub use mirror::{Mirrored, mirror};
 
 pub use sign::{Signing, Trust};
 
@@ -27,48 +35,45 @@ use super::record::moment;
 use super::{ObjectId, Record, Store, StoreError, Timing, locked};
 use super::{finish, prove};
 use crate::artifact::Key;
-use place::Place;
+pub(super) use place::Place;
 use std::collections::{BTreeMap, HashMap, HashSet};
-use std::path::Path;
 use std::sync::Arc;
 
-/// The largest segment that is read: one of ten million records.
+/// Folder of a store for the segments of far remotes that were read: they never change, so they are read once.
+pub(super) const FOLDER: &str = "remote";
+/// The largest of them.
 const MOST_SEGMENT: u64 = 1 << 31;
 
-/// The outcome of a push.
+/// Whether a file of this name in that folder is a segment.
+pub(super) fn is_segment(name: &str) -> bool {
+    name.strip_suffix(".segment").is_some_and(|hash| hash.len() == 64 && object::is_hex(hash))
+}
+
+/// What became of a push.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pushed {
     /// Results that were copied and listed.
     pub pushed: usize,
     /// Results that the remote lists already.
     pub there: usize,
-    /// The new segment; `None` when nothing was new.
+    /// The new segment; none when nothing was new.
     pub segment: Option<String>,
 }
 
-/// The outcome of a pull.
+/// What became of a pull.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Pulled {
     /// Results that are new here.
     pub pulled: usize,
-    /// Results that were here before.
+    /// Results that were here.
     pub here: usize,
-    /// The segments and results that were refused, each with the reason.
+    /// What was refused, and why.
     pub refused: Vec<String>,
-    /// The signers of the results that were taken, and the number of results of each.
+    /// Who signed what was taken, and how many results each.
     pub signers: BTreeMap<String, usize>,
 }
 
-/// The outcome of a mirror.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Mirrored {
-    /// Segments that were copied.
-    pub segments: usize,
-    /// Objects that were copied.
-    pub objects: usize,
-}
-
-/// Errors of a remote as a whole.
+/// What can go wrong with a remote as a whole.
 #[derive(Debug, thiserror::Error)]
 pub enum RemoteError {
     /// The remote or the store cannot be read or written.
@@ -82,10 +87,18 @@ pub enum RemoteError {
         /// What stands in the way.
         why: String,
     },
+    /// The server of a bucket cannot be reached, or refuses.
+    #[error("{remote}: {why}")]
+    Server {
+        /// The remote.
+        remote: String,
+        /// What the server says, or why it cannot be asked.
+        why: String,
+    },
     /// Signing failed.
     #[error("the push cannot be signed: {0}")]
     Signing(String),
-    /// A file of the remote is damaged.
+    /// What a mirror copies is not what it should be.
     #[error("{name} of the remote is damaged: {why}; nothing more was copied")]
     Damaged {
         /// The file.
@@ -96,163 +109,191 @@ pub enum RemoteError {
 }
 
 impl Store {
-    /// Copies all sound results that the remote at `path` does not list, and lists them in one signed segment.
+    /// Copies all sound results that the remote does not list, and lists them in one signed segment.
     ///
     /// # Errors
     /// The remote cannot be written, or the segment cannot be signed.
-    pub fn push(&self, path: &Path, signing: &Signing) -> Result<Pushed, RemoteError> {
-        let remote = Place::make(path)?;
-        let mut listed: HashSet<ObjectId> = HashSet::new();
-        for name in remote.segments()? {
-            let bytes = remote.segment(&name)?;
-            listed.extend(segment::read(&name, &bytes).into_iter().flatten().map(|record| record.object()));
+    pub fn push(&self, address: &Address, signing: &Signing) -> Result<Pushed, RemoteError> {
+        let remote = Place::make(address)?;
+        let mut there: HashSet<ObjectId> = HashSet::new();
+        for name in &remote.segments {
+            // A damaged one lists nothing.
+            let records = self.segment(&remote, name)?.map(|(_, records)| records).unwrap_or_default();
+            there.extend(records.iter().map(Record::object));
         }
-        let mut pushed = Pushed::default();
-        let mut new = Vec::new();
-        for record in self.records()? {
-            let id = record.object();
-            if listed.contains(&id) {
-                pushed.there += 1;
-                continue;
-            }
-            // Another user's record does not prove the file, and a damaged object is not passed on.
-            let Some(record) = self.find(&record.key)?.filter(|found| found.object() == id) else { continue };
-            let Ok(image) = prove::image_of(&self.disk, &id, Some(&record.seal)) else { continue };
-            remote.put(&id.folder(), &id.file_name(), &image)?;
-            new.push(record);
-        }
+        let (old, wanted): (Vec<Record>, Vec<Record>) =
+            self.records()?.into_iter().partition(|record| there.contains(&record.object()));
+        let given = remote.each(&wanted, |record| self.give(&remote, record))?;
+        let new: Vec<Record> = given.into_iter().flatten().collect();
+        let mut pushed = Pushed { pushed: new.len(), there: old.len(), segment: None };
         if !new.is_empty() {
-            let bytes = segment::write(new.clone());
+            let bytes = segment::write(new);
             let name = blake3::hash(&bytes).to_hex().to_string();
             let signature = signing.sign(&bytes).map_err(RemoteError::Signing)?;
-            // The signature first, so that no reader finds the segment unsigned.
+            // The signature first: nobody sees a segment that is to be signed and is not.
             if let Some(signature) = signature {
                 remote.put_signature(&name, &signature)?;
             }
             remote.put_segment(&name, &bytes)?;
+            self.remember_segment(&remote, &name, &bytes);
             pushed.segment = Some(name);
         }
-        pushed.pushed = new.len();
         Ok(pushed)
     }
 
-    /// Takes the results that the remote at `path` lists and this store lacks, if their signers are trusted.
+    /// Copies the object of a record to a remote; the record to list, or none when the object is not sound.
+    fn give(&self, remote: &Place, record: &Record) -> Result<Option<Record>, RemoteError> {
+        let id = record.object();
+        // A record of somebody else says nothing about the file, and a damaged object is not passed on.
+        let Some(record) = self.find(&record.key)?.filter(|found| found.object() == id) else { return Ok(None) };
+        let Ok(image) = prove::image_of(&self.disk, &id, Some(&record.seal)) else { return Ok(None) };
+        remote.put_object(&id, &image)?;
+        Ok(Some(record))
+    }
+
+    /// Takes the results that the remote lists and this store has not, from those who are trusted.
     ///
     /// # Errors
     /// The remote cannot be read or the store cannot be written.
-    pub fn pull(&self, path: &Path, trust: &Trust) -> Result<Pulled, RemoteError> {
-        let remote = Place::open(path)?;
+    pub fn pull(&self, address: &Address, trust: &Trust) -> Result<Pulled, RemoteError> {
+        let remote = Place::open(address)?;
         let mut pulled = Pulled::default();
-        // The contents that this store has of each task, to find contradictions.
+        // Which contents this store has of each task, to see contradictions.
         let mut here: HashMap<Key, ObjectId> = HashMap::new();
         for record in self.records()? {
             if object::is_there(&self.disk, &record.object()) {
                 here.insert(record.key, record.object());
             }
         }
-        for name in remote.segments()? {
-            let short = &name[..name.len().min(12)];
-            let bytes = remote.segment(&name)?;
-            let Some(records) = segment::read(&name, &bytes) else {
-                pulled.refused.push(format!("segment {short} is not what its name says: damaged, or not by flow"));
-                continue;
-            };
-            let signer = match trust.signer(&bytes, remote.signature(&name)?.as_deref()) {
-                Ok(signer) => signer,
+        for name in &remote.segments {
+            let (bytes, records) = match self.segment(&remote, name)? {
+                Ok(read) => read,
                 Err(why) => {
-                    pulled.refused.push(format!("segment {short} ({} results): {why}", records.len()));
+                    pulled.refused.push(why);
                     continue;
                 }
             };
-            for record in records {
-                match self.take(&remote, &record, &here) {
-                    Ok(true) => {
-                        here.insert(record.key, record.object());
-                        pulled.pulled += 1;
-                        *pulled.signers.entry(signer.clone()).or_default() += 1;
-                    }
-                    Ok(false) => pulled.here += 1,
-                    Err(Untaken::Refused(why)) => {
-                        pulled.refused.push(format!("task {:.16}: {why}", record.key.to_string()))
-                    }
-                    Err(Untaken::Store(error)) => return Err(error.into()),
-                }
+            let all = records.len();
+            let wanted: Vec<Record> =
+                records.into_iter().filter(|record| here.get(&record.key) != Some(&record.object())).collect();
+            pulled.here += all - wanted.len();
+            // Nobody asks who has signed what is here already.
+            if wanted.is_empty() {
+                continue;
+            }
+            match remote.signer((name, &bytes, all), trust)? {
+                Ok(signer) => self.take_all(&remote, wanted, &signer, &mut here, &mut pulled)?,
+                Err(why) => pulled.refused.push(why),
             }
         }
         Ok(pulled)
     }
 
-    /// Takes one result, unless it is here.
-    fn take(&self, remote: &Place, record: &Record, here: &HashMap<Key, ObjectId>) -> Result<bool, Untaken> {
-        let id = record.object();
-        match here.get(&record.key) {
-            Some(known) if *known == id => return Ok(false),
-            Some(known) => {
-                return Err(Untaken::Refused(format!(
-                    "its result there ({:.16}) is not the one here ({:.16}): one of the two is wrong; `flow store audit` \
-                     computes it again",
-                    id.content.to_string(),
-                    known.content.to_string()
-                )));
+    /// Takes the results of one segment.
+    fn take_all(
+        &self,
+        remote: &Place,
+        wanted: Vec<Record>,
+        signer: &str,
+        here: &mut HashMap<Key, ObjectId>,
+        pulled: &mut Pulled,
+    ) -> Result<(), RemoteError> {
+        let mut taken = Vec::with_capacity(wanted.len());
+        let refused = |record: &Record, why: String| format!("task {:.16}: {why}", record.key.to_string());
+        for record in wanted {
+            match here.get(&record.key).copied() {
+                Some(known) if known == record.object() => pulled.here += 1,
+                Some(known) => pulled.refused.push(refused(&record, contradiction(&record, &known))),
+                None => {
+                    here.insert(record.key, record.object());
+                    taken.push(record);
+                }
             }
-            None => {}
         }
+        let take = |record: &Record| match self.take(remote, record) {
+            Ok(()) => Ok(None),
+            Err(Untaken::Refused(why)) => Ok(Some(why)),
+            Err(Untaken::Remote(error)) => Err(error),
+        };
+        for (record, why) in taken.iter().zip(remote.each(&taken, take)?) {
+            if let Some(why) = why {
+                here.remove(&record.key);
+                pulled.refused.push(refused(record, why));
+                continue;
+            }
+            pulled.pulled += 1;
+            *pulled.signers.entry(signer.to_owned()).or_default() += 1;
+        }
+        Ok(())
+    }
+
+    /// Takes one result that is not here.
+    pub(super) fn take(&self, remote: &Place, record: &Record) -> Result<(), Untaken> {
+        let id = record.object();
         let refused = |why: String| Untaken::Refused(why);
-        let image = remote.object(&id, record.seal.size).map_err(Untaken::Store)?;
+        let image = remote.object(&id, record.seal.size).map_err(Untaken::Remote)?;
         let image = image.ok_or_else(|| refused("its object is not there".to_owned()))?;
         if let Some(why) = record.seal.difference(&Seal::of(&image)) {
-            // A larger file, a link, a pipe and a device are not read.
+            // Nothing was read of what is larger, a link, a pipe or a device.
             let why = if image.is_empty() { "it is no plain file of the recorded size".to_owned() } else { why };
             return Err(refused(format!("{why}; it is computed again when it is needed")));
         }
         prove::bytes(&id, image.clone()).map_err(refused)?;
-        let seal = finish::write(&self.disk, &id, &image, false, None).map_err(Untaken::Store)?;
+        let own = |error: StoreError| Untaken::Remote(error.into());
+        let seal = finish::write(&self.disk, &id, &image, false, None).map_err(own)?;
         let timing = Timing { started: moment(record.started), seconds: record.seconds };
-        let own = self.marked(&id, seal, &timing, Arc::clone(&record.origin));
-        locked(&self.segments).append(&self.disk, &own, false).map_err(Untaken::Store)?;
+        let record = self.marked(&id, seal, &timing, Arc::clone(&record.origin));
+        locked(&self.segments).append(&self.disk, &record, false).map_err(own)?;
         if let Some(index) = self.index.get() {
-            locked(index).add(&own);
+            locked(index).add(&record);
         }
         locked(&self.presence).add(&id);
-        Ok(true)
+        Ok(())
     }
+
+    /// The bytes of a segment and its records, or what is wrong with it; that of a far remote is stored when it is first read.
+    pub(super) fn segment(&self, remote: &Place, name: &str) -> Result<Result<Segment, String>, RemoteError> {
+        let known = self.disk.find_folder(FOLDER)?;
+        let known = known.and_then(|folder| folder.read(&format!("{name}.segment"), MOST_SEGMENT).ok());
+        if let Some(bytes) = known
+            && let Some(records) = segment::read(name, &bytes)
+        {
+            return Ok(Ok((bytes, records)));
+        }
+        let bytes = remote.segment(name)?;
+        let Some(records) = segment::read(name, &bytes) else {
+            return Ok(Err(format!("segment {name:.12} is not what its name says: damaged, or not by flow")));
+        };
+        self.remember_segment(remote, name, &bytes);
+        Ok(Ok((bytes, records)))
+    }
+
+    fn remember_segment(&self, remote: &Place, name: &str, bytes: &[u8]) {
+        if remote.is_far() {
+            // Without it, it is read from the remote again.
+            let _ = self.disk.write_new(FOLDER, &format!("{name}.segment"), bytes, false);
+        }
+    }
+}
+
+/// Bytes and records.
+type Segment = (Vec<u8>, Vec<Record>);
+
+fn contradiction(record: &Record, known: &ObjectId) -> String {
+    format!(
+        "its result there ({:.16}) is not the one here ({:.16}): one of the two is wrong; `flow store audit` computes it \
+         again",
+        record.content.to_string(),
+        known.content.to_string()
+    )
 }
 
 /// Why a result was not taken.
-enum Untaken {
+pub(super) enum Untaken {
+    /// It is not what it should be; how.
     Refused(String),
-    Store(StoreError),
-}
-
-/// Copies the segments and objects that one remote lists and the other does not, with their signatures, so that the signers
-/// stay the same.
-///
-/// # Errors
-/// One of them cannot be read or written, or holds other objects than it lists.
-pub fn mirror(from: &Path, to: &Path) -> Result<Mirrored, RemoteError> {
-    let (from, to) = (Place::open(from)?, Place::make(to)?);
-    let known: HashSet<String> = to.segments()?.into_iter().collect();
-    let mut mirrored = Mirrored::default();
-    for name in from.segments()?.into_iter().filter(|name| !known.contains(name)) {
-        let damaged = |name: &str, why: &str| RemoteError::Damaged { name: name.to_owned(), why: why.to_owned() };
-        let bytes = from.segment(&name)?;
-        let records = segment::read(&name, &bytes).ok_or_else(|| damaged(&name, "it is not what its name says"))?;
-        for record in records {
-            let id = record.object();
-            let image = from.object(&id, record.seal.size)?;
-            let image = image.ok_or_else(|| damaged(&id.file_name(), "it is not there"))?;
-            if let Some(why) = record.seal.difference(&Seal::of(&image)) {
-                return Err(damaged(&id.file_name(), &why));
-            }
-            mirrored.objects += usize::from(to.put(&id.folder(), &id.file_name(), &image)?);
-        }
-        if let Some(signature) = from.signature(&name)? {
-            to.put_signature(&name, &signature)?;
-        }
-        to.put_segment(&name, &bytes)?;
-        mirrored.segments += 1;
-    }
-    Ok(mirrored)
+    /// The remote or the store cannot be read or written.
+    Remote(RemoteError),
 }
 
 #[cfg(test)]

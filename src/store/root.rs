@@ -21,7 +21,7 @@ const TEXT: &str = "flow store 1\n\
 /// Files that stand beside a store and are not flow's to touch.
 const NOTES: &[&str] = &[".gitignore", "README.md"];
 /// Folders that flow makes in a store.
-const FOLDERS: &[&str] = &["objects", "journal", "memo", "runs", "locks", "aside", "queue"];
+const FOLDERS: &[&str] = &["objects", "journal", "memo", "runs", "locks", "aside", "queue", "remote"];
 /// Files that flow makes in the root of a store.
 const FILES: &[&str] = &[MARKER, super::lock::IN_USE, "listing"];
 

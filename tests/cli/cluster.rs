@@ -1,6 +1,8 @@
 //! Workers of a cluster, with a scheduler that is a few lines of shell: what the submitter does, and what it says, when all is
 //! well and when it is not. The real Slurm is met by `tests/cluster/measure.sh`, by hand.
 
+mod trouble;
+
 use crate::space::{Ran, Space, told};
 use rustix::process::{Pid, Signal, kill_process};
 use std::os::unix::fs::PermissionsExt;

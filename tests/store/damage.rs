@@ -2,7 +2,7 @@
 
 use crate::{found, open, put, result, run, text};
 use flow::artifact::Key;
-use flow::store::{Store, StoreError};
+use flow::store::{Aside, Store, StoreError};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ fn assert_noticed(root: &Path, path: &Path, damaged: &[u8]) {
     let record = found(&store, 3).expect("the file is there");
     match store.get(&record.content) {
         Err(StoreError::Damaged { fault }) => {
-            let aside = fault.aside.expect("it is set aside");
+            let Aside::Moved(aside) = fault.aside else { panic!("it is set aside: {fault}") };
             assert_eq!(fs::read(&aside).unwrap(), damaged);
             fs::remove_file(aside).unwrap();
         }

@@ -134,7 +134,7 @@ fn a_damaged_object_on_a_read_only_disk_is_still_noticed() {
     let said = std::panic::catch_unwind(|| probe("exec \"$0\" \"$@\"", folder.path()));
     assert!(mounted(&format!("umount -l {root}")));
     let said = said.unwrap();
-    assert!(said.contains("aside: None") && said.contains("instead of"), "{said}");
+    assert!(said.contains("aside: Stays") && said.contains("instead of"), "{said}");
 }
 
 #[cfg(unix)]

@@ -6,14 +6,17 @@ use super::super::progress::task_name;
 use super::super::run::interruption;
 use crate::exec::cores;
 use crate::run::{Audited, audit, decide};
-use crate::store::{RemoteError, Signing, Trust, mirror};
+use crate::store::{Address, RemoteError, Signing, Trust, mirror};
 use clap::Args;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 #[derive(Args)]
 pub(super) struct Push {
-    /// The remote: a folder that is empty or was pushed to before.
-    remote: PathBuf,
+    /// The remote: a folder that is empty or was pushed to before, or s3://BUCKET/PREFIX.
+    remote: String,
+    #[command(flatten)]
+    server: Server,
     /// Sign with this SSH key, such as `~/.ssh/id_ed25519`.
     #[arg(long, value_name = "KEY", required_unless_present = "unsigned")]
     sign: Option<PathBuf>,
@@ -24,8 +27,27 @@ pub(super) struct Push {
 
 #[derive(Args)]
 pub(super) struct Pull {
-    /// The remote.
-    remote: PathBuf,
+    /// The remote: a folder, or s3://BUCKET/PREFIX.
+    remote: String,
+    #[command(flatten)]
+    server: Server,
+    #[command(flatten)]
+    whom: Whom,
+}
+
+#[derive(Args)]
+pub(super) struct Attach {
+    /// The remote: a folder, or s3://BUCKET/PREFIX.
+    remote: String,
+    #[command(flatten)]
+    server: Server,
+    #[command(flatten)]
+    whom: Whom,
+}
+
+/// Whose results are taken.
+#[derive(Args)]
+struct Whom {
     /// The people whose results are taken: a file of allowed signers as for ssh and git, one `NAME namespaces="flow-store" KEY` a line.
     #[arg(long, value_name = "FILE", default_value = "allowed_signers")]
     signers: PathBuf,
@@ -34,12 +56,48 @@ pub(super) struct Pull {
     unsigned: bool,
 }
 
+impl Whom {
+    fn trust(&self) -> Result<Trust, Exit> {
+        if !self.unsigned && !self.signers.is_file() {
+            err!(
+                "error: there is no file {} of those whose results are taken\n  name one with `--signers`, or take \
+                 anybody's with `--unsigned`",
+                self.signers.display()
+            );
+            return Err(Exit::BadInput);
+        }
+        Ok(if self.unsigned { Trust::Anybody } else { Trust::Signers(self.signers.clone()) })
+    }
+}
+
 #[derive(Args)]
 pub(super) struct Mirror {
-    /// The remote to copy.
-    from: PathBuf,
+    /// The remote to copy: a folder, or s3://BUCKET/PREFIX.
+    from: String,
     /// The remote to copy it to.
-    to: PathBuf,
+    to: String,
+    #[command(flatten)]
+    server: Server,
+}
+
+/// The server of a bucket.
+#[derive(Args)]
+struct Server {
+    /// The server of an s3:// remote that is not Amazon's, such as `https://minio.uni.edu` [default: AWS_ENDPOINT_URL, or
+    /// `endpoint_url` of the profile AWS_PROFILE].
+    #[arg(long, value_name = "URL")]
+    endpoint: Option<String>,
+}
+
+impl Server {
+    fn address(&self, remote: &str) -> Result<Address, Exit> {
+        Address::parse(remote, self.endpoint.as_deref()).map_err(wrong)
+    }
+}
+
+fn wrong(why: String) -> Exit {
+    err!("error: {why}");
+    Exit::BadInput
 }
 
 #[derive(Args)]
@@ -62,14 +120,15 @@ fn failed(error: &RemoteError) -> Exit {
             err!("error: {error}");
             Exit::BadInput
         }
-        RemoteError::Signing(_) | RemoteError::Damaged { .. } => system(error),
+        RemoteError::Server { .. } | RemoteError::Signing(_) | RemoteError::Damaged { .. } => system(error),
     }
 }
 
 impl Push {
     pub(super) fn go(&self, common: &Common) -> Result<Exit, Exit> {
         let signing = self.sign.clone().map_or(Signing::None, Signing::Key);
-        let pushed = common.open()?.push(&self.remote, &signing).map_err(|error| failed(&error))?;
+        let pushed =
+            common.open()?.push(&self.server.address(&self.remote)?, &signing).map_err(|error| failed(&error))?;
         out!("{} results pushed, {} were there", pushed.pushed, pushed.there);
         Ok(Exit::Done)
     }
@@ -77,26 +136,40 @@ impl Push {
 
 impl Pull {
     pub(super) fn go(&self, common: &Common) -> Result<Exit, Exit> {
-        if !self.unsigned && !self.signers.is_file() {
-            err!(
-                "error: there is no file {} of those whose results are taken\n  name one with `--signers`, or take \
-                 anybody's with `--unsigned`",
-                self.signers.display()
-            );
-            return Err(Exit::BadInput);
-        }
-        let trust = if self.unsigned { Trust::Anybody } else { Trust::Signers(self.signers.clone()) };
-        let pulled = common.open()?.pull(&self.remote, &trust).map_err(|error| failed(&error))?;
+        let (address, trust) = (self.server.address(&self.remote)?, self.whom.trust()?);
+        let pulled = common.open()?.pull(&address, &trust).map_err(|error| failed(&error))?;
         out!("{} results pulled, {} were here, {} refused", pulled.pulled, pulled.here, pulled.refused.len());
-        pulled.signers.iter().for_each(|(signer, count)| out!("  {count} signed by {signer}"));
-        pulled.refused.iter().for_each(|why| err!("refused: {why}"));
-        Ok(if pulled.refused.is_empty() { Exit::Done } else { Exit::System })
+        Ok(taken(&pulled.signers, &pulled.refused))
     }
+}
+
+impl Attach {
+    pub(super) fn go(&self, common: &Common) -> Result<Exit, Exit> {
+        let (address, trust) = (self.server.address(&self.remote)?, self.whom.trust()?);
+        let attached = common.open()?.attach(&address, &trust).map_err(|error| failed(&error))?;
+        out!(
+            "{address} is attached: {} results can be read from it, each is fetched when it is needed",
+            attached.results
+        );
+        Ok(taken(&attached.signers, &attached.refused))
+    }
+}
+
+/// Says whose results were taken and what was refused.
+fn taken(signers: &BTreeMap<String, usize>, refused: &[String]) -> Exit {
+    signers.iter().for_each(|(signer, count)| out!("  {count} signed by {signer}"));
+    refused.iter().for_each(|why| err!("refused: {why}"));
+    if refused.is_empty() { Exit::Done } else { Exit::System }
 }
 
 impl Mirror {
     pub(super) fn go(&self) -> Result<Exit, Exit> {
-        let mirrored = mirror(&self.from, &self.to).map_err(|error| failed(&error))?;
+        // The server is that of whichever is a bucket.
+        let address = |remote: &str| match remote.contains("://") {
+            true => self.server.address(remote),
+            false => Address::parse(remote, None).map_err(wrong),
+        };
+        let mirrored = mirror(&address(&self.from)?, &address(&self.to)?).map_err(|error| failed(&error))?;
         out!("{} lists and {} results copied", mirrored.segments, mirrored.objects);
         Ok(Exit::Done)
     }

@@ -4,7 +4,8 @@
 //! it, and compresses it between two platens. Every figure is the best and the median of several stretches of the test,
 //! because other work on the machine only ever adds time. `full` runs one test past its peak instead; `energy` tracks the
 //! energy balance, as the stages do. `joints` times the same specimen with flat joints (two elements in the plane, six in
-//! space) beside the parallel bonds.
+//! space) beside the parallel bonds. `once` times one thread at the widest width only; `write=FILE` writes the packing, and
+//! `tests/bench/peers.py` gives it to other codes.
 //!
 //! Specimens of all sizes go through the same strains: the platens' speed follows the height, and no stretch has more steps
 //! than that of the usual size. Otherwise a small one would be past its peak, with more contacts than bonds.
@@ -178,16 +179,44 @@ fn memory() -> Option<f64> {
     Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? * 1024.0)
 }
 
-fn rates<S: Space>(count: usize, usual: usize, energy: bool, law: Law) {
-    let speed = 0.02 * pow(count as f64 / usual as f64, 1.0 / S::DIMENSION as f64);
-    let (mut engine, _) = specimen::<S>(count, speed, law);
-    if energy {
+/// What is timed, and how.
+#[derive(Clone, Copy)]
+struct Order<'a> {
+    count: usize,
+    energy: bool,
+    once: bool,
+    file: Option<&'a str>,
+}
+
+/// Writes a packing: a line `# dimension number edges`, then centre and radius of each ball, in metres.
+fn write<S: Space>(engine: &Engine<S>, size: Vector<S>, path: &str) {
+    let line = |v: Vector<S>| {
+        (0..3).map(|k| if k < S::DIMENSION { v.at(k) } else { 0.0 }.to_string()).collect::<Vec<_>>().join(" ")
+    };
+    let mut text = format!("# {} {} {}\n", S::DIMENSION, engine.particle_count(), line(size));
+    for k in 0..engine.particle_count() {
+        text += &format!("{} {}\n", line(engine.position(k)), engine.radius(k));
+    }
+    std::fs::write(path, text).expect("a file that can be written");
+}
+
+fn rates<S: Space>(order: Order, usual: usize, law: Law) {
+    let speed = 0.02 * pow(order.count as f64 / usual as f64, 1.0 / S::DIMENSION as f64);
+    let (mut engine, size) = specimen::<S>(order.count, speed, law);
+    if let Some(path) = order.file {
+        write(&engine, size, path);
+    }
+    if order.energy {
         engine.track_energy();
     }
     let steps = (20_000_000 / engine.bond_count().max(1)).clamp(50, 400) as u64;
-    for threads in [1, 2] {
+    let (all_threads, widths) = ([1, 2], [Width::One, Width::Four, Width::Eight]);
+    let widest = [Width::detect()];
+    let (all_threads, widths) =
+        if order.once { (&all_threads[..1], &widest[..]) } else { (&all_threads[..], &widths[..]) };
+    for &threads in all_threads {
         engine.set_threads(threads);
-        for width in [Width::One, Width::Four, Width::Eight].into_iter().filter(|w| w.available()) {
+        for &width in widths.iter().filter(|w| w.available()) {
             engine.set_width(width);
             let [best, median] = rate(&mut engine, 9, steps);
             let listed = engine.contacts().count();
@@ -235,14 +264,16 @@ fn main() {
     let solid = words.iter().any(|w| w == "3d");
     let number = words.iter().find_map(|w| w.parse().ok());
     let whole = words.iter().any(|w| w == "full");
-    let energy = words.iter().any(|w| w == "energy");
+    let (energy, once) = (words.iter().any(|w| w == "energy"), words.iter().any(|w| w == "once"));
+    let file = words.iter().find_map(|w| w.strip_prefix("write="));
+    let order = |usual: usize| Order { count: number.unwrap_or(usual), energy, once, file };
     let threads = if words.iter().any(|w| w == "one") { 1 } else { 2 };
     let masses = if words.iter().any(|w| w == "equal") { Masses::EqualStep } else { Masses::Real };
     let joints = words.iter().any(|w| w == "joints");
     let laws = if joints { &[Law::Parallel, Law::Flat][..] } else { &[Law::Parallel] };
     match (solid, whole) {
-        (false, false) => laws.iter().for_each(|&law| rates::<D2>(number.unwrap_or(PLANE), PLANE, energy, law)),
-        (true, false) => laws.iter().for_each(|&law| rates::<D3>(number.unwrap_or(SOLID), SOLID, energy, law)),
+        (false, false) => laws.iter().for_each(|&law| rates::<D2>(order(PLANE), PLANE, law)),
+        (true, false) => laws.iter().for_each(|&law| rates::<D3>(order(SOLID), SOLID, law)),
         (false, true) => full::<D2>(number.unwrap_or(PLANE), threads, masses),
         (true, true) => full::<D3>(number.unwrap_or(SOLID), threads, masses),
     }

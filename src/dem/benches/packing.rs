@@ -1,4 +1,7 @@
-//! Time and quality of packings: `cargo bench -p flow-dem --bench packing [-- NUMBER STRESS/MODULUS]`.
+//! Time and quality of packings: `cargo bench -p flow-dem --bench packing [-- NUMBER STRESS/MODULUS] [WORDS]`.
+//!
+//! Words choose cases by their names. Times are those of the thread, because other work on the machine does not count then.
+//! `bits` is a fingerprint of centres and radii: builds that pack alike print the same.
 #![allow(clippy::unwrap_used)]
 
 use dem::genesis::compress::{Floaters, StressTarget};
@@ -6,18 +9,39 @@ use dem::genesis::fabric::Fabric;
 use dem::genesis::packing::{Packed, Packing};
 use dem::genesis::region::Region;
 use dem::genesis::sizes::Sizes;
+use dem::space::Tuple;
 use dem::{D2, D3, Space, Watch};
 use math::random::Stream;
-use std::time::Instant;
+use rustix::time::{ClockId, clock_gettime};
+
+/// Seconds that this thread ran.
+fn seconds() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+/// Fingerprint of centres and radii.
+fn bits<S: Space>(packed: &Packed<S>) -> u64 {
+    let heap = &packed.heap;
+    let centres = heap.centres.iter().flat_map(|x| (0..S::DIMENSION).map(|k| x.at(k)));
+    centres
+        .chain(heap.radii.iter().copied())
+        .fold(0, |sum: u64, x| (sum ^ x.to_bits()).wrapping_mul(0x0100_0000_01b3).rotate_left(23))
+}
 
 fn report<S: Space>(name: &str, packing: &Packing, region: &Region) {
-    let start = Instant::now();
+    let words: Vec<String> =
+        std::env::args().skip(1).filter(|a| !a.starts_with("--") && a.parse::<f64>().is_err()).collect();
+    if !words.iter().all(|word| name.contains(word.as_str())) {
+        return;
+    }
+    let start = seconds();
     let packed: Packed<S> = packing.pack(region, &mut Stream::new(1, "packing", 0), &|| Watch::Continue).unwrap();
-    let seconds = start.elapsed().as_secs_f64();
+    let seconds = seconds() - start;
     let fabric = Fabric::of(&packed.heap);
     println!(
         "{name}: {} balls, {seconds:.2} s, {} iterations, {} rounds, factor {:.5}, growth {:.3}, porosity {:.4}, \
-         coordination {:.3}, floaters {}, stress/modulus {:.3e}, mean overlap {:.2e}, anisotropy {:.3} {:.3}",
+         coordination {:.3}, floaters {}, stress/modulus {:.3e}, mean overlap {:.2e}, anisotropy {:.3} {:.3}, bits {:016x}",
         packed.heap.radii.len(),
         packed.iterations,
         packed.floater_rounds,
@@ -30,6 +54,7 @@ fn report<S: Space>(name: &str, packing: &Packing, region: &Region) {
         fabric.mean_overlap,
         fabric.anisotropy,
         fabric.normals,
+        bits(&packed),
     );
 }
 

@@ -81,15 +81,23 @@ impl<S: Space> Heap<S> {
 
     /// What may touch within `margin` (m); all stiffnesses times `scale`.
     pub(super) fn neighbours(&self, margin: f64, scale: f64) -> Neighbours {
-        let pair = |(i, j): (usize, usize)| {
-            let (ri, rj) = (self.radii[i], self.radii[j]);
-            // A stone is rigid however small its pebbles are: it resists a ball as another one of the ball's size does.
-            let stiffness = scale * UNIT.normal::<S>(if i < self.still.pebbles { [rj, rj] } else { [ri, rj] });
-            Pair { i: i as u32, j: j as u32, reach: ri + rj, stiffness }
-        };
-        let near = |&i: &usize| self.region.depth::<S>(self.centres[i]) < self.radii[i] + margin;
+        let near = |&i: &usize| self.is_near_wall(self.centres[i], i, margin);
         let at_wall = (self.still.pebbles..self.radii.len()).filter(near).map(|i| i as u32).collect();
+        let pair = |(i, j): (usize, usize)| self.pair(i, j, scale);
         Neighbours { pairs: self.pairs(margin).into_iter().map(pair).collect(), at_wall, scale }
+    }
+
+    /// Balls i < j as a pair; its stiffness times `scale`.
+    pub(super) fn pair(&self, i: usize, j: usize, scale: f64) -> Pair {
+        let (ri, rj) = (self.radii[i], self.radii[j]);
+        // A stone is rigid however small its pebbles are: it resists a ball as another one of the ball's size does.
+        let stiffness = scale * UNIT.normal::<S>(if i < self.still.pebbles { [rj, rj] } else { [ri, rj] });
+        Pair { i: i as u32, j: j as u32, reach: ri + rj, stiffness }
+    }
+
+    /// Whether a wall is nearer than `margin` (m) to the surface of ball `i` with its centre at `x`.
+    pub(super) fn is_near_wall(&self, x: Vector<S>, i: usize, margin: f64) -> bool {
+        self.region.depth::<S>(x) < self.radii[i] + margin
     }
 
     /// Calls `visit` for every pair that overlaps, then for every ball that overlaps a wall.
@@ -112,6 +120,12 @@ impl<S: Space> Heap<S> {
                 visit(Overlap { first: i, second: Some(j), depth: reach - distance, normal, stiffness });
             }
         }
+        self.visit_walls(list, visit);
+    }
+
+    /// The same for what overlaps a wall.
+    #[inline]
+    pub(super) fn visit_walls(&self, list: &Neighbours, mut visit: impl FnMut(Overlap<S>)) {
         for &i in &list.at_wall {
             let (i, radius) = (i as usize, self.radii[i as usize]);
             let stiffness = list.scale * UNIT.normal::<S>([radius, f64::INFINITY]);

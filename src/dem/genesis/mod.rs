@@ -2,6 +2,7 @@
 //!
 //! * [`region`]: the outline of the specimen and the walls of its vessel
 //! * [`sizes`]: radii and their number; [`cloud`]: the loose start; [`heap`]: what touches; [`relax`]: rest state
+//!   (`vicinity`: who may touch whom; `repulsion`: their forces)
 //! * [`packing`]: to a porosity, to a stress ([`compress`]) or as a [`lattice`]; [`fabric`]: its contacts and stress
 //! * [`groups`]: minerals by their share
 //! * [`gradation`]: how many particles of aggregate of each size; [`polygon`]: random convex outlines; [`placement`]: their
@@ -27,6 +28,8 @@ pub mod polygon;
 pub mod quality;
 pub mod region;
 pub mod relax;
+mod repulsion;
 pub mod sizes;
 pub mod specimen;
 pub mod stones;
+mod vicinity;

@@ -16,12 +16,15 @@
 //! forces, so that they grow until their contacts carry p together. A ball that is held by too few contacts slips aside
 //! and grows on, so it ends with as many as hold it in place.
 //!
-//! Sums run over one list of pairs sorted by index, so the bits do not depend on anything but the input.
+//! Sums run over one list of pairs sorted by index, so the bits do not depend on anything but the input: neither on when
+//! pairs are listed ([`super::vicinity`]) nor on how many are computed at a time ([`super::repulsion`]).
 //!
 //! Source: Bitzek et al. 2006, Phys. Rev. Lett. 97, 170201, doi:10.1103/PhysRevLett.97.170201; Guénolé et al. 2020,
 //! Comput. Mater. Sci. 175, 109584 (semi-implicit form).
 
-use super::heap::{Heap, Neighbours};
+use super::heap::Heap;
+use super::repulsion::Forces;
+use super::vicinity::Vicinity;
 use crate::Watch;
 use crate::space::{Space, Tuple, Vector};
 
@@ -73,13 +76,12 @@ impl<S: Space> Heap<S> {
         let (margin, longest) = (until.margin * smallest, 0.1 * smallest);
         let scale = self.unit_scale();
         let mut fire = Fire::<S>::new(self.radii.len(), swelling.balls.len());
-        let mut forces = Forces::<S>::new(self.radii.len(), !swelling.balls.is_empty());
-        let mut list = self.neighbours(margin, scale);
-        let mut built_at = (self.centres.clone(), self.radii.clone());
+        let mut vicinity = Vicinity::new(self, margin, scale);
+        let mut forces = Forces::<S>::new(self, vicinity.list());
         let mut unbalanced = f64::INFINITY;
         for iterations in 0..until.iterations {
-            unbalanced = forces.fill(self, &list);
-            let drives = forces.drives(swelling);
+            unbalanced = forces.fill(self, vicinity.list());
+            let drives = swelling.drives(&forces);
             let answered = drives.iter().all(|drive| drive.abs() <= UNANSWERED * forces.mean);
             if forces.mean < until.slack {
                 return Rest { iterations, unbalanced: 0.0 };
@@ -87,15 +89,13 @@ impl<S: Space> Heap<S> {
             if unbalanced < until.unbalanced && answered || watch() == Watch::Stop {
                 return Rest { iterations, unbalanced };
             }
-            fire.step(self, &forces.balls, (swelling.balls, &drives), longest);
-            if self.travel(&built_at, swelling.balls) > 0.5 * margin {
-                list = self.neighbours(margin, scale);
-                built_at.0.clone_from(&self.centres);
-                built_at.1.clone_from(&self.radii);
-            } else if !swelling.balls.is_empty() {
-                for pair in &mut list.pairs {
-                    pair.reach = self.radii[pair.i as usize] + self.radii[pair.j as usize];
-                }
+            let way = fire.step(self, &forces.balls, (swelling.balls, &drives), longest);
+            let anew = match swelling.balls {
+                [] => vicinity.follow(self, way),
+                balls => vicinity.follow_swelling(self, balls),
+            };
+            if anew {
+                forces.take(vicinity.list());
             }
         }
         Rest { iterations: until.iterations, unbalanced }
@@ -107,65 +107,13 @@ impl<S: Space> Heap<S> {
         let mean = free.iter().sum::<f64>() / free.len() as f64;
         2.0 * mean / S::section(mean)
     }
-
-    /// Largest way of a surface since the list was built (m).
-    fn travel(&self, (centres, radii): &(Vec<Vector<S>>, Vec<f64>), swelling: &[usize]) -> f64 {
-        let square = |(a, b): (&Vector<S>, &Vector<S>)| {
-            let apart = a.minus(*b);
-            apart.dot(apart)
-        };
-        let moved = self.centres.iter().zip(centres).map(square).fold(0.0, f64::max).sqrt();
-        let grown = |&i: &usize| (self.radii[i] - radii[i]).abs();
-        moved + swelling.iter().map(grown).fold(0.0, f64::max)
-    }
 }
 
-/// Forces of the contacts of a heap.
-struct Forces<S: Space> {
-    balls: Vec<Vector<S>>,
-    /// Sum of the normal forces on each ball; empty where nothing swells.
-    normal: Vec<f64>,
-    /// Mean contact force.
-    mean: f64,
-}
-
-impl<S: Space> Forces<S> {
-    fn new(count: usize, swelling: bool) -> Self {
-        let normal = if swelling { vec![0.0; count] } else { Vec::new() };
-        Self { balls: vec![Vector::<S>::zero(); count], normal, mean: 0.0 }
-    }
-
-    /// Computes them; the mean one on a ball over the mean of a contact, 0 when nothing overlaps.
-    fn fill(&mut self, heap: &Heap<S>, list: &Neighbours) -> f64 {
-        let Self { balls, normal, mean } = self;
-        balls.fill(Vector::<S>::zero());
-        normal.fill(0.0);
-        let (mut sum, mut count) = (0.0, 0_usize);
-        heap.visit(list, |overlap| {
-            let size = overlap.stiffness * overlap.depth;
-            let push = overlap.normal.times(size);
-            balls[overlap.first] = balls[overlap.first].minus(push);
-            if let Some(j) = overlap.second {
-                balls[j] = balls[j].plus(push);
-            }
-            if !normal.is_empty() {
-                normal[overlap.first] += size;
-                overlap.second.into_iter().for_each(|j| normal[j] += size);
-            }
-            sum += size;
-            count += 1;
-        });
-        balls[..heap.still.pebbles].fill(Vector::<S>::zero());
-        let free = &balls[heap.still.pebbles..];
-        let unbalanced = free.iter().map(|f| f.norm()).sum::<f64>() / free.len() as f64;
-        *mean = if count == 0 { 0.0 } else { sum / count as f64 };
-        if count == 0 { 0.0 } else { unbalanced * count as f64 / sum }
-    }
-
-    /// What drives the radii of swelling balls.
-    fn drives(&self, swelling: Swelling<'_>) -> Vec<f64> {
-        let drive = |(&i, push): (&usize, &f64)| push * self.mean - self.normal[i];
-        swelling.balls.iter().zip(swelling.pushes).map(drive).collect()
+impl Swelling<'_> {
+    /// What drives the radii of the balls.
+    fn drives<S: Space>(&self, forces: &Forces<S>) -> Vec<f64> {
+        let drive = |(&i, push): (&usize, &f64)| push * forces.mean - forces.on(i);
+        self.balls.iter().zip(self.pushes).map(drive).collect()
     }
 }
 
@@ -189,8 +137,15 @@ impl<S: Space> Fire<S> {
         Self { velocity, growth, dt: Self::FIRST_STEP, mixing: Self::MIXING, since_uphill: 0 }
     }
 
-    /// One step of all centres, and of the radii of the swelling balls with what drives them.
-    fn step(&mut self, heap: &mut Heap<S>, force: &[Vector<S>], (balls, drives): (&[usize], &[f64]), longest: f64) {
+    /// One step of all centres, and of the radii of the swelling balls with what drives them. Returns the largest way of a
+    /// centre (m).
+    fn step(
+        &mut self,
+        heap: &mut Heap<S>,
+        force: &[Vector<S>],
+        (balls, drives): (&[usize], &[f64]),
+        longest: f64,
+    ) -> f64 {
         let (mut power, mut speed, mut push) = (0.0, 0.0, 0.0);
         for (v, f) in self.velocity.iter().zip(force) {
             power += v.dot(*f);
@@ -205,14 +160,19 @@ impl<S: Space> Fire<S> {
         let keep = self.turn(power);
         let turn = if power > 0.0 && push > 0.0 { self.mixing * (speed / push).sqrt() } else { 0.0 };
         let gain = turn + self.dt;
+        let mut farthest = 0.0;
         for ((v, f), x) in self.velocity.iter_mut().zip(force).zip(&mut heap.centres) {
             *v = Vector::<S>::build(|k| keep * v.at(k) + gain * f.at(k));
-            *x = Vector::<S>::build(|k| x.at(k) + (self.dt * v.at(k)).clamp(-longest, longest));
+            let way = Vector::<S>::build(|k| (self.dt * v.at(k)).clamp(-longest, longest));
+            *x = x.plus(way);
+            let square = way.dot(way);
+            farthest = if square > farthest { square } else { farthest };
         }
         for ((v, f), &i) in self.growth.iter_mut().zip(drives).zip(balls) {
             *v = keep * *v + gain * f;
             heap.radii[i] += (self.dt * *v).clamp(-longest, longest);
         }
+        farthest.sqrt()
     }
 
     /// Adapts step and mixing to the power; the share of the velocity that stays.

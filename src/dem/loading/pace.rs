@@ -14,18 +14,33 @@
 //! lets [`LEAST_TRANSITS`] waves run through the height within the reference strain. Speed grows twofold in a transit at
 //! most, so that the lateral motion follows, and falls at once.
 //!
-//! Above [`CALM`] times the slow speed the local damping is [`FAST_DAMPING`] instead of what the test sets. Local damping
-//! opposes the mean motion wherever the forces on a particle fluctuate; this drag grows with the speed, lags the lateral
-//! strain by 1 % and raises the tangent modulus by 2 % at ten times 0.02 m/s. With a tenth of damping neither is seen.
+//! At f times the slow speed the local damping is α/f, with α what the test sets. Local damping opposes the mean motion wherever
+//! the forces on a particle fluctuate; this drag grows with the speed, lags the lateral strain by 1 % and raises the tangent
+//! modulus by 2 % at ten times 0.02 m/s. With α/f the drag is that of the slow speed all the time. (A first rule, a damping of
+//! 0.1 above three times the slow speed, let the drag change where the tangent modulus is read.)
+//!
 //! Behind the peak, where the stress has fallen below [`PAST`] of the largest, the speed is at least [`AFTER`] times the slow
 //! one where damage is spread: strength, moduli and cracks at the peak are known by then.
 //!
-//! Seven concretes of 22,409 discs (strengths 10/10, 10/30, 20/20, 30/10 MPa), the same packings at a fixed 0.02 m/s and with
-//! that as the slow speed, geometric means of the ratios and their standard errors: strength 0.994 ± 0.003, tangent modulus
-//! 1.004 ± 0.001, secant modulus 1.0007 ± 0.0005, ν 0.998 ± 0.002, cracks at the peak 0.96 ± 0.05, steps 0.37 (0.24 to 0.49).
-//! The weakest, which a wave crosses least often before they break, save least. The shift of the tangent modulus comes with
-//! cracks between 40 and 60 % of the peak, and the record after the peak holds some 15 % more cracks. Published campaigns
-//! therefore stay at their fixed speed.
+//! Small rocks, packings at a fixed speed and with that as the slow speed; geometric means of the ratios and their standard
+//! errors (`benches/pace.rs`), and under them what half of the fixed speed changes:
+//!
+//! | test | pairs | steps | strength | tangent E | secant E | ν | cracks at the peak |
+//! |---|---|---|---|---|---|---|---|
+//! | plane compression | 12 | 0.26 | 0.999 ± 0.006 | 1.0008 ± 0.0002 | 1.0006 ± 0.0004 | 0.9985 ± 0.0015 | 1.10 ± 0.06 |
+//! | half the speed | | 1.89 | 0.996 ± 0.006 | 0.9998 ± 0.0001 | 0.9998 | 1.0003 | 0.70 ± 0.21 |
+//! | plane tension | 12 | 0.16 | 1.003 ± 0.001 | 0.9935 ± 0.0024 | 1.0003 ± 0.0006 | 0.988 ± 0.003 | 1.01 ± 0.10 |
+//! | half the speed | | 1.96 | 0.996 ± 0.001 | 1.0000 | 0.9997 | 1.0010 ± 0.0001 | 0.80 ± 0.25 |
+//! | solid tension | 8 | 0.26 | 1.000 ± 0.000 | 1.0047 ± 0.0024 | 1.0026 ± 0.0002 | 0.9947 ± 0.0003 | 1.05 ± 0.05 |
+//! | half the speed | | 1.97 | 0.998 ± 0.002 | 1.0000 | 0.9999 | 1.0001 | 1.08 ± 0.05 |
+//!
+//! In compression the bars of 0.5 % of the strength and 0.2 % of the moduli are met in the mean. In tension the strength and the
+//! secant modulus are right, the tangent modulus is not: less than two waves cross the piece between 40 and 60 % of the peak.
+//! Take `E_secant` there, or a fixed speed.
+//!
+//! With the first rule, seven concretes of 22,409 discs (strengths 10/10, 10/30, 20/20, 30/10 MPa, slow speed 0.02 m/s) gave:
+//! strength 0.994 ± 0.003, tangent modulus 1.004 ± 0.001, secant modulus 1.0007 ± 0.0005, ν 0.998 ± 0.002, cracks at the peak
+//! 0.96 ± 0.05, steps 0.37 (0.24 to 0.49), some 15 % more cracks after the peak. Published campaigns stay at their fixed speed.
 //!
 //! A change of speed multiplies every velocity, of platens and particles alike ([`Engine::scale_motion`]): at a quasi-static
 //! pace the field of velocities is proportional to the speed of the platens, so no shock runs through the piece. Everything
@@ -42,7 +57,9 @@ pub enum Pace {
     /// One speed from start to end.
     #[default]
     Fixed,
-    /// The speed is the slow one; the piece is loaded faster while nothing breaks.
+    /// The speed is the slow one; the piece is loaded faster while nothing breaks. The number counts the changes of the rule,
+    /// so that results of different rules have different task texts.
+    #[serde(rename = "adaptive-2")]
     Adaptive,
 }
 
@@ -52,10 +69,6 @@ const SLOW_DAMAGE: f64 = 0.12;
 const MEMORY: f64 = 0.02;
 /// Wave transits of the height within the reference strain at the fast speed.
 const LEAST_TRANSITS: f64 = 8.0;
-/// Factor on the slow speed above which the damping is that of fast loading.
-const CALM: f64 = 3.0;
-/// Local damping of fast loading, unless the test asks for less.
-const FAST_DAMPING: f64 = 0.1;
 /// Share of the largest stress below which the peak is past.
 const PAST: f64 = 0.9;
 /// Least factor on the slow speed behind the peak.
@@ -112,11 +125,8 @@ impl Governor {
     pub(super) fn look<S: Space>(&mut self, engine: &mut Engine<S>, strain: f64, share: f64) -> Result<(), Faults> {
         let next = self.next(strain, engine.time(), engine.cracks().len());
         let wanted = if share < PAST { next.max(self.after) } else { next };
-        let damping = if wanted > CALM { self.damping.min(FAST_DAMPING) } else { self.damping };
-        if damping != engine.settings().damping {
-            engine.set_damping(damping)?;
-        }
         if wanted != self.factor {
+            engine.set_damping(self.damping / wanted)?;
             engine.scale_motion(wanted / self.factor)?;
             self.factor = wanted;
         }

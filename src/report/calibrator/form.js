@@ -38,7 +38,7 @@ const Calibrator = (() => {
       return zero ? responses[zero.response].name + ": a target of 0 has no relative deviation." : "";
     };
     const writeSet = (set) => {
-      state.tolerances = {};
+      state.tolerances = Object.create(null); // a response may be called `constructor`
       aimRows.forEach((row, response) => {
         const aim = set.targets.find((own) => own.response === response);
         const mode = !aim || aim.low === aim.high ? "exactly" : aim.high === null ? "at-least" : aim.low === null ? "at-most" : "between";

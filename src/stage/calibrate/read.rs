@@ -196,7 +196,8 @@ impl Judgement {
 }
 
 /// The responses of one evaluation in the order of the targets, or why it has none: a run gave no result, or is left out
-/// because it is not valid. Each is taken from the simulator that `from` names, or from the first that gives it.
+/// because it is not valid. Each is taken from the simulator that `from` names, or from the first that gives it. Where all
+/// targets are ordinates of curves, a run whose curve reaches their strains has them, though it found no peak later.
 ///
 /// # Errors
 /// A run is refused because it is not valid, or no simulator gives a response, or gives it in a unit of another dimension.
@@ -207,7 +208,8 @@ pub(super) fn evaluation(
     invalid: Invalid,
 ) -> Result<Result<Vec<f64>, String>, StageError> {
     let Judgement { failure, validity, .. } = Judgement::of(parts)?;
-    match (failure.is_empty(), validity.is_empty(), invalid) {
+    let measured = failure.is_empty() || curves_reach(parts, targets)?;
+    match (measured, validity.is_empty(), invalid) {
         (false, _, _) => return Ok(Err(failure)),
         (true, false, Invalid::LeaveOut) => return Ok(Err(format!("{}{validity}", Run::NOT_VALID))),
         (true, false, Invalid::Refuse) => return Err(refused(&format!("a run is not valid: {validity}"))),
@@ -242,6 +244,22 @@ pub(super) fn evaluation(
     Ok(Ok(values))
 }
 
+/// Whether all targets are ordinates of curves, and the curve of every run reaches their strains.
+fn curves_reach(parts: &[Part<'_>], targets: &[TargetParam]) -> Result<bool, StageError> {
+    let Some(strains) = targets.iter().map(|target| target.strain).collect::<Option<Vec<f64>>>() else {
+        return Ok(false);
+    };
+    let largest = strains.into_iter().fold(0.0, f64::max);
+    for part in parts {
+        let curve = Run::from_artifact(part.run)?.curve;
+        let last = curve.and_then(|curve| curve.axial_strain.last().copied());
+        if last.is_none_or(|last| last < largest) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 type Given<'a> = (&'a Part<'a>, Vec<(&'a str, f64, &'a str)>);
 
 fn no_response(response: &str, found: &[Given<'_>]) -> StageError {
@@ -254,7 +272,8 @@ fn no_response(response: &str, found: &[Given<'_>]) -> StageError {
 }
 
 /// Stress of a run's curve at a strain, Pa; the inner error says why the curve cannot be read. Before its first point the
-/// curve rises from zero; beyond its last point the stress is constant, because the test ended on the falling branch.
+/// curve rises from zero. Beyond its last point, on the falling branch, no stress was measured: it is taken to fall with the
+/// inverse of the strain, so that among runs that broke too early the one that came nearest deviates least.
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
     let curve = Run::from_artifact(artifact)?.curve.ok_or_else(missing)?;
@@ -264,8 +283,9 @@ fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, St
         strains.insert(0, 0.0);
         stresses.insert(0, 0.0);
     }
-    let at = strain.min(last);
-    Ok(ordinates(&strains, &stresses, &[at]).map(|values| values[0]).map_err(|fault| fault.to_string()))
+    let beyond = if strain > last { last / strain } else { 1.0 };
+    let at = ordinates(&strains, &stresses, &[strain.min(last)]);
+    Ok(at.map(|values| beyond * values[0]).map_err(|fault| fault.to_string()))
 }
 
 /// The runs of a table, in the order of factors and targets; a missing value is NaN. A run that is left out because it is
@@ -315,5 +335,49 @@ fn response_values(table: &Table, target: &TargetParam) -> Result<Vec<f64>, Stag
     match table.column(name) {
         Some(column) => Ok(column.numbers(&target.unit)?),
         None => Ok(vec![f64::NAN; table.rows()]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artifact::run::{Curve, Responses};
+
+    /// A run that ended at a strain of 0.002 under 10 MPa.
+    fn run(failure: &str) -> Artifact {
+        let curve = Curve {
+            axial_strain: vec![0.001, 0.002],
+            stress: vec![8e6, 10e6],
+            lateral_strain: vec![0.0; 2],
+            volumetric_strain: vec![0.0; 2],
+            cracks: vec![0; 2],
+            speed: None,
+        };
+        Run { curve: Some(curve), ..Run::plain(failure, Responses::default()) }.to_artifact()
+    }
+
+    fn ordinate(strain: f64) -> TargetParam {
+        let (response, unit) = (String::from("stress"), String::from("MPa"));
+        TargetParam { response, unit, low: None, high: None, weight: 1.0, tolerance: None, strain: Some(strain) }
+    }
+
+    fn read(run: &Artifact, targets: &[TargetParam]) -> Result<Vec<f64>, String> {
+        evaluation(&[Part { stage: "crush", run }], &BTreeMap::new(), targets, Invalid::LeaveOut).unwrap()
+    }
+
+    #[test]
+    fn beyond_its_end_a_curve_falls_with_the_inverse_of_the_strain() {
+        let found = read(&run(""), &[0.0005, 0.0015, 0.002, 0.004].map(ordinate)).unwrap();
+        let wanted = [4.0, 9.0, 10.0, 5.0];
+        assert!(found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-12), "{found:?}");
+    }
+
+    #[test]
+    fn a_run_without_a_peak_has_the_ordinates_that_its_curve_reaches() {
+        let endless = run("no peak");
+        assert_eq!(read(&endless, &[0.001, 0.002].map(ordinate)), Ok(vec![8.0, 10.0]));
+        assert_eq!(read(&endless, &[0.001, 0.003].map(ordinate)), Err("no peak".to_owned()));
+        let strength = TargetParam { response: "UCS".to_owned(), strain: None, ..ordinate(0.001) };
+        assert_eq!(read(&endless, &[ordinate(0.001), strength]), Err("no peak".to_owned()));
     }
 }

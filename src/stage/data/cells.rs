@@ -1,9 +1,10 @@
 //! Heads and cells of a table of text: names with units, numbers, words for missing values.
 
 use super::super::StageError;
-use super::dialect::{Decimal, is_number};
+use super::dialect::{Decimal, is_meant_as_number, is_number};
 use crate::artifact::Table;
 use crate::unit::Unit;
+use std::collections::HashSet;
 
 /// Default words for missing values.
 const MISSING: [&str; 8] = ["NA", "N/A", "n/a", "NaN", "nan", "null", "-", "–"];
@@ -14,10 +15,15 @@ pub(super) struct Cells<'a> {
     pub missing: Option<&'a [String]>,
 }
 
-/// Adds one column to the table.
-pub(super) fn column(table: Table, head: &str, cells: Vec<String>, how: &Cells) -> Result<Table, StageError> {
+/// Adds one column to the table; `names` are those of the columns that it has.
+pub(super) fn column(
+    table: Table,
+    (head, cells): (&str, Vec<String>),
+    how: &Cells,
+    names: &mut HashSet<String>,
+) -> Result<Table, StageError> {
     let (name, unit) = name_and_unit(head)?;
-    if name.is_empty() || table.column(name).is_some() {
+    if name.is_empty() || !names.insert(name.to_owned()) {
         return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
     }
     let numbers: Option<Vec<f64>> = cells.iter().map(|cell| how.number(cell)).collect();
@@ -95,6 +101,13 @@ impl Cells<'_> {
                         be wrong by a thousand";
             return Err(StageError::new(message).hint(hint));
         }
+        // A column of numbers but for some that are written otherwise would be a column of words, and nobody would see it.
+        let word = |cell: &&String| self.number(cell).is_none() && !is_meant_as_number(cell);
+        if !cells.iter().any(|cell| word(&cell)) {
+            let message = format!("row {}: `{name}` is `{}`, which is no number here", row + 1, shortened(cell));
+            let hint = "write it as 5, 0.05 or 5e-2, between 1e-300 and 1e300; per cent stand in the head: `x [%]`";
+            return Err(StageError::new(message).hint(hint));
+        }
         let numbers = cells.iter().filter(|cell| !self.is_missing(cell) && self.number(cell).is_some()).count();
         if unit.is_empty() || numbers == 0 {
             return Ok(());
@@ -102,6 +115,15 @@ impl Cells<'_> {
         let message = format!("row {}: `{name}` [{unit}] is `{cell}`, which is no number", row + 1);
         Err(StageError::new(message)
             .hint(format!("correct it, or say `missing = [\"{cell}\"]` if it stands for no value")))
+    }
+}
+
+/// A cell short enough for a message.
+fn shortened(cell: &str) -> String {
+    const LONGEST: usize = 40;
+    match cell.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &cell[..end]),
+        None => cell.to_owned(),
     }
 }
 

@@ -175,7 +175,28 @@ fn could_be_thousands(cell: &str) -> bool {
 /// Whether a text is a finite number in plain notation.
 pub(super) fn is_number(text: &str) -> bool {
     let sane = text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b));
-    sane && text.parse::<f64>().is_ok_and(f64::is_finite)
+    sane && text.parse::<f64>().is_ok_and(|value| value.is_finite() && !(value == 0.0 && is_tiny(text)))
+}
+
+/// Whether a number that is read as zero has another digit than 0 before its exponent: it is too small for a double.
+fn is_tiny(text: &str) -> bool {
+    text.split(['e', 'E']).next().unwrap_or_default().bytes().any(|digit| (b'1'..=b'9').contains(&digit))
+}
+
+/// Whether a text that is no number here is one elsewhere: `inf`, `1e400`, `0x10`, `5%`, digits of other scripts,
+/// marks without width.
+pub(super) fn is_meant_as_number(text: &str) -> bool {
+    let plain: String =
+        text.chars().filter(|c| !matches!(c, '\u{200b}'..='\u{200f}' | '\u{2060}' | '\u{feff}')).collect();
+    let plain = plain.trim_end_matches(['%', '‰']).trim();
+    let wide = |c: char| char::from_u32((c as u32).wrapping_sub(0xff00).wrapping_add(0x20)).filter(char::is_ascii);
+    let narrow: String =
+        plain.chars().map(|c| if ('！'..='～').contains(&c) { wide(c).unwrap_or(c) } else { c }).collect();
+    let hexadecimal = narrow.strip_prefix("0x").or(narrow.strip_prefix("0X"));
+    let starts = narrow.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+        || narrow.to_lowercase().starts_with("inf");
+    starts
+        && (narrow.parse::<f64>().is_ok() || hexadecimal.is_some_and(|digits| u64::from_str_radix(digits, 16).is_ok()))
 }
 
 /// The note on how a table was read; `None` for the default.

@@ -84,6 +84,21 @@ fn thousands_separators_are_refused_with_a_reason() {
     assert_eq!(read(b"a;b\n1,234;1\n", &how).0.shown("a").unwrap().0, [1.234]);
 }
 
+/// One cell that is written otherwise would make words of a column of numbers.
+#[test]
+fn numbers_that_are_none_here_are_refused_and_not_taken_for_words() {
+    for cell in ["inf", "-Infinity", "1e400", "1e-400", "0x10", "５", "5%", "\u{200f}5", &"9".repeat(400)] {
+        let message = parse(format!("x,y\n{cell},2\n3,4\n").as_bytes()).unwrap_err().message;
+        assert!(message.starts_with("row 1: `x` is `") && message.ends_with("`, which is no number here"), "{message}");
+    }
+    assert!(parse("x,y\n5%,2\n7%,4\n".as_bytes()).is_err());
+    // Words among them are categories.
+    for cells in ["A1,2\n3,4", "x10,2\n0x10,4", "CEM I,1\n5%,2", "1-May,2\n2-May,4", "30_1,2\n30_2,4"] {
+        assert!(parse(format!("x,y\n{cells}\n").as_bytes()).unwrap().shown("x").is_err(), "{cells}");
+    }
+    assert_eq!(plain(b"x,y\n0e-400,2\n0.000,4\n").0.shown("x").unwrap().0, [0.0, 0.0]);
+}
+
 #[test]
 fn missing_values_have_words() {
     let column = |how: &Dialect| read(b"a,b\n1,x\n-,x\nNA,x\n", how).0.shown("a").unwrap().0;

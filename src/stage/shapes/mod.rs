@@ -25,7 +25,7 @@ use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::unit::Length;
 use ::shape::clump::{Bound, ClumpFault, Method, Pebbles, fill};
 use ::shape::loft::{Section, faults, loft};
-use ::shape::mend::mend;
+use ::shape::mend::{Mended, mend};
 use ::shape::mesh::Mesh;
 use ::shape::stl;
 use schemars::JsonSchema;
@@ -224,10 +224,19 @@ impl Stage for Shapes {
     }
 
     fn beside(&self, _context: &Context, found: &mut Beside) {
-        found.optional("sections", self.sections.as_ref());
-        self.stl.iter().for_each(|path| {
-            found.file("stl", path);
-        });
+        let params = self.params();
+        if let Some(path) = &self.sections
+            && let Some(bytes) = found.bytes("sections", path)
+            && let Err(fault) = data::parse(&bytes).and_then(|table| lofted(&table, params.around))
+        {
+            found.faults.push(Complaint::new("sections", format!("{path}: {}", fault.message)));
+        }
+        for path in &self.stl {
+            let Some(bytes) = found.bytes("stl", path) else { continue };
+            if let Err(why) = surface(&bytes, params.unit) {
+                found.faults.push(Complaint::new("stl", format!("{path}: {why}")));
+            }
+        }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -253,6 +262,11 @@ impl Kind for Shapes {
 /// A stone: its name, its surface, and the repairs of the surface.
 type Read = (String, Mesh, String);
 
+/// The closed surface of an STL file, and what was mended of it.
+fn surface(bytes: &[u8], unit: f64) -> Result<(Mesh, Mended), String> {
+    mend(&stl::read(bytes, unit).map_err(|why| why.to_string())?).map_err(|why| why.to_string())
+}
+
 fn make(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
     let read: Vec<Read> = if params.names.is_empty() {
@@ -260,8 +274,7 @@ fn make(job: &Job) -> Result<Artifact, Failure> {
     } else {
         let stone = |name: &String| -> Result<Read, Failure> {
             let fail = |why: String| StageError::new(format!("{name}: {why}"));
-            let triangles = stl::read(&job.file(name)?, params.unit).map_err(|why| fail(why.to_string()))?;
-            let (mesh, mended) = mend(&triangles).map_err(|why| fail(why.to_string()))?;
+            let (mesh, mended) = surface(&job.file(name)?, params.unit).map_err(fail)?;
             Ok((name.clone(), mesh, mended.words().join("; ")))
         };
         params.names.iter().map(stone).collect::<Result<_, _>>()?

@@ -31,8 +31,8 @@ pub use stored::{Loaded, load, stored};
 use super::cost::Bulk;
 use super::forecast::{Ahead, Forecast};
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step, Task, Work,
-    shapes,
+    Class, Complaint, Context, Demands, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step,
+    Task, Work, shapes,
 };
 use crate::artifact::specimen::Specimen as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -95,12 +95,18 @@ impl Stage for Specimen {
         Forecast { seconds: bulk.map(|bulk| bulk.packing()), bulk, ..Forecast::ONE }
     }
 
-    fn unmet(&self, result: &Artifact) -> Option<String> {
-        Stored::from_artifact(result).ok()?.failure
+    fn demands(&self) -> Option<&dyn Demands> {
+        Some(self)
     }
 
     fn replicate(&self, known: &Known, number: u64) -> Option<Task> {
         self.task(known, number).ok()
+    }
+}
+
+impl Demands for Specimen {
+    fn unmet(&self, result: &Artifact) -> Option<String> {
+        Stored::from_artifact(result).ok()?.failure
     }
 }
 

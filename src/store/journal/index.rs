@@ -1,27 +1,29 @@
-//! The index of the journals: what has been read of them so far.
+//! The journals as read so far.
 
-use super::record::{CONTENT, KEY, RECORD, from_version_1, pack, unpack, word};
+mod numbers;
+
+use super::record::{CONTENT, KEY, RECORD, from_version_1, pack, unpack};
 use super::{FOLDER, HEAD, MOST, Segments, is_name, read_head, writer_of};
-use crate::artifact::{ContentHash, FirstBytes, Key};
+use crate::artifact::{ContentHash, Key};
 use crate::store::disk::Disk;
 use crate::store::folder::{self, Folder, Strange};
 use crate::store::lock::is_alive;
 use crate::store::mark::Mark;
 use crate::store::{Origin, Record, StoreError};
+use numbers::Numbers;
 use std::collections::HashMap;
 use std::fs::File;
-use std::hash::BuildHasherDefault;
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Number of objects with one content that are tried.
+/// So many objects with one content are tried.
 const MOST_ALIKE: usize = 8;
-/// Longer than the resolution of any file system's times.
+/// Longer than the step of any file system's times.
 const TIME_STEP: Duration = Duration::from_secs(2);
-/// Interval between looks at segments whose writers may be alive where locks do not reach.
+/// Segments whose writers may be alive where locks do not reach are looked at as often.
 const LOOK_EACH: Duration = Duration::from_millis(500);
-/// A segment that has grown within this time is looked at each time.
+/// A segment that has grown so lately is looked at each time.
 const BUSY: Duration = Duration::from_secs(12);
 /// Bytes of a segment that are read at once.
 const BLOCK: usize = RECORD << 13;
@@ -37,7 +39,7 @@ pub(in crate::store) struct Index {
     by_content: Numbers,
     /// Segments read so far.
     segments: HashMap<String, Seen>,
-    /// State of the folder when it was last listed, and the time since which that state has been seen.
+    /// State of the folder at the last look, and since when it has been seen like that.
     looked: Option<([u64; 5], Instant)>,
     /// When segments of other machines were last looked at.
     far: Option<Instant>,
@@ -45,7 +47,7 @@ pub(in crate::store) struct Index {
     machine: String,
 }
 
-/// A segment, and how far it has been read.
+/// How far a segment has been read.
 #[derive(Clone, Copy)]
 struct Seen {
     end: u64,
@@ -61,44 +63,14 @@ struct Seen {
 enum Writer {
     /// Nobody, or this process, whose records are added as they are made.
     Ended,
-    /// Its writer holds the lock, so it is alive.
+    /// It holds the lock, so it is alive.
     Near,
-    /// Its lock is free; where locks do not reach all nodes, its writer may be alive all the same.
+    /// Its lock is free, which says nothing where locks do not reach all nodes: its writer may be alive.
     Far,
 }
 
-/// Numbers of records by the first bytes of a hash in them.
-#[derive(Default)]
-struct Numbers {
-    last: HashMap<u64, u32, BuildHasherDefault<FirstBytes>>,
-    /// For each record the previous one whose hash begins with the same bytes; itself when there is none.
-    before: Vec<u32>,
-}
-
-impl Numbers {
-    /// Adds the records that are new; their hashes begin at byte `place`.
-    fn update(&mut self, records: &[[u8; RECORD]], place: usize) {
-        self.last.reserve(records.len() - self.before.len());
-        for number in self.before.len()..records.len() {
-            let number = number as u32;
-            let before = self.last.insert(word(&records[number as usize], place), number);
-            self.before.push(before.unwrap_or(number));
-        }
-    }
-
-    /// Numbers of the records whose hash begins with these bytes, the last one first.
-    fn of(&self, hash: &[u8; 32]) -> impl Iterator<Item = usize> {
-        let mut next = self.last.get(&word(hash, 0)).copied();
-        std::iter::from_fn(move || {
-            let number = next?;
-            next = Some(self.before[number as usize]).filter(|&before| before != number);
-            Some(number as usize)
-        })
-    }
-}
-
 impl Index {
-    /// An index of nothing yet; `machine` is the name of this machine.
+    /// Nothing read yet; `machine` is this one.
     pub(in crate::store) fn new(mark: Mark, machine: &str) -> Self {
         Self {
             mark,
@@ -131,7 +103,7 @@ impl Index {
             self.segments.iter().filter(|(_, seen)| looks(seen)).map(|(name, _)| name.clone()).collect();
         for name in growing.into_iter().chain(self.new_segments(disk, &folder)?) {
             match self.read_on(&folder, &name, own.has(&name)) {
-                // A segment that gc has merged into another one in the meantime, or a file that flow has not written.
+                // A segment that gc has merged into another one in the meantime, or that nobody of flow has written.
                 Err(error) if error.kind() == ErrorKind::NotFound || Strange::is(&error) => {}
                 other => other.map_err(|error| disk.fail("read", &disk.path(FOLDER, &name), error))?,
             }
@@ -144,7 +116,7 @@ impl Index {
         let fail = |error| disk.fail("list", &disk.root.join(FOLDER), error);
         let stat = folder.stat().map_err(fail)?;
         let state = [stat.st_ino, stat.st_mtime as u64, stat.st_mtime_nsec, stat.st_ctime as u64, stat.st_ctime_nsec];
-        // Times of files have a resolution: a folder that changed just now may change again without another time.
+        // Times of files move in steps, so what has not been seen for a while may change again without showing it.
         let since = self.looked.filter(|(before, _)| *before == state).map(|(_, since)| since);
         if since.is_some_and(|since| since.elapsed() > TIME_STEP) {
             return Ok(Vec::new());
@@ -157,7 +129,7 @@ impl Index {
         Ok(names)
     }
 
-    /// Reads a segment from the end of what was read before.
+    /// Reads a segment from where it was left.
     fn read_on(&mut self, folder: &Folder, name: &str, own: bool) -> io::Result<()> {
         let mut file = folder.open(name, false)?;
         folder::ask_anew(&file);
@@ -182,7 +154,7 @@ impl Index {
 
     /// Reads the head of a new segment.
     fn begin(&mut self, file: &mut File, name: &str, own: bool) -> io::Result<Option<Seen>> {
-        // Asked before reading: a process that has ended writes no more.
+        // Asked before reading: what a dead process has written is all there is.
         let alive = file.try_lock_shared().is_err();
         let mut head = [0; HEAD];
         match file.read_exact(&mut head) {
@@ -200,7 +172,7 @@ impl Index {
         Ok(Some(Seen { end: HEAD as u64, origin: (self.origins.len() - 1) as u32, version, writer, grew: None }))
     }
 
-    /// Adds the complete records that follow in a file; returns their length, bytes.
+    /// Takes in the whole records that follow in a file; returns their length.
     fn read_records(&mut self, file: &mut File, seen: &Seen) -> io::Result<u64> {
         let first = self.records.len();
         let (mut rest, mut block) = (0, vec![0; BLOCK]);
@@ -247,14 +219,14 @@ impl Index {
         self.note_origin(first, origin);
     }
 
-    /// The records of a task: one per content, an own one if there is one.
+    /// The records of a task: of several with one content one, an own one when there is.
     pub(in crate::store) fn of_task(&mut self, key: &Key) -> Vec<Record> {
         self.by_key.update(&self.records, KEY);
         let records = self.by_key.of(&key.0).filter_map(|number| self.record(number));
         distinct(records.filter(|record| record.key == *key).collect())
     }
 
-    /// Records whose result is `content`, own ones first; a few of them when many tasks have that result.
+    /// Records whose result is `content`: a few, when many tasks came to it; own ones first.
     pub(in crate::store) fn with_content(&mut self, content: &ContentHash) -> Vec<Record> {
         self.by_content.update(&self.records, CONTENT);
         let records = self.by_content.of(&content.0).filter_map(|number| self.record(number));
@@ -265,12 +237,12 @@ impl Index {
         found
     }
 
-    /// All records by key and content; of equal ones an own one if there is one.
+    /// All records by key and content, of equal ones an own one when there is.
     pub(in crate::store) fn records(&self) -> Vec<Record> {
         distinct((0..self.records.len()).filter_map(|number| self.record(number)).collect())
     }
 
-    /// All records that differ in more than their time, as gc writes them: those with other users' marks stay.
+    /// All records that differ in anything but their time, as gc keeps them: other users' marks stay.
     pub(in crate::store) fn marked_records(&self) -> Vec<Record> {
         let mut records: Vec<Record> = (0..self.records.len()).filter_map(|number| self.record(number)).collect();
         records.sort_by(|a, b| (&a.origin, a.object(), a.mark).cmp(&(&b.origin, b.object(), b.mark)));
@@ -278,7 +250,7 @@ impl Index {
         records
     }
 
-    /// Number of records that are skipped because their checksum is wrong.
+    /// Records that are skipped because their checksum is wrong.
     pub(in crate::store) fn damaged(&self) -> usize {
         (0..self.records.len()).filter(|&number| self.record(number).is_none()).count()
     }
@@ -295,7 +267,7 @@ impl Index {
     }
 }
 
-/// One record of each task and content, an own one if there is one, in their order.
+/// One record of each task and content, an own one when there is, in their order.
 fn distinct(mut records: Vec<Record>) -> Vec<Record> {
     records.sort_by_key(|record| (record.key, record.content, !record.own));
     records.dedup_by_key(|record| (record.key, record.content));

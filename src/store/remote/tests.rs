@@ -1,6 +1,7 @@
 use super::*;
 use crate::artifact::{Artifact, Group, Node};
 use crate::store::{Mark, Origin};
+use std::path::Path;
 use std::process::Command;
 use std::time::UNIX_EPOCH;
 
@@ -16,8 +17,12 @@ impl Rig {
         Store::open_as(&self.0.path().join(name), mark).unwrap().with_origin(Origin::here)
     }
 
-    fn remote(&self) -> std::path::PathBuf {
+    fn path(&self) -> std::path::PathBuf {
         self.0.path().join("remote")
+    }
+
+    fn remote(&self) -> Address {
+        Address::Folder(self.path())
     }
 
     /// A key, and a list of signers with it.
@@ -38,7 +43,7 @@ impl Rig {
             }
         }
         let mut found = Vec::new();
-        walk(&self.remote(), &mut found);
+        walk(&self.path(), &mut found);
         found.retain(|path| path.to_string_lossy().ends_with(ending));
         found.sort();
         found[0].clone()
@@ -78,7 +83,7 @@ fn what_one_store_pushes_another_one_finds_and_nothing_goes_twice() {
     let again = theirs.pull(&rig.remote(), &trust).unwrap();
     assert_eq!((again.pulled, again.here), (0, 3));
     // A mirror keeps the signatures.
-    let copy = rig.0.path().join("copy");
+    let copy = Address::Folder(rig.0.path().join("copy"));
     assert_eq!(mirror(&rig.remote(), &copy).unwrap(), Mirrored { segments: 1, objects: 3 });
     assert_eq!(mirror(&rig.remote(), &copy).unwrap(), Mirrored::default());
     assert_eq!(rig.store("third").pull(&copy, &trust).unwrap().pulled, 3);
@@ -99,7 +104,7 @@ fn a_wrong_signer_and_no_signer_are_refused_with_a_word() {
     assert!(all.contains("its signer is not in") && all.contains("it is not signed"), "{all}");
     assert_eq!(theirs.pull(&rig.remote(), &Trust::Anybody).unwrap().pulled, 2);
     // A good signature of something else does not fit.
-    std::fs::remove_dir_all(rig.remote()).unwrap();
+    std::fs::remove_dir_all(rig.path()).unwrap();
     ours.push(&rig.remote(), &bob).unwrap();
     let other = bob.sign(b"something else").unwrap().unwrap();
     change(&rig.file(".sig"), |bytes| *bytes = other);
@@ -161,10 +166,76 @@ fn a_folder_that_is_no_remote_is_not_touched() {
     let full = rig.0.path().join("full");
     std::fs::create_dir(&full).unwrap();
     std::fs::write(full.join("mine.txt"), "x").unwrap();
-    for (path, why) in [(&full, "it has no file `flow.remote`"), (&rig.0.path().join("ours"), "it is a store")] {
-        let error = ours.push(path, &Signing::None).unwrap_err().to_string();
+    for (path, why) in [(full, "it has no file `flow.remote`"), (rig.0.path().join("ours"), "it is a store")] {
+        let error = ours.push(&Address::Folder(path), &Signing::None).unwrap_err().to_string();
         assert!(error.contains(why), "{error}");
     }
-    let error = ours.pull(&rig.0.path().join("none"), &Trust::Anybody).unwrap_err().to_string();
+    let error = ours.pull(&Address::Folder(rig.0.path().join("none")), &Trust::Anybody).unwrap_err().to_string();
     assert!(error.contains("there is no such folder"), "{error}");
+}
+
+/// The number in the artifact of a record, as a store reads it.
+fn number(store: &Store, record: &Record) -> Option<i64> {
+    let artifact = store.get(&record.content).ok()?;
+    match artifact.root.get("n") {
+        Some(Node::Int(number)) => Some(*number),
+        _ => None,
+    }
+}
+
+#[test]
+fn an_attached_remote_is_read_when_a_result_is_needed_and_not_before() {
+    let rig = Rig::new();
+    let (ours, theirs) = (rig.store("ours"), rig.store("theirs"));
+    let (signing, trust) = rig.key("ann");
+    let records: Vec<Record> = (0..3).map(|number| put(&ours, number)).collect();
+    ours.push(&rig.remote(), &signing).unwrap();
+    let attachment = theirs.attach(&rig.remote(), &trust).unwrap();
+    assert_eq!((attachment.results, attachment.refused.len()), (3, 0));
+    assert_eq!(attachment.signers, [("ann@lab".to_owned(), 3)].into());
+    assert!(theirs.has_all(&records.iter().map(Record::object).collect::<Vec<_>>()).unwrap());
+    assert_eq!(theirs.find(&records[1].key).unwrap().unwrap().content, records[1].content);
+    assert!(!theirs.path(&records[1].object()).exists(), "knowing of a result fetches nothing");
+    assert_eq!(number(&theirs, &records[1]), Some(1));
+    assert!(theirs.path(&records[1].object()).exists() && !theirs.path(&records[0].object()).exists());
+    let address = rig.remote().to_string();
+    assert_eq!(theirs.take_fetched(), Some((1, address)));
+    // What workers of a cluster are to read is fetched before.
+    assert!(theirs.locate(&records[2].content).is_ok() && theirs.path(&records[2].object()).exists());
+    assert!(theirs.verify().unwrap().strangers.is_empty());
+    // Another user of the store has attached nothing.
+    let other = Store::open_as(&rig.0.path().join("theirs"), Mark::of(&[9; 32])).unwrap();
+    assert_eq!(other.find(&records[0].key).unwrap(), None);
+    assert!(theirs.detach().unwrap() && !theirs.detach().unwrap());
+    assert_eq!(rig.store("theirs").find(&records[0].key).unwrap(), None);
+    assert!(rig.store("theirs").find(&records[1].key).unwrap().is_some(), "what was fetched stays");
+}
+
+#[test]
+fn what_an_attached_remote_damages_or_nobody_trusted_signs_is_computed_again() {
+    let rig = Rig::new();
+    let (ours, theirs) = (rig.store("ours"), rig.store("theirs"));
+    let ((ann, _), (_, only_bob)) = (rig.key("ann"), rig.key("bob"));
+    let record = put(&ours, 1);
+    ours.push(&rig.remote(), &ann).unwrap();
+    let attachment = rig.store("wary").attach(&rig.remote(), &only_bob).unwrap();
+    assert_eq!(attachment.results, 0);
+    assert!(attachment.refused[0].contains("its signer is not in"), "{attachment:?}");
+    assert_eq!(rig.store("wary").find(&record.key).unwrap(), None);
+    theirs.attach(&rig.remote(), &Trust::Anybody).unwrap();
+    change(&rig.file(".h5"), |bytes| bytes[100] ^= 1);
+    assert!(theirs.find(&record.key).unwrap().is_some());
+    assert!(theirs.get(&record.content).unwrap_err().is_missing());
+    assert_eq!(theirs.find(&record.key).unwrap(), None, "so its task is computed again");
+    let damages = theirs.take_damages();
+    let text = damages[0].to_string();
+    assert!(text.contains("its bytes are not those that were written") && text.contains("it was not taken"), "{text}");
+    // Two that are trusted and contradict each other are both not believed.
+    let (third, reader) = (rig.store("third"), rig.store("reader"));
+    let timing = Timing { started: UNIX_EPOCH, seconds: 0.0 };
+    let other = Artifact::new("test", 1, Group::new().with("n", Node::Int(7)));
+    third.put("flow task 1\nwork test 1\n", other, &timing).unwrap();
+    third.push(&rig.remote(), &Signing::None).unwrap();
+    assert_eq!(reader.attach(&rig.remote(), &Trust::Anybody).unwrap().results, 2);
+    assert_eq!(reader.find(&record.key).unwrap(), None);
 }

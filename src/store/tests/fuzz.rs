@@ -6,6 +6,7 @@
 //! number. The harness needs no nightly compiler, so it runs wherever the tests do.
 
 use super::*;
+use crate::artifact::ContentHash;
 use crate::store::journal::Index;
 use crate::store::{hdf5, memo};
 use math::random::Stream;
