@@ -241,7 +241,9 @@ mod tests {
             "input `run`: 1 changed of 3",
         ];
         assert_eq!(reasons(&old, &new), expected);
-        assert_eq!(reasons(&new, &new.replace("data 2", "data 3")), ["data: version 2 → 3"]);
+        let version = crate::stage::work("data").unwrap().version;
+        let earlier = new.replace(&format!("work data {version}"), "work data 0");
+        assert_eq!(reasons(&earlier, &new), [format!("data: version 0 → {version}")]);
         assert_eq!(reasons(&text(json!({}), 1, &[1, 2]), &text(json!({}), 1, &[2, 1, 5])), ["input `run`: 1 new of 3"]);
         assert_eq!(reasons(&text(json!({}), 1, &[1]), &text(json!({}), 1, &[2])), ["input `run` changed"]);
     }

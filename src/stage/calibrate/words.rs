@@ -1,12 +1,12 @@
 //! The result of a calibration as sentences for a reader.
 
 use crate::artifact::Artifact;
-use crate::artifact::calibration::{Determination, Solution};
+use crate::artifact::calibration::{Determination, Parameters, Solution};
 use crate::stage::notes::short;
 
 /// For every target set, which parameters the targets determine, with their intervals, and which they leave free.
 pub fn parameters_in_words(solution: &Artifact) -> Vec<String> {
-    read(solution).unwrap_or_default()
+    Solution::from_artifact(solution).map_or_else(|_| Vec::new(), |solution| in_words(&solution.parameters))
 }
 
 /// One parameter of a set.
@@ -19,8 +19,7 @@ struct Parameter<'a> {
     ends: [f64; 2],
 }
 
-fn read(solution: &Artifact) -> Option<Vec<String>> {
-    let found = Solution::from_artifact(solution).ok()?.parameters;
+fn in_words(found: &Parameters) -> Vec<String> {
     let parameter = |i: usize| Parameter {
         set: found.set[i],
         name: &found.factor[i],
@@ -37,7 +36,7 @@ fn read(solution: &Artifact) -> Option<Vec<String>> {
         format!("{whose}{}", of_set(&own))
     };
     let count = all.last().map_or(0, |last| last.set);
-    Some((1..=count).map(sentence).collect())
+    (1..=count).map(sentence).collect()
 }
 
 /// "determined: σ_c = 20 MPa (19 … 21); free: mu".
@@ -67,23 +66,23 @@ impl Parameter<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::artifact::{ArtifactKind, Group, Node, Table};
 
     #[test]
     fn what_is_known_of_each_parameter_is_one_sentence_a_set() {
         let nan = f64::NAN;
         let text = |words: [&str; 4]| words.map(str::to_owned).to_vec();
-        let table = Table::default()
-            .ints_column("set", "", vec![1, 1, 1, 2])
-            .texts_column("factor", "", text(["sigma_c", "Ec", "mu", "mu"]))
-            .texts_column("unit", "", text(["MPa", "GPa", "", ""]))
-            .texts_column("known", "", text(["determined", "partly determined", "free", "unknown"]))
-            .reals_column("value", "", "", vec![20.0, 31.25, 0.5, 0.5])
-            .reals_column("low", "", "", vec![19.123_45, 20.0, 0.1, nan])
-            .reals_column("high", "", "", vec![21.0, 35.0, 1.0, nan]);
-        let solution = Artifact::of(ArtifactKind::SOLUTION, Group::new().with("parameters", Node::Table(table)));
+        let found = Parameters {
+            set: vec![1, 1, 1, 2],
+            factor: text(["sigma_c", "Ec", "mu", "mu"]),
+            unit: text(["MPa", "GPa", "", ""]),
+            value: vec![20.0, 31.25, 0.5, 0.5],
+            low: vec![19.123_45, 20.0, 0.1, nan],
+            high: vec![21.0, 35.0, 1.0, nan],
+            known: Determination::ALL.to_vec(),
+            ..Parameters::default()
+        };
         assert_eq!(
-            parameters_in_words(&solution),
+            in_words(&found),
             [
                 "set 1: determined: sigma_c = 20 MPa (19.12 … 21); partly determined: Ec = 31.25 GPa (20 … 35); free: mu",
                 "set 2: unknown: mu",
