@@ -57,7 +57,10 @@ pub(super) fn judge(ours: &[f64], theirs: &[f64]) -> Option<(Verdict, Markup)> {
         html! { ", " (word) " (rank correlation " (fixed(rho, 3)) ")" }
     });
     let ordered = found.spearman.is_none_or(|rho| rho >= SAME_ORDER);
+    // Rows in the opposite order scatter about any ratio.
+    let opposed = found.spearman.is_some_and(|rho| rho <= -LIKE_ORDER);
     let verdict = match (near, ordered) {
+        _ if opposed => Verdict::Differs,
         (true, true) => Verdict::Agrees,
         (false, false) => Verdict::Differs,
         (true, false) | (false, true) => Verdict::InPart,
