@@ -90,7 +90,7 @@ impl Store {
         Ok(attachment)
     }
 
-    /// Detaches the remote; whether there was one. What was fetched stays.
+    /// Detaches the remote and returns true if there was one. Results that were fetched stay in the store.
     ///
     /// # Errors
     /// The store cannot be written.
@@ -121,7 +121,7 @@ impl Store {
         Ok(self.listed(&id.key)?.is_some_and(|record| record.object() == *id))
     }
 
-    /// Fetches an object with this content, when the attached remote lists one; whether there is one now.
+    /// Fetches an object with this content if the attached remote lists one. Returns true if the store has it now.
     pub(super) fn fetch(&self, content: &ContentHash) -> Result<bool, StoreError> {
         let Some(attached) = self.attached()? else { return Ok(false) };
         let (place, record) = {

@@ -161,7 +161,7 @@ fn an_attached_bucket_is_read_when_a_result_is_needed() {
     assert_eq!(runs(), 40, "nothing was computed twice");
     server.good(&space, &["run", "w.toml", "--store", "theirs"]);
     assert_eq!(runs(), 40);
-    // A server that is gone is told, with the way out.
+    // If the server cannot be reached, the message says so, and what to do.
     let mut command = space.command(&["show", "w.toml", "rows[7]", "--store", "theirs"]);
     command.env("AWS_ENDPOINT_URL", "http://127.0.0.1:1").env("HOME", space.path("home"));
     let output = command.output().unwrap();

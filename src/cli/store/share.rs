@@ -27,6 +27,19 @@ pub(super) struct Push {
 
 #[derive(Args)]
 pub(super) struct Pull {
+    #[command(flatten)]
+    source: Source,
+}
+
+#[derive(Args)]
+pub(super) struct Attach {
+    #[command(flatten)]
+    source: Source,
+}
+
+/// A remote, and whose results are taken from it.
+#[derive(Args)]
+struct Source {
     /// The remote: a folder, or s3://BUCKET/PREFIX.
     remote: String,
     #[command(flatten)]
@@ -35,14 +48,10 @@ pub(super) struct Pull {
     whom: Whom,
 }
 
-#[derive(Args)]
-pub(super) struct Attach {
-    /// The remote: a folder, or s3://BUCKET/PREFIX.
-    remote: String,
-    #[command(flatten)]
-    server: Server,
-    #[command(flatten)]
-    whom: Whom,
+impl Source {
+    fn trusted(&self) -> Result<(Address, Trust), Exit> {
+        Ok((self.server.address(&self.remote)?, self.whom.trust()?))
+    }
 }
 
 /// Whose results are taken.
@@ -136,7 +145,7 @@ impl Push {
 
 impl Pull {
     pub(super) fn go(&self, common: &Common) -> Result<Exit, Exit> {
-        let (address, trust) = (self.server.address(&self.remote)?, self.whom.trust()?);
+        let (address, trust) = self.source.trusted()?;
         let pulled = common.open()?.pull(&address, &trust).map_err(|error| failed(&error))?;
         out!("{} results pulled, {} were here, {} refused", pulled.pulled, pulled.here, pulled.refused.len());
         Ok(taken(&pulled.signers, &pulled.refused))
@@ -145,7 +154,7 @@ impl Pull {
 
 impl Attach {
     pub(super) fn go(&self, common: &Common) -> Result<Exit, Exit> {
-        let (address, trust) = (self.server.address(&self.remote)?, self.whom.trust()?);
+        let (address, trust) = self.source.trusted()?;
         let attached = common.open()?.attach(&address, &trust).map_err(|error| failed(&error))?;
         out!(
             "{address} is attached: {} results can be read from it, each is fetched when it is needed",

@@ -2,7 +2,7 @@
 
 use super::params::{FactorParam, Params, SetParam, TargetParam};
 use crate::artifact::results::Results;
-use crate::artifact::run::Run;
+use crate::artifact::run::{Curve, Run};
 use crate::artifact::{Artifact, Table};
 use crate::stage::StageError;
 use crate::stage::fitted::models;
@@ -251,13 +251,17 @@ fn curves_reach(parts: &[Part<'_>], targets: &[TargetParam]) -> Result<bool, Sta
     };
     let largest = strains.into_iter().fold(0.0, f64::max);
     for part in parts {
-        let curve = Run::from_artifact(part.run)?.curve;
-        let last = curve.and_then(|curve| curve.axial_strain.last().copied());
+        let last = curve(part.run)?.and_then(|curve| curve.axial_strain.last().copied());
         if last.is_none_or(|last| last < largest) {
             return Ok(false);
         }
     }
     Ok(true)
+}
+
+/// The curve of a run, without its other tables; `None` if it stores none.
+fn curve(run: &Artifact) -> Result<Option<Curve>, StageError> {
+    Ok(Run::curve_of(run).map(Curve::from_table).transpose()?)
 }
 
 type Given<'a> = (&'a Part<'a>, Vec<(&'a str, f64, &'a str)>);
@@ -276,7 +280,7 @@ fn no_response(response: &str, found: &[Given<'_>]) -> StageError {
 /// inverse of the strain, so that among runs that broke too early the one that came nearest deviates least.
 fn stress_at(artifact: &Artifact, strain: f64) -> Result<Result<f64, String>, StageError> {
     let missing = || StageError::new("the simulator stores no stress–strain curve");
-    let curve = Run::from_artifact(artifact)?.curve.ok_or_else(missing)?;
+    let curve = curve(artifact)?.ok_or_else(missing)?;
     let (mut strains, mut stresses) = (curve.axial_strain, curve.stress);
     let Some(&last) = strains.last() else { return Ok(Err("the stress–strain curve is empty".to_owned())) };
     if strains[0] > 0.0 {
@@ -341,7 +345,7 @@ fn response_values(table: &Table, target: &TargetParam) -> Result<Vec<f64>, Stag
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::artifact::run::{Curve, Responses};
+    use crate::artifact::run::Responses;
 
     /// A run that ended at a strain of 0.002 under 10 MPa.
     fn run(failure: &str) -> Artifact {

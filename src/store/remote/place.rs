@@ -117,7 +117,7 @@ impl Place {
         self.remote.read(&id.folder(), &id.file_name(), size)
     }
 
-    /// Writes an object; whether it was not there.
+    /// Writes an object and returns true, or false if the remote has it already.
     pub(super) fn put_object(&self, id: &ObjectId, bytes: &[u8]) -> Result<bool, RemoteError> {
         self.remote.write(&id.folder(), &id.file_name(), bytes)
     }

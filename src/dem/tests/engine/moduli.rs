@@ -44,20 +44,23 @@ fn packing(count: f64, relative: f64, seed: u64) -> Packed {
         floaters: Floaters::Enlarge,
         floater_share: 2e-3,
     };
-    let region = Region::Rectangle { width: WIDTH, height: HEIGHT };
-    let radius = (region.volume() * 0.84 / (std::f64::consts::PI * count)).sqrt();
-    let packing = Packing::Stress { sizes: Sizes::uniform(radius, 1.66), target };
-    let packed = packing.pack::<D2>(&region, &mut Stream::new(seed, "packing", 0), &|| Watch::Continue).unwrap();
-    let fabric = Fabric::of(&packed.heap);
-    (packed.heap.centres, packed.heap.radii, fabric)
+    packed(&Packing::Stress { sizes: Sizes::uniform(radius(count, 0.84), 1.66), target }, seed)
 }
 
 /// A packing of about `count` discs grown to a porosity.
 fn grown(count: f64, porosity: f64, seed: u64) -> Packed {
-    let region = Region::Rectangle { width: WIDTH, height: HEIGHT };
-    let radius = (region.volume() * (1.0 - porosity) / (std::f64::consts::PI * count)).sqrt();
-    let packing = Packing::uniform(porosity, radius, 1.66);
-    let packed = packing.pack::<D2>(&region, &mut Stream::new(seed, "packing", 0), &|| Watch::Continue).unwrap();
+    packed(&Packing::uniform(porosity, radius(count, 1.0 - porosity), 1.66), seed)
+}
+
+const REGION: Region = Region::Rectangle { width: WIDTH, height: HEIGHT };
+
+/// Radius of which `count` discs fill this share of the region.
+fn radius(count: f64, share: f64) -> f64 {
+    (REGION.volume() * share / (std::f64::consts::PI * count)).sqrt()
+}
+
+fn packed(packing: &Packing, seed: u64) -> Packed {
+    let packed = packing.pack::<D2>(&REGION, &mut Stream::new(seed, "packing", 0), &|| Watch::Continue).unwrap();
     let fabric = Fabric::of(&packed.heap);
     (packed.heap.centres, packed.heap.radii, fabric)
 }
