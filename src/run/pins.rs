@@ -18,9 +18,11 @@ seed = 5
 [factor]
 a = { sets = "mortar.a", unit = "GPa", levels = [1, 2, 3] }
 b = { sets = "mortar.b", levels = [10, 20, 30] }
+p = { unit = "MPa", levels = [0, 5, 10, 20] }
 
 [response]
 y = { unit = "MPa" }
+sigma_1 = { unit = "MPa" }
 
 [material.plain]
 mortar = { a = "1 GPa", b = 10 }
@@ -126,6 +128,21 @@ of = "anova"
 kind = "figure"
 show = "dag"
 of = "table"
+
+[stage.confinements]
+kind = "design"
+method = "full-factorial"
+factors = ["p"]
+
+[stage.strengths]
+kind = "formula"
+design = "confinements"
+responses.sigma_1 = { value = "p + 150*sqrt(1 + 25*p/150)", unit = "MPa", scatter = 0.02 }
+
+[stage.envelope]
+kind = "envelope"
+table = "strengths"
+confinement = "p"
 "#;
 
 const DATA: &str = "a [GPa],b,y [MPa]\n1,10,11\n3,10,17\n1,30,19\n3,30,25.5\n";
