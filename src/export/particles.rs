@@ -105,20 +105,40 @@ fn fissure(laid: &Laid, row: usize) -> Fissure {
 
 /// The microparameters of a run from the parameters of its task.
 fn material(parameters: &Parameters) -> Result<Material, String> {
-    let mut root = Map::new();
+    let mut root = Value::Null;
     for (path, text) in parameters {
         let Some(path) = path.strip_prefix("material.") else { continue };
         let value: Value =
             serde_json::from_str(text).map_err(|e| format!("the parameter `{path}` cannot be read: {e}"))?;
-        let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
-        let mut table = &mut root;
-        for name in tables.split('.').filter(|name| !name.is_empty()) {
-            let below = table.entry(name).or_insert_with(|| Value::Object(Map::new()));
-            table = below.as_object_mut().ok_or_else(|| format!("the parameter `{path}` lies below a value"))?;
-        }
-        table.insert(key.to_owned(), value);
+        let place = place(&mut root, path).ok_or_else(|| format!("the parameter `{path}` lies below a value"))?;
+        *place = value;
     }
-    serde_json::from_value(Value::Object(root)).map_err(|e| format!("the run's material cannot be read: {e}"))
+    serde_json::from_value(root).map_err(|e| format!("the run's material cannot be read: {e}"))
+}
+
+/// The place of a path such as `fissures[0].friction` in a tree of tables and lists, which grows towards it.
+fn place<'v>(root: &'v mut Value, path: &str) -> Option<&'v mut Value> {
+    let mut place = root;
+    for step in path.split('.') {
+        let (name, indices) = step.split_once('[').unwrap_or((step, ""));
+        if place.is_null() {
+            *place = Value::Object(Map::new());
+        }
+        place = place.as_object_mut()?.entry(name).or_insert(Value::Null);
+        for index in indices.split(['[', ']']).filter(|index| !index.is_empty()) {
+            let index: usize = index.parse().ok()?;
+            if place.is_null() {
+                *place = Value::Array(Vec::new());
+            }
+            let list = place.as_array_mut()?;
+            // Indices of a task text rise without gaps.
+            if index == list.len() {
+                list.push(Value::Null);
+            }
+            place = list.get_mut(index)?;
+        }
+    }
+    Some(place)
 }
 
 /// The files; without the setting of a run, those of the specimen alone.

@@ -104,21 +104,16 @@ impl Figure for Cracks {
         let width = (style.width - 1.6 + BETWEEN) / columns as f64 - BETWEEN;
         let height = width * (self.high[1] - self.low[1]) / (self.high[0] - self.low[0]);
         let row_height = height + 3.0 * size + 1.4;
-        let top = 1.7 * size;
+        let (entries, room) = (self.entries(), style.width - 1.6);
+        // Below the rows of the legend.
+        let more =
+            legend::height(&entries, room, style) - legend::height(&entries[..entries.len().min(1)], room, style);
+        let top = 1.7 * size + more;
         let mut scene = Scene::new(style.width, top + rows as f64 * row_height + 2.0 * size);
         let [title, one, many] = self.by.words();
         scene.title = title.into();
         scene.description = self.describe();
-        let mut entries: Vec<Entry> = self
-            .modes
-            .iter()
-            .enumerate()
-            .map(|(i, m)| Entry::new(m.clone(), Swatch::Line(Stroke::new(self.by.color(i), 0.5), None)))
-            .collect();
-        if !self.fissures.is_empty() {
-            entries.insert(0, Entry::new("fissure", Swatch::Line(fissure(), None)));
-        }
-        legend::draw(&mut scene, &entries, Rect::new(0.8, 0.8, style.width - 1.6, 0.0), style);
+        legend::draw(&mut scene, &entries, Rect::new(0.8, 0.8, room, 0.0), style);
         for (i, moment) in self.moments.iter().enumerate() {
             let left = 0.8 + (i % columns) as f64 * (width + BETWEEN);
             let y = top + (i / columns) as f64 * row_height;
@@ -157,6 +152,15 @@ impl Figure for Cracks {
 }
 
 impl Cracks {
+    /// Entries of the legend.
+    fn entries(&self) -> Vec<Entry> {
+        let there = (!self.fissures.is_empty()).then(|| Entry::new("fissure", Swatch::Line(fissure(), None)));
+        let class = |(i, name): (usize, &String)| {
+            Entry::new(name.clone(), Swatch::Line(Stroke::new(self.by.color(i), 0.5), None))
+        };
+        there.into_iter().chain(self.modes.iter().enumerate().map(class)).collect()
+    }
+
     fn describe(&self) -> String {
         let tell = |m: &Moment| {
             let count = |i: usize| m.cracks.iter().filter(|c| c.mode == i).count();

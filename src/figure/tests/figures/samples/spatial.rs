@@ -181,8 +181,10 @@ pub(super) fn damage() -> Cracks {
     let cracks = cracks();
     let class = |(k, crack): (usize, Crack)| Crack { mode: k % 4, ..crack };
     let moment = |m: Moment| Moment { cracks: m.cracks.into_iter().enumerate().map(class).collect(), ..m };
-    let modes = ["to 25 %", "to 50 %", "below 100 %", "100 %"].map(str::to_owned).into();
-    Cracks { by: By::Damage, modes, moments: cracks.moments.into_iter().map(moment).collect(), ..cracks }
+    let modes = ["25 % or less broken", "50 % or less", "below 100 %", "100 %"].map(str::to_owned).into();
+    let moments = cracks.moments.into_iter().map(moment).collect();
+    let fissures = vec![[[30.0, 80.0], [70.0, 40.0]]];
+    Cracks { by: By::Damage, modes, moments, fissures, ..cracks }
 }
 
 /// The disc itself.
