@@ -77,6 +77,7 @@ pub(super) fn figure(paper: &Paper, part: &Part, glyphs: &mut Glyphs) -> Markup 
     html! {
         figure id={ "stage-" (part.name) } class=(if width > SINGLE { "double" } else { "single" }) {
             div class={ "plot " (ground) } { (picture) }
+            @if let Some(moving) = &drawn.moving { (in_motion(moving, title)) }
             @if let Some(numbers) = numbers {
                 script.values type="application/json" { (PreEscaped(values::in_script(&numbers))) }
             }
@@ -84,6 +85,17 @@ pub(super) fn figure(paper: &Paper, part: &Part, glyphs: &mut Glyphs) -> Markup 
                 b { (part.words()) "." } " " (title) "."
                 @if !description.is_empty() { " " span { (description) } }
             }
+        }
+    }
+}
+
+/// The picture that moves, which is seen while its element is open: as an image, in which no script runs.
+fn in_motion(moving: &str, title: &str) -> Markup {
+    let data = format!("data:image/svg+xml;base64,{}", base64(moving.as_bytes()));
+    html! {
+        details.motion {
+            summary { "In motion" }
+            img src=(data) alt={ (title) ", in motion" } loading="lazy";
         }
     }
 }

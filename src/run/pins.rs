@@ -159,7 +159,7 @@ command 2
 data 3
 design 3
 effort 1
-figure 14
+figure 15
 fit 4
 formula 2
 gather 2
@@ -170,7 +170,7 @@ screening 5
 shapes 1
 simulate 4
 specimen 2
-table 6
+table 7
 verify 3
 ";
 

@@ -95,12 +95,17 @@ impl Store {
     /// # Errors
     /// The store cannot be written.
     pub fn detach(&self) -> Result<bool, StoreError> {
-        let name = file_name(&self.mark);
-        let there = self.disk.find_folder(remote::FOLDER)?.is_some_and(|folder| folder.entry(&name).is_ok());
+        let there = self.has_attached()?;
         if there {
-            self.disk.remove(remote::FOLDER, &name)?;
+            self.disk.remove(remote::FOLDER, &file_name(&self.mark))?;
         }
         Ok(there)
+    }
+
+    /// Whether the user of this store has attached a remote to it.
+    pub(super) fn has_attached(&self) -> Result<bool, StoreError> {
+        let name = file_name(&self.mark);
+        Ok(self.disk.find_folder(remote::FOLDER)?.is_some_and(|folder| folder.entry(&name).is_ok()))
     }
 
     /// How many results were fetched from the attached remote since the last call, and its address.

@@ -17,6 +17,7 @@ mod guide;
 mod hostile;
 mod kill;
 mod nodes;
+mod reading;
 mod readme;
 mod report;
 mod reruns;
