@@ -134,7 +134,8 @@ impl Figure for Snapshots {
         let height = width * (self.high[1] - self.low[1]) / (self.high[0] - self.low[0]);
         let entries = self.entries();
         let top = 1.0 + legend::height(&entries, style.width - 1.6, style);
-        let tall = height.max(0.95 * width);
+        // Below the curve stand three lines with its numbers.
+        let tall = height.max(0.9 * width + 5.0 * style.size());
         let drawn = self.drawn(Rect::new(0.8, top, width, height), self.magnification(), self.nearest());
         let mut ground = Scene::new(style.width, top + tall + 3.2 * style.size());
         self.head(&mut ground);
@@ -142,7 +143,7 @@ impl Figure for Snapshots {
         let foot = bottom(&ground, style.size());
         drawn.frame.draw_scale(&mut ground, [1.1, foot], style);
         self.note(&mut ground, drawn.magnified, style);
-        let outer = Rect::new(0.8 + width + 2.0 * BETWEEN, top, style.width - width - 2.0 * BETWEEN - 1.6, 0.9 * width);
+        let outer = Rect::new(0.8 + width + 2.0 * BETWEEN, top, style.width - width - 2.0 * BETWEEN - 3.6, 0.9 * width);
         let panel = self.curve_panel(&mut ground, outer, style);
         let discs: Vec<Option<Item>> = (0..self.states.len()).map(|state| self.discs(&drawn, Some(state))).collect();
         let (start, mut cracks, mut opened, mut before) = (self.discs(&drawn, None), Vec::new(), 0, None);
