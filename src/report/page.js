@@ -107,6 +107,15 @@
     for (const [name, value] of Object.entries(more)) element.setAttribute(name, value);
     return element;
   };
+  // Words with the symbols of the workflow as they are set. The markup of a symbol is the page's own.
+  const symbols = new Map(JSON.parse(document.getElementById("symbols").textContent).map(([plain, markup]) => {
+    const template = make("template");
+    template.innerHTML = markup;
+    return [plain, template.content];
+  }));
+  const sign = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+  const seek = symbols.size && new RegExp("(?<![\\p{L}\\p{N}_\\p{M}])(" + [...symbols.keys()].map(sign).join("|") + ")(?![\\p{L}\\p{N}_\\p{M}])", "u");
+  const typeset = (words) => !seek ? [words] : words.split(seek).map((part, i) => i % 2 ? symbols.get(part).cloneNode(true) : part);
   const told = (number, digits = 4) => {
     if (number === null || !Number.isFinite(number)) return "–";
     const size = Math.abs(number);
@@ -261,7 +270,7 @@
     let state = null;
     const show = (found) => {
       layer.replaceChildren();
-      readout.textContent = found ? found.words : "";
+      readout.replaceChildren(...(found ? typeset(found.words) : []));
       if (!found) return;
       state = found.state;
       if (found.line !== undefined) layer.append(draw("line", { x1: found.line, x2: found.line, y1: 0, y2: height }));
@@ -306,9 +315,9 @@
       picture.style.width = "100%";
     };
     const button = (name, label, what) => make("button", { type: "button", "aria-label": label, onclick: what }, name);
-    const title = figure.querySelector("figcaption").textContent.trim();
+    const title = [...figure.querySelector("figcaption").cloneNode(true).childNodes];
     dialog.replaceChildren(
-      make("div", { class: "head" }, make("p", {}, title), button("−", "Smaller", () => set(size / 1.5)),
+      make("div", { class: "head" }, make("p", {}, ...title), button("−", "Smaller", () => set(size / 1.5)),
         button("+", "Larger", () => set(size * 1.5)), button("Fit", "Fit the window", () => set(1)), button("Close", "Close", () => dialog.close())),
       box, readout);
     dialog.showModal();

@@ -236,6 +236,13 @@ pub(super) fn capital(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// The text with a capital at its beginning, unless that is a symbol or a name: those keep their letters.
+pub(super) fn sentence(text: &str) -> String {
+    let word = text.split([' ', ',', '.', ':', '-']).next().unwrap_or_default();
+    let is_word = word == "a" || word.len() > 1 && word.chars().all(|letter| letter.is_ascii_lowercase());
+    if is_word { capital(text) } else { text.to_owned() }
+}
+
 /// A word as a shell takes it.
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
