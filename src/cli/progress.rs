@@ -233,10 +233,17 @@ impl Watch for Progress<'_> {
     }
 }
 
-/// What a warning is about: its words up to the first number.
+/// What a warning is about: its words up to the first number; where a number stands among the first two words, its first
+/// clause without the numbers.
 fn kind_of(words: &str) -> String {
     let end = words.find(|c: char| c.is_ascii_digit()).unwrap_or(words.len());
-    words[..end].trim_end_matches([' ', ':', '(', '-', '~']).trim_end_matches(" is").to_owned()
+    let kind = words[..end].trim_end_matches([' ', ':', '(', '-', '~']).trim_end_matches(" is");
+    if kind.contains(' ') || end == words.len() {
+        return kind.to_owned();
+    }
+    let clause = words.split([':', ';']).next().unwrap_or_default();
+    let parts = clause.split(' ').map(|word| if word.contains(|c: char| c.is_ascii_digit()) { "…" } else { word });
+    parts.collect::<Vec<_>>().join(" ")
 }
 
 /// A stage or one row of it, as `flow show` takes it.
@@ -262,6 +269,8 @@ mod tests {
         assert_eq!(kind_of("not valid: rotation: 0.031 rad is above 0.018 rad"), "not valid: rotation");
         assert_eq!(kind_of("strain per step is 4.1e-8, above 3e-8"), "strain per step");
         assert_eq!(kind_of("no number"), "no number");
+        assert_eq!(kind_of("2 of 27 polygons hold no ball: drop the class"), "… of … polygons hold no ball");
+        assert_eq!(kind_of("only 1938 balls; the peak is stable from 2000 on"), "only … balls");
     }
 
     #[test]

@@ -95,17 +95,12 @@ impl Store {
     /// # Errors
     /// The store cannot be written.
     pub fn detach(&self) -> Result<bool, StoreError> {
-        let there = self.has_attached()?;
+        let name = file_name(&self.mark);
+        let there = self.disk.find_folder(remote::FOLDER)?.is_some_and(|folder| folder.entry(&name).is_ok());
         if there {
-            self.disk.remove(remote::FOLDER, &file_name(&self.mark))?;
+            self.disk.remove(remote::FOLDER, &name)?;
         }
         Ok(there)
-    }
-
-    /// Whether the user of this store has attached a remote to it.
-    pub(super) fn has_attached(&self) -> Result<bool, StoreError> {
-        let name = file_name(&self.mark);
-        Ok(self.disk.find_folder(remote::FOLDER)?.is_some_and(|folder| folder.entry(&name).is_ok()))
     }
 
     /// How many results were fetched from the attached remote since the last call, and its address.
@@ -164,6 +159,10 @@ impl Store {
     }
 
     fn read_attached(&self) -> Result<Option<Attached>, StoreError> {
+        // Into a store that is only read nothing can be fetched.
+        if self.disk.read_only {
+            return Ok(None);
+        }
         let Some(folder) = self.disk.find_folder(remote::FOLDER)? else { return Ok(None) };
         // A note that cannot be read, or that somebody else has written, attaches nothing.
         let Ok(bytes) = folder.read(&file_name(&self.mark), MOST) else { return Ok(None) };
