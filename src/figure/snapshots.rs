@@ -7,9 +7,9 @@
 
 use super::axis::{Axis, Scale, significant};
 use super::column::Column;
-use super::cracks::{Crack, mode_style};
+use super::cracks::Crack;
 use super::legend::{self, Entry, Swatch};
-use super::palette::{INK, Marker, SOFT, VERMILION};
+use super::palette::{self, INK, Marker, SOFT, VERMILION};
 use super::panel::{Panel, draw_marker};
 use super::scene::{Anchor, Item, Path, Point, Rect, Scene, Stroke};
 use super::specimen::{Frame, Outline, group_color, thousands};
@@ -186,7 +186,9 @@ impl Snapshots {
 
     fn entries(&self) -> Vec<Entry> {
         let group = |(i, name): (usize, &String)| Entry::new(name.clone(), Swatch::Box(group_color(i)));
-        let mode = |(i, name): (usize, &String)| Entry::new(name.clone(), Swatch::Line(mode_style(i, 0.5), None));
+        let mode = |(i, name): (usize, &String)| {
+            Entry::new(name.clone(), Swatch::Line(Stroke::new(palette::mode(i), 0.5), None))
+        };
         self.groups.iter().enumerate().map(group).chain(self.modes.iter().enumerate().map(mode)).collect()
     }
 
@@ -253,7 +255,7 @@ impl Snapshots {
                 path.add_polyline(&[[x - c * half, y + s * half], [x + c * half, y - s * half]]);
             }
             if !path.0.is_empty() {
-                page.stroke(path, Stroke { dash: Vec::new(), ..mode_style(mode, 0.3) });
+                page.stroke(path, Stroke::new(palette::mode(mode), 0.3));
             }
         }
         let items = page.items;

@@ -49,6 +49,7 @@ pub mod data;
 mod derived;
 pub mod design;
 pub mod effort;
+pub mod envelope;
 pub mod figure;
 pub mod fitted;
 pub mod forecast;
@@ -371,6 +372,7 @@ kinds! {
     command::Command,
     data::Data,
     design::Design,
+    envelope::Envelope,
     effort::Effort,
     figure::Figure,
     formula::Formula,

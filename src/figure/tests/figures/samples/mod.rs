@@ -43,6 +43,8 @@ pub(crate) fn all() -> Vec<(&'static str, Style, Box<dyn Figure>)> {
         ("cracks-2", one.clone(), Box::new(cracks())),
         ("snapshots", two.clone(), Box::new(spatial::snapshots())),
         ("snapshots-2", one.clone(), Box::new(spatial::snapshots())),
+        ("damage", two.clone(), Box::new(spatial::damage())),
+        ("damage-1", one.clone(), Box::new(spatial::damage())),
         ("cracks-disc", two.clone(), Box::new(spatial::disc_cracks())),
         ("specimen-disc", one.clone(), Box::new(spatial::disc())),
         ("solid", one.clone(), Box::new(spatial::cube(None))),
