@@ -1,12 +1,12 @@
 //! `flow export`: results as files for people and other programs.
 
-use super::Exit;
 use super::common::{Campaign, system};
 use super::output::replace;
 use super::show::{object, parts};
+use super::{Exit, complete};
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash};
-use crate::export::{File, files, paraview, particles, shapes, tables};
+use crate::export::{File, files, paraview, particles, pfc, shapes, tables};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
 use crate::stage;
@@ -25,7 +25,7 @@ pub(super) struct Export {
     #[command(flatten)]
     campaign: Campaign,
     /// The stages, or single runs of them such as `orthogonal[12]`; by default all that have a result.
-    #[arg(value_name = "STAGE[ROW]")]
+    #[arg(value_name = "STAGE[ROW]", add = complete::stages())]
     stages: Vec<String>,
     /// Form of the files.
     #[arg(long, value_enum, value_name = "FORM", default_value_t = Form::Files)]
@@ -66,7 +66,7 @@ impl Export {
         let asked = self.stages.iter().map(|what| parts(what)).collect::<Result<Vec<_>, Exit>>()?;
         let names: Vec<String> = asked.iter().map(|(stage, _)| stage.clone()).collect();
         let workflow = self.campaign.load(&names)?;
-        let store = self.campaign.open()?;
+        let store = self.campaign.common.read()?;
         // Single rows are known only when every task is looked up.
         let memos = asked.iter().all(|(_, row)| row.is_none());
         let report = decide(&workflow, &store, &names, memos);
@@ -126,10 +126,11 @@ impl Export {
                 Loaded::Solid(specimen) => self.specimen(name, &specimen),
             },
             Form::Vtu | Form::Particles if Run::from_artifact(artifact).is_ok_and(|run| run.cracks.is_some()) => {
-                let Made { specimen, parameters } = Made::of(store, &chosen.object)?;
+                let Made { specimen, mut setting } = Made::of(store, &chosen.object)?;
+                setting.fissures = Run::from_artifact(artifact).ok().and_then(|run| run.fissures);
                 match specimen {
-                    Loaded::Plane(specimen) => self.run(name, artifact, &specimen, &parameters),
-                    Loaded::Solid(specimen) => self.run(name, artifact, &specimen, &parameters),
+                    Loaded::Plane(specimen) => self.run(name, artifact, &specimen, &setting),
+                    Loaded::Solid(specimen) => self.run(name, artifact, &specimen, &setting),
                 }
             }
             Form::Vtu | Form::Particles if self.stages.is_empty() => Ok(Vec::new()),
@@ -152,11 +153,14 @@ impl Export {
         name: &str,
         run: &Artifact,
         specimen: &Specimen<S>,
-        parameters: &particles::Parameters,
+        setting: &particles::Setting,
     ) -> Result<Vec<File>, String> {
+        if self.to == Form::Particles {
+            pfc::cautions(&setting.material()?).iter().for_each(|words| err!("note: {name}: {words}"));
+        }
         match self.to {
             Form::Vtu => paraview::run(name, run, specimen),
-            Form::Files | Form::Csv | Form::Particles | Form::Stl => particles::files(name, specimen, Some(parameters)),
+            Form::Files | Form::Csv | Form::Particles | Form::Stl => particles::files(name, specimen, Some(setting)),
         }
     }
 }
@@ -185,10 +189,10 @@ fn load(artifact: &Artifact) -> Result<Loaded, String> {
     specimen::load(artifact).map_err(|e| e.to_string())
 }
 
-/// The parameters of a run, from its task text.
+/// The specimen and the setting of a run, from its task text.
 struct Made {
     specimen: Loaded,
-    parameters: particles::Parameters,
+    setting: particles::Setting,
 }
 
 impl Made {
@@ -201,6 +205,7 @@ impl Made {
         let content = input.and_then(ContentHash::from_hex).ok_or("the run does not name its specimen")?;
         let specimen = load(&*store.get(&content).map_err(|e| e.to_string())?)?;
         let parameters = line("param ").map(|(path, value)| (path.to_owned(), value.to_owned())).collect();
-        Ok(Self { specimen, parameters })
+        let seed = text.lines().find_map(|line| line.strip_prefix("seed ")?.trim().parse().ok()).unwrap_or_default();
+        Ok(Self { specimen, setting: particles::Setting { parameters, seed, fissures: None } })
     }
 }

@@ -44,10 +44,12 @@ pub mod census;
 mod columns;
 pub mod command;
 mod context;
+pub mod cost;
 pub mod data;
 mod derived;
 pub mod design;
 pub mod effort;
+pub mod envelope;
 pub mod figure;
 pub mod fitted;
 pub mod forecast;
@@ -370,6 +372,7 @@ kinds! {
     command::Command,
     data::Data,
     design::Design,
+    envelope::Envelope,
     effort::Effort,
     figure::Figure,
     formula::Formula,

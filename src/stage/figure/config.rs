@@ -1,5 +1,6 @@
 //! Settings of a `figure` stage, and those that each figure accepts.
 
+use super::cut::Across;
 use super::plot::{Bars, Direction, Fit};
 use crate::artifact::{Accepts, ArtifactKind as Of};
 use crate::stage::invalid::Invalid;
@@ -63,6 +64,11 @@ pub struct Figure {
     pub joined: bool,
     /// CSV or workbook, beside the workflow, whose columns `x` and `y` are drawn over the others (`xy`, `curves`).
     pub overlay: Option<String>,
+    /// Axis across which a `specimen` in space is cut open: `x`, `y` (along the load), `z` (to the eye), or `none`; by default
+    /// one with clumps is cut across z.
+    pub cut: Option<Across>,
+    /// Distance of the cut from the middle of the specimen: `"5 mm"`; 0 by default.
+    pub cut_at: Option<Length>,
     /// Number of bins of a `histogram`; by default from the scatter.
     pub bins: Option<usize>,
     /// What to do with runs that are not valid: by default a figure of a table of runs leaves them out, and a figure of a
@@ -166,10 +172,14 @@ pub enum Show {
     StressStrain,
     /// Crack patterns by mode at several moments.
     Cracks,
+    /// Interfaces by how much of each is broken, at several moments: flat joints.
+    Damage,
     /// Orientation of the cracks.
     CrackRose,
     /// Force chains.
     ForceChains,
+    /// The specimen at the stored states of a run, and as a moving picture.
+    Snapshots,
     /// Particles by group, with the aggregate.
     Specimen,
     /// Mean response per level of each factor.
@@ -210,6 +220,8 @@ pub enum Show {
     Box,
     /// A column over two others as a matrix of colours and numbers.
     HeatMap,
+    /// Strength over confining stress: tests, Mohr–Coulomb, Hoek–Brown.
+    Envelope,
     /// Stones with their clumps.
     Stones,
     /// Zingg's diagram of stones.
@@ -262,8 +274,11 @@ impl Show {
         const POINTS: &[Of] = &[Of::DESIGN, Of::RESULTS];
         match self {
             Show::StressStrain => needs(&[Of::RUN], &[], [0, 0], [0, 0]),
-            Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0]),
+            Show::Cracks | Show::Damage | Show::ForceChains | Show::CrackRose | Show::Snapshots => {
+                needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0])
+            }
             Show::Specimen => needs(&[Of::SPECIMEN], &[], [0, 0], [0, 0]),
+            Show::Envelope => needs(&[Of::ENVELOPE], &[], [0, 0], [0, 0]),
             Show::Stones | Show::Zingg => needs(&[Of::SHAPES], &[], [0, 0], [0, 0]),
             Show::MainEffects | Show::Range => needs(&[Of::RANGE], &[Of::RANGE], [1, 1], [0, MANY]),
             Show::Points => needs(POINTS, &[], [0, 0], [0, 3]),

@@ -6,7 +6,9 @@
 //! | `show` | `of` | tables read |
 //! |---|---|---|
 //! | `stress-strain` | runs | `curve`, `cracks` |
-//! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces`, `snapshots` |
+//! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`, `fissures`; `forces`, `snapshots` |
+//! | `damage` | one run with flat joints (`compare`: its specimen) | `cracks`, `interfaces`, `curve`, `fissures` |
+//! | `snapshots` | one run and (`compare`) its specimen | `states`, `state_centres`, `cracks`, `curve`; in space `cracks` |
 //! | `specimen` | a specimen | its arrays; one in space is shaded, and cut open where it holds clumps |
 //! | `stones`, `zingg` | shapes | their arrays; `shapes` |
 //! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
@@ -16,6 +18,7 @@
 //! | `residuals`, `observed-predicted` | anova, screening, surfaces | `residuals` |
 //! | `pareto` | a screening, or an anova | `effects` and `limits`, or `anova` |
 //! | `half-normal` | a screening, or an anova | `effects`, `limits`, or `anova` and `fit` |
+//! | `envelope` | an envelope | `parameters`, `tests`, `curves` |
 //! | `convergence`, `solutions` | solutions | `history`; `solution`, `solution_set` |
 //! | `verification` | a verification | `summary`, `runs` |
 //! | `xy`, `histogram`, `box`, `heat-map` | any result | the columns named by `x`, `y`, `by`, `value` of the table `table` |
@@ -27,6 +30,8 @@
 
 mod config;
 mod curves;
+mod cut;
+mod damage;
 mod design;
 mod flow;
 mod lost;
@@ -38,6 +43,7 @@ mod run;
 mod solution;
 mod source;
 mod space;
+mod states;
 mod validity;
 
 use super::beside::Beside;
@@ -55,6 +61,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 
 pub use config::{Figure, Names, Show, Width};
+pub use cut::Across;
 pub use plot::{Bars, Direction, Fit};
 use plot::{Labels, Plot};
 
@@ -103,6 +110,9 @@ struct Params {
     series: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     band: Option<f64>,
+    /// Where a specimen in space is cut open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cut: Option<cut::Cut>,
     /// The columns of a plot of the user's own columns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     plot: Option<Plot>,
@@ -167,6 +177,12 @@ impl Stage for Figure {
         if self.invalid == Some(Invalid::LeaveOut) && !self.show.needs().runs {
             found.push(self.without_effect("invalid"));
         }
+        if self.show == Show::Specimen {
+            found.extend(cut::Cut::check(self.cut, self.cut_at, &of, context));
+        } else {
+            let keys = [("cut", self.cut.is_some()), ("cut_at", self.cut_at.is_some())];
+            found.extend(keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| self.without_effect(key)));
+        }
         if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
             found.push(self.without_effect("band"));
         }
@@ -184,6 +200,7 @@ impl Stage for Figure {
         let labels = plot.as_ref().map(|plot| plot.labels(self.show, known.context, &self.names)).unwrap_or_default();
         let runs = if self.show == Show::Curves { curves::runs(self, known)? } else { curves::Runs::default() };
         let params = Params {
+            cut: cut::Cut::of(self.cut, self.cut_at),
             plot,
             labels,
             groups: runs.groups,
@@ -237,6 +254,10 @@ impl Figure {
             found.push(self.without_effect("compare"));
         }
         let (from, compare) = (self.of.list().len(), self.compare.list().len());
+        if self.show == Show::Snapshots && compare != 1 {
+            let message = format!("`compare` names {compare} stages; snapshots are drawn on one specimen");
+            found.push(Complaint::new("compare", message).hint("name the specimen of the run"));
+        }
         if self.show == Show::Agreement && from != compare {
             let message = format!("`of` names {from} stages and `compare` {compare}; they are compared in pairs");
             found.push(Complaint::new("compare", message));
@@ -330,8 +351,9 @@ impl Kind for Figure {
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
     /// one another. 11: runs that are not valid are left out or marked, which is stated below the picture. 12: titles of
     /// axes stay on the page; lines of a contour are labelled in the words of its bar. 13: names
-    /// in what is stated below the picture keep their letters.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 14, run: draw }];
+    /// in what is stated below the picture keep their letters. 14: pictures in space name their axes as specimens do: the
+    /// load acts along y. 15: cylinders and thick discs in space have a round frame; cells of a matrix say where they are.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 15, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -340,9 +362,11 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
     let picture: Box<dyn Picture> = match params.show {
         Show::StressStrain => Box::new(run::stress_strain(&params, &sources)?),
         Show::Cracks => run::cracks(&sources)?,
+        Show::Damage => damage::damage(&sources)?,
         Show::CrackRose => Box::new(run::rose(&sources)?),
         Show::ForceChains => Box::new(run::chains(&sources)?),
-        Show::Specimen => run::specimen(&sources)?,
+        Show::Snapshots => states::snapshots(&sources)?,
+        Show::Specimen => run::specimen(&params, &sources)?,
         Show::MainEffects => Box::new(design::main_effects(&params, &sources)?),
         Show::Range => Box::new(design::range(&params, &sources)?),
         Show::Points => Box::new(design::points(&params, &sources)?),
@@ -362,6 +386,7 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Histogram => Box::new(own::histogram(&params, &sources)?),
         Show::Box => Box::new(own::boxes(&params, &sources)?),
         Show::HeatMap => Box::new(own::heat_map(&params, &sources)?),
+        Show::Envelope => Box::new(model::envelope(&sources)?),
         Show::Stones => Box::new(space::stones(&sources)?),
         Show::Zingg => Box::new(space::zingg(&sources)?),
         Show::Dag => Box::new(flow::dag(&params.outline)),
@@ -372,6 +397,9 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
 
 /// Resolution of the PNG in dots per inch.
 const DPI: f64 = 300.0;
+
+/// Seconds for each scene of a moving picture.
+const PACE: f64 = 0.12;
 
 /// A stored picture: the three files, a description for those who cannot see it, and its numbers.
 fn picture_artifact(
@@ -390,11 +418,13 @@ fn picture_artifact(
         let words = format!("{first}{more}; make the figure wider, or give shorter `names` or symbols");
         say(Progress::warning(&words));
     }
+    let frames = picture.frames(style);
     let png = figure::png::png(&scene, DPI).map_err(|e| StageError::new(e.to_string()))?;
     let stored = Stored {
         svg: figure::svg::svg(&scene),
         pdf: figure::pdf::pdf(&scene),
         png,
+        moving: figure::film::film(&frames, PACE),
         data: stored(picture.data()),
         title: scene.title,
         description: scene.description,

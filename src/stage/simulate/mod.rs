@@ -18,14 +18,18 @@
 
 mod config;
 mod fissures;
+mod laid;
 mod loading;
 mod record;
 mod speed;
+mod traces;
 
 pub use config::{BondConfig, PackingChoice, Simulate};
 pub use fissures::{FissureConfig, JointConfig, NetworkConfig};
 pub use speed::PlatenSpeed;
 
+use super::beside::Beside;
+use super::cost::Bulk;
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::specimen::Loaded;
@@ -40,6 +44,7 @@ use config::Params;
 use dem::Space;
 use dem::loading::curve::Sample;
 use dem::loading::piece::Piece;
+use laid::Laid;
 use math::random::Stream;
 use serde_json::json;
 use std::sync::Arc;
@@ -71,6 +76,11 @@ impl Stage for Simulate {
         found
     }
 
+    fn beside(&self, context: &Context, found: &mut Beside) {
+        let region = context.sketches.get(&self.specimen).and_then(|sketch| sketch.region);
+        fissures::look_into(&self.fissures, region.map(|region| region.dimension()), found);
+    }
+
     fn sketch(&self) -> Sketch {
         let responses = self.test.responses().iter().map(|response| response.name.to_owned()).collect();
         let material = Some(self.material.clone());
@@ -84,7 +94,17 @@ impl Stage for Simulate {
             PackingChoice::Shared if self.varies_specimen(ahead.context) => TaskForecast::AtMost(rows),
             PackingChoice::Shared => TaskForecast::Exactly(design.replicates - 1),
         };
-        Forecast { per_run: 2, ..Forecast::of_design(ahead, specimens) }
+        let found = Forecast { per_run: 2, ..Forecast::of_design(ahead, &specimens) };
+        let PlatenSpeed { speed, pace } = self.platen_speed;
+        let bulk = (ahead.behind)("specimen").first().and_then(|specimen| specimen.bulk);
+        let one = |bulk: Bulk| (bulk.test(speed, pace, self.masses), bulk.packing());
+        let all = |(test, packing): (f64, f64)| {
+            let rows = if self.design.is_some() { found.rows? } else { 1 };
+            let packed = found.tasks?.count().saturating_sub(rows + 1);
+            Some(rows as f64 * test + packed as f64 * packing)
+        };
+        let run_seconds = bulk.map(one).map(|(test, packing)| test + packing);
+        Forecast { seconds: bulk.map(one).and_then(all), run_seconds, ..found }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {
@@ -105,7 +125,8 @@ impl Stage for Simulate {
             PackingChoice::Shared => number,
             PackingChoice::Own => own_packing(&point, number),
         };
-        let task = Task::new("simulate", json!(Params { material, test: self.spec() }));
+        let task = Task::new("simulate", json!(Params::new(material, self.spec())));
+        let task = fissures::add_files(&self.fissures, known, task)?;
         if let Some(make) = (specimen.vary)(&point, packing)? {
             return Ok(task.after("specimen", Arc::new(make)).seed(number));
         }
@@ -185,7 +206,8 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
 
 /// Runs the test on a piece, in the plane or in the solid.
 fn tested<S: Space>(job: &Job, piece: &Piece<S>) -> Result<Artifact, Failure> {
-    let params: Params = job.params()?;
+    let mut params: Params = job.params()?;
+    fissures::read_files(job, &mut params.material.fissures, S::DIMENSION)?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
     if let Some(warning) = params.test.warning(piece, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));
@@ -205,5 +227,7 @@ fn tested<S: Space>(job: &Job, piece: &Piece<S>) -> Result<Artifact, Failure> {
         return Err(Failure::Stopped);
     }
     record.invalid().for_each(|check| (job.say)(Progress::warning(&format!("not valid: {check}"))));
-    Ok(record::artifact(&record, &params.test, &params.material))
+    let laid = Laid::of(piece, &params.material, seed, &record.run.on_fissures);
+    laid.iter().filter_map(Laid::idle).for_each(|words| (job.say)(Progress::warning(&words)));
+    Ok(record::artifact(&record, &params, laid.as_ref()))
 }
