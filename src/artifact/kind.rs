@@ -40,6 +40,8 @@ impl ArtifactKind {
     pub const VERIFICATION: Self = Self::new("verification", 1).main("summary");
     /// Computed values beside values from elsewhere.
     pub const AGREEMENT: Self = Self::new("agreement", 1).main("summary");
+    /// Strength over confining stress.
+    pub const ENVELOPE: Self = Self::new("envelope", 1).main("parameters");
     /// A figure with its numbers.
     pub const PICTURE: Self = Self::new("picture", 1).main("data");
     /// A printed table.

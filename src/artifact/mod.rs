@@ -9,8 +9,10 @@
 pub mod agreement;
 pub mod calibration;
 mod cells;
+pub mod damage;
 mod declare;
 pub mod design;
+pub mod envelope;
 mod field;
 pub mod groups;
 mod key;

@@ -27,6 +27,10 @@ crate::artifact! {
         pub energies: Option<Energies>, "";
         /// broken bonds
         pub cracks: Option<Cracks>, "";
+        /// interfaces of the cracks, row by row, where contacts are flat joints
+        pub interfaces: Option<Interfaces>, "";
+        /// fissures that were laid into the specimen, where there are any
+        pub fissures: Option<Fissures>, "";
         /// states at shares of the peak
         pub states: Option<States>, "";
         /// centres of the bodies in each state: state, body, axis
@@ -151,6 +155,42 @@ crate::table! {
 }
 
 crate::table! {
+    /// the interface of each crack, row by row: an interface of several elements has several cracks
+    pub struct Interfaces {
+        /// body, from 0
+        pub first: Vec<usize>, "";
+        /// body, from 0
+        pub second: Vec<usize>, "";
+        /// element that broke, from 0
+        pub element: Vec<usize>, "";
+        /// elements of the interface, of equal area
+        pub elements: Vec<usize>, "";
+        /// middle of the interface
+        pub contact: Array2<f64>, "m";
+        /// share of the area of the interface that is broken from then on
+        pub damage: Vec<f64>, "";
+    }
+}
+
+crate::table! {
+    /// fissures in the specimen: straight lines in the plane, discs in space
+    pub struct Fissures {
+        /// set, from 1
+        pub set: Vec<usize>, "";
+        /// middle, from that of the specimen
+        pub position: Array2<f64>, "m";
+        /// normal
+        pub normal: Array2<f64>, "";
+        /// length, or diameter of the disc; none for one that cuts through the specimen
+        pub size: Vec<f64>, "m";
+        /// length in the specimen in the plane (m), area in space (m²)
+        pub inside: Vec<f64>, "";
+        /// contacts that it crosses and that were closed at the start
+        pub contacts: Vec<usize>, "";
+    }
+}
+
+crate::table! {
     /// states at shares of the peak
     pub struct States {
         /// shortening positive
@@ -202,6 +242,8 @@ impl Run {
             curve: None,
             energies: None,
             cracks: None,
+            interfaces: None,
+            fissures: None,
             states: None,
             state_centres: None,
             forces: None,

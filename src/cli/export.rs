@@ -6,7 +6,7 @@ use super::files::Files;
 use super::show::{object, parts};
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash};
-use crate::export::{File, files, paraview, particles, shapes, tables};
+use crate::export::{File, files, paraview, particles, pfc, shapes, tables};
 use crate::plan::Workflow;
 use crate::run::{Report, decide};
 use crate::stage;
@@ -125,10 +125,11 @@ impl Export {
                 Loaded::Solid(specimen) => self.specimen(name, &specimen),
             },
             Form::Vtu | Form::Particles if Run::from_artifact(artifact).is_ok_and(|run| run.cracks.is_some()) => {
-                let Made { specimen, parameters } = Made::of(store, &chosen.object)?;
+                let Made { specimen, mut setting } = Made::of(store, &chosen.object)?;
+                setting.fissures = Run::from_artifact(artifact).ok().and_then(|run| run.fissures);
                 match specimen {
-                    Loaded::Plane(specimen) => self.run(name, artifact, &specimen, &parameters),
-                    Loaded::Solid(specimen) => self.run(name, artifact, &specimen, &parameters),
+                    Loaded::Plane(specimen) => self.run(name, artifact, &specimen, &setting),
+                    Loaded::Solid(specimen) => self.run(name, artifact, &specimen, &setting),
                 }
             }
             Form::Vtu | Form::Particles if self.stages.is_empty() => Ok(Vec::new()),
@@ -151,11 +152,14 @@ impl Export {
         name: &str,
         run: &Artifact,
         specimen: &Specimen<S>,
-        parameters: &particles::Parameters,
+        setting: &particles::Setting,
     ) -> Result<Vec<File>, String> {
+        if self.to == Form::Particles {
+            pfc::cautions(&setting.material()?).iter().for_each(|words| err!("note: {name}: {words}"));
+        }
         match self.to {
             Form::Vtu => paraview::run(name, run, specimen),
-            Form::Files | Form::Csv | Form::Particles | Form::Stl => particles::files(name, specimen, Some(parameters)),
+            Form::Files | Form::Csv | Form::Particles | Form::Stl => particles::files(name, specimen, Some(setting)),
         }
     }
 }
@@ -184,10 +188,10 @@ fn load(artifact: &Artifact) -> Result<Loaded, String> {
     specimen::load(artifact).map_err(|e| e.to_string())
 }
 
-/// The parameters of a run, from its task text.
+/// The specimen and the setting of a run, from its task text.
 struct Made {
     specimen: Loaded,
-    parameters: particles::Parameters,
+    setting: particles::Setting,
 }
 
 impl Made {
@@ -200,6 +204,7 @@ impl Made {
         let content = input.and_then(ContentHash::from_hex).ok_or("the run does not name its specimen")?;
         let specimen = load(&*store.get(&content).map_err(|e| e.to_string())?)?;
         let parameters = line("param ").map(|(path, value)| (path.to_owned(), value.to_owned())).collect();
-        Ok(Self { specimen, parameters })
+        let seed = text.lines().find_map(|line| line.strip_prefix("seed ")?.trim().parse().ok()).unwrap_or_default();
+        Ok(Self { specimen, setting: particles::Setting { parameters, seed, fissures: None } })
     }
 }

@@ -30,6 +30,7 @@ const SHIPPED: &[Shipped] = &[
     Shipped { name: "rock", text: include_str!("../../workflows/rock.toml"), files: &[] },
     Shipped { name: "rock-3d", text: include_str!("../../workflows/rock-3d.toml"), files: &[] },
     Shipped { name: "granite", text: include_str!("../../workflows/granite.toml"), files: &[] },
+    Shipped { name: "envelope", text: include_str!("../../workflows/envelope.toml"), files: &[] },
     Shipped { name: "fissure", text: include_str!("../../workflows/fissure.toml"), files: &[] },
     Shipped { name: "concrete", text: include_str!("../../workflows/concrete.toml"), files: &[] },
     Shipped { name: "c30", text: include_str!("../../workflows/c30.toml"), files: SU2021 },

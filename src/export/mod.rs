@@ -4,8 +4,10 @@
 
 mod bodies;
 mod csv;
+mod joints;
 pub mod paraview;
 pub mod particles;
+pub mod pfc;
 pub mod shapes;
 mod vtu;
 

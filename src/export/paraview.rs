@@ -3,11 +3,12 @@
 //!
 //! | file | cells | fields |
 //! |---|---|---|
-//! | `NAME.particles.vtu` | balls as points | `radius`, `group` (number among those of the specimen; the aggregate's is the last), `clump` (-1 none); of a run `displacement` |
+//! | `NAME.particles.vtu` | balls as points | `radius`, `group` (number among those of the specimen; the aggregate's is the last), `clump` (-1 none); of a run `displacement`, with flat joints `broken_area` of the interfaces of the ball |
 //! | `NAME.contacts.vtu` | contacts of a specimen as lines | `group` (0 between balls, 1 of a ball and aggregate, 2 within aggregate), `gap` |
 //! | `NAME.clumps.vtu` | polygons of aggregate | `polygon`, `clump` (-1 when no ball lies in it), `mass` |
 //! | `NAME.forces.vtu` | contacts of a run as lines, where it stored forces | `normal_force` (compression positive), `shear_force`, `bonded`, `chain` (1 from the mean force on) |
 //! | `NAME.cracks.vtu` | cracks up to the state, as lines across the contact, in space as discs | `mode` (0 tension, 1 shear), `group` (index of the contact among those of all cracks by name), `axial_strain` |
+//! | `NAME.damage.vtu` | interfaces of flat joints of which something is broken, as lines between the balls | `damage` (broken share of the area), `broken_area` (in the plane per metre), `cracks` |
 //! | `NAME.pvd` | all states of a run over the axial strain | |
 //!
 //! In ParaView: *Glyph* with `radius` as scale shows the balls, *Tube* the forces.
@@ -16,6 +17,7 @@ use super::File;
 use super::bodies::contacts;
 use super::vtu::{Cells, Field, Grid, pvd, spatial};
 use crate::artifact::Artifact;
+use crate::artifact::damage::Damaged;
 use crate::artifact::run::{CrackMode, Cracks, Run};
 use dem::genesis::specimen::Specimen;
 use dem::space::Tuple;
@@ -53,10 +55,16 @@ pub fn run<S: Space>(name: &str, run: &Artifact, specimen: &Specimen<S>) -> Resu
         let moved = centres.iter().zip(&specimen.centres).map(moved).collect();
         let mut fields = bodies(specimen);
         fields.push(Field::Vectors("displacement", moved));
+        let damage = run.damaged(strain);
+        if damage.iter().flatten().any(|one| one.bodies.iter().any(|&ball| ball >= centres.len())) {
+            return Err("the interfaces name balls that the run does not have".to_owned());
+        }
+        fields.extend(damage.as_ref().map(|all| Field::Reals("broken_area", broken(all, centres.len()))));
         let grids = [
             ("particles", Some(Grid { on_points: fields, ..points::<S>(centres) })),
             ("forces", forces::<S>(&run, state, centres)?),
             ("cracks", cracks::<S>(&run, strain)?),
+            ("damage", damage.as_ref().map(|all| damaged::<S>(all, centres))),
         ];
         for (part, (what, grid)) in grids.into_iter().enumerate() {
             let Some(grid) = grid else { continue };
@@ -152,6 +160,29 @@ fn forces<S: Space>(run: &Run, state: usize, centres: &[Vector<S>]) -> Result<Op
             Field::Ints("bonded", rows.iter().map(|&row| i64::from(forces.bonded[row])).collect()),
         ],
     }))
+}
+
+/// Damaged interfaces as lines between the centres of their balls.
+fn damaged<S: Space>(all: &[Damaged], centres: &[Vector<S>]) -> Grid {
+    Grid {
+        points: self::all::<S>(centres),
+        cells: Cells::Lines(all.iter().map(|one| one.bodies).collect()),
+        on_points: Vec::new(),
+        on_cells: vec![
+            Field::Reals("damage", all.iter().map(|one| one.share).collect()),
+            Field::Reals("broken_area", all.iter().map(|one| one.area).collect()),
+            Field::Ints("cracks", all.iter().map(|one| one.cracks as i64).collect()),
+        ],
+    }
+}
+
+/// The broken area of the interfaces of each ball.
+fn broken(all: &[Damaged], balls: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; balls];
+    for one in all {
+        one.bodies.iter().for_each(|&ball| sum[ball] += one.area);
+    }
+    sum
 }
 
 /// The cracks up to an axial strain; none is no grid.

@@ -6,18 +6,26 @@
 //! | `NAME.particles.csv` | ball (in the plane a disc): centre, radius, group, clump, and the density of single balls; the mass of pebbles is that of their clump |
 //! | `NAME.clumps.csv` | rigid clump: mass, inertia (in the plane per metre of thickness) and centre of mass |
 //! | `NAME.groups.csv` | contact group: microparameters of its spring and bond (of a run) |
-//! | `NAME.contacts.csv` | contact: its balls, group, gap, and whether it is bonded (of a run) |
+//! | `NAME.contacts.csv` | contact: its balls, group, gap, and whether it is bonded (of a run); its joint, the state and strengths drawn for it (of a run with flat or smooth joints) |
+//! | `NAME.fissures.csv` | fissure of a run: set, middle, normal, size |
+//! | `NAME.pfc.csv` | method or property of a contact model of PFC (of a run) |
 //! | `NAME.columns.csv` | column of these files: unit and meaning |
 
 use super::bodies::{Contact, contacts};
+use super::joints::Joints;
+use super::pfc;
 use super::{File, csv_text};
 use crate::artifact::Table;
+use crate::artifact::run::Fissures as Laid;
 use dem::genesis::clump::Clump;
 use dem::genesis::specimen::Specimen;
+use dem::loading::fissure::Fissure;
 use dem::loading::material::{BondKind, Contact as Values, Material};
 use dem::parameter::{Parameter, Quantity};
 use dem::space::Tuple;
 use dem::{Space, Vector};
+use math::elementary::atan2;
+use ndarray::Array2;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -25,17 +33,49 @@ use std::collections::BTreeMap;
 /// Parameters of a run by their paths in its task, as they stand there.
 pub type Parameters = BTreeMap<String, String>;
 
-/// What the files say of groups: their names, and for a run the values of their contacts.
+/// What is known of a run on a specimen: its parameters and its seed.
+#[derive(Clone, Debug, Default)]
+pub struct Setting {
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// Its seed.
+    pub seed: u64,
+    /// The fissures that it laid, those of files and networks among them.
+    pub fissures: Option<Laid>,
+}
+
+impl Setting {
+    /// Its microparameters.
+    ///
+    /// # Errors
+    /// They cannot be read.
+    pub fn material(&self) -> Result<Material, String> {
+        let mut material = material(&self.parameters)?;
+        let Some(laid) = &self.fissures else { return Ok(material) };
+        for (set, fissures) in material.fissures.iter_mut().enumerate() {
+            let rows = (0..laid.set.len()).filter(|&row| laid.set[row] == set + 1);
+            (fissures.list, fissures.network) = (rows.map(|row| fissure(laid, row)).collect(), None);
+        }
+        Ok(material)
+    }
+}
+
+/// What the files say of groups: their names, and for a run the values of their contacts and its joints.
 struct Named {
     groups: Vec<String>,
     material: Option<Material>,
+    joints: Option<Joints>,
 }
 
 impl Named {
-    fn of<S: Space>(specimen: &Specimen<S>, parameters: Option<&Parameters>) -> Result<Self, String> {
-        let material = parameters.map(material).transpose()?;
+    fn of<S: Space>(specimen: &Specimen<S>, setting: Option<&Setting>) -> Result<Self, String> {
+        let material = setting.map(Setting::material).transpose()?;
+        let joints = match (&material, setting) {
+            (Some(material), Some(setting)) => Joints::of(specimen, material, setting.seed)?,
+            (None, _) | (_, None) => None,
+        };
         let own = material.as_ref().map(|material| material.groups.clone());
-        Ok(Self { groups: own.unwrap_or_else(|| specimen.group_names.clone()), material })
+        Ok(Self { groups: own.unwrap_or_else(|| specimen.group_names.clone()), material, joints })
     }
 
     fn group(&self, number: usize) -> String {
@@ -53,39 +93,67 @@ impl Named {
     }
 }
 
+/// A fissure as it was laid.
+fn fissure(laid: &Laid, row: usize) -> Fissure {
+    let of = |all: &Array2<f64>| -> [f64; 3] { std::array::from_fn(|k| all.get([row, k]).copied().unwrap_or(0.0)) };
+    let ([x, y, z], size) = (of(&laid.normal), laid.size[row]);
+    // In the plane the dip turns through all quadrants and has no azimuth.
+    let (dip, direction) =
+        if laid.normal.ncols() == 2 { (atan2(x, y), 0.0) } else { (atan2((x * x + z * z).sqrt(), y), atan2(z, x)) };
+    Fissure { centre: of(&laid.position), dip, direction, length: size.is_finite().then_some(size) }
+}
+
 /// The microparameters of a run from the parameters of its task.
 fn material(parameters: &Parameters) -> Result<Material, String> {
-    let mut root = Map::new();
+    let mut root = Value::Null;
     for (path, text) in parameters {
         let Some(path) = path.strip_prefix("material.") else { continue };
         let value: Value =
             serde_json::from_str(text).map_err(|e| format!("the parameter `{path}` cannot be read: {e}"))?;
-        let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
-        let mut table = &mut root;
-        for name in tables.split('.').filter(|name| !name.is_empty()) {
-            let below = table.entry(name).or_insert_with(|| Value::Object(Map::new()));
-            table = below.as_object_mut().ok_or_else(|| format!("the parameter `{path}` lies below a value"))?;
-        }
-        table.insert(key.to_owned(), value);
+        let place = place(&mut root, path).ok_or_else(|| format!("the parameter `{path}` lies below a value"))?;
+        *place = value;
     }
-    serde_json::from_value(Value::Object(root)).map_err(|e| format!("the run's material cannot be read: {e}"))
+    serde_json::from_value(root).map_err(|e| format!("the run's material cannot be read: {e}"))
 }
 
-/// The files; without parameters, those of the specimen alone.
+/// The place of a path such as `fissures[0].friction` in a tree of tables and lists, which grows towards it.
+fn place<'v>(root: &'v mut Value, path: &str) -> Option<&'v mut Value> {
+    let mut place = root;
+    for step in path.split('.') {
+        let (name, indices) = step.split_once('[').unwrap_or((step, ""));
+        if place.is_null() {
+            *place = Value::Object(Map::new());
+        }
+        place = place.as_object_mut()?.entry(name).or_insert(Value::Null);
+        for index in indices.split(['[', ']']).filter(|index| !index.is_empty()) {
+            let index: usize = index.parse().ok()?;
+            if place.is_null() {
+                *place = Value::Array(Vec::new());
+            }
+            let list = place.as_array_mut()?;
+            // Indices of a task text rise without gaps.
+            if index == list.len() {
+                list.push(Value::Null);
+            }
+            place = list.get_mut(index)?;
+        }
+    }
+    Some(place)
+}
+
+/// The files; without the setting of a run, those of the specimen alone.
 ///
 /// # Errors
 /// The parameters of the run cannot be read.
-pub fn files<S: Space>(
-    name: &str,
-    specimen: &Specimen<S>,
-    parameters: Option<&Parameters>,
-) -> Result<Vec<File>, String> {
-    let named = Named::of(specimen, parameters)?;
+pub fn files<S: Space>(name: &str, specimen: &Specimen<S>, setting: Option<&Setting>) -> Result<Vec<File>, String> {
+    let named = Named::of(specimen, setting)?;
     let margin = named.material.as_ref().map_or(0.0, |material| material.gap) * specimen.mean_radius();
     let contacts = contacts(specimen, margin);
     let mut tables = vec![("particles", particles(specimen, &named)), ("clumps", clumps(specimen))];
     if let Some(material) = &named.material {
         tables.push(("groups", groups(material)));
+        tables.push(("pfc", pfc::properties(material, S::DIMENSION)));
+        tables.extend(named.joints.as_ref().and_then(|joints| Some(("fissures", joints.fissures(S::DIMENSION)?))));
     }
     tables.push(("contacts", contact_table(&contacts, &named)));
     tables.push(("columns", columns(&tables)));
@@ -170,8 +238,12 @@ fn contact_table(contacts: &[Contact], named: &Named) -> Table {
     if named.material.is_none() {
         return table;
     }
-    let bonded = contacts.iter().map(|c| i64::from(named.contact(c.groups).1)).collect();
-    table.ints_column("bonded", "1 where a bond is put at the start", bonded)
+    let joint = |c: &Contact| named.joints.as_ref().and_then(|joints| joints.bonded(c.ends));
+    let bonded = |c: &Contact| i64::from(joint(c).unwrap_or_else(|| named.contact(c.groups).1));
+    let table =
+        table.ints_column("bonded", "1 where a bond is put at the start", contacts.iter().map(bonded).collect());
+    let ends: Vec<[usize; 2]> = contacts.iter().map(|c| c.ends).collect();
+    named.joints.iter().fold(table, |table, joints| joints.columns(table, &ends))
 }
 
 /// A row for each contact of the material, a column for each microparameter that one of them has.

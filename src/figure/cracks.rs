@@ -1,4 +1,4 @@
-//! Cracks by mode over the specimen, one panel per moment of the test.
+//! Cracks by mode over the specimen, or damaged interfaces by how much of each is broken, one panel per moment of the test.
 
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
@@ -9,7 +9,7 @@ use super::text::Line;
 use super::{Figure, Style};
 use math::elementary::sin_cos;
 
-/// One broken bond; lengths in mm.
+/// One broken bond or damaged interface; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crack {
     /// Middle.
@@ -18,7 +18,7 @@ pub struct Crack {
     pub angle: f64,
     /// Length.
     pub length: f64,
-    /// Mode, an index into [`Cracks::modes`].
+    /// Mode or class of damage, an index into [`Cracks::modes`].
     pub mode: usize,
 }
 
@@ -31,6 +31,42 @@ pub struct Moment {
     pub cracks: Vec<Crack>,
 }
 
+/// What tells the lines of a picture of cracks apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum By {
+    /// Lines are cracks, their classes modes.
+    #[default]
+    Mode,
+    /// Lines are interfaces, their classes how much of each is broken, from little to all.
+    Damage,
+}
+
+impl By {
+    /// Title of a picture, and what its lines are called: one and many.
+    pub(super) fn words(self) -> [&'static str; 3] {
+        match self {
+            By::Mode => ["Cracks by mode", "crack", "cracks"],
+            By::Damage => ["Damage of the interfaces", "damaged interface", "damaged interfaces"],
+        }
+    }
+
+    /// Colour of a class.
+    pub(super) fn color(self, class: usize) -> Color {
+        match self {
+            By::Mode => palette::mode(class),
+            By::Damage => palette::damage(class),
+        }
+    }
+
+    /// Name of the column of the classes in the numbers of a picture.
+    pub(super) fn column(self) -> &'static str {
+        match self {
+            By::Mode => "mode",
+            By::Damage => "broken",
+        }
+    }
+}
+
 /// Growth of the crack pattern.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cracks {
@@ -40,15 +76,24 @@ pub struct Cracks {
     pub low: Point,
     /// Upper right corner in mm.
     pub high: Point,
-    /// Names of the modes.
+    /// What its classes are.
+    pub by: By,
+    /// Names of the modes or classes.
     pub modes: Vec<String>,
     /// Moments in order of time.
     pub moments: Vec<Moment>,
     /// Outlines of the aggregate; may be empty.
     pub outlines: Vec<Vec<Point>>,
+    /// Ends of the fissures that were there before; may be empty.
+    pub fissures: Vec<[Point; 2]>,
 }
 
 const BETWEEN: f64 = 2.6;
+
+/// Line of a fissure.
+pub(super) fn fissure() -> Stroke {
+    Stroke::new(Color(0x8a, 0x91, 0x99), 0.7)
+}
 
 impl Figure for Cracks {
     fn scene(&self, style: &Style) -> Scene {
@@ -59,17 +104,16 @@ impl Figure for Cracks {
         let width = (style.width - 1.6 + BETWEEN) / columns as f64 - BETWEEN;
         let height = width * (self.high[1] - self.low[1]) / (self.high[0] - self.low[0]);
         let row_height = height + 3.0 * size + 1.4;
-        let top = 1.7 * size;
+        let (entries, room) = (self.entries(), style.width - 1.6);
+        // Below the rows of the legend.
+        let more =
+            legend::height(&entries, room, style) - legend::height(&entries[..entries.len().min(1)], room, style);
+        let top = 1.7 * size + more;
         let mut scene = Scene::new(style.width, top + rows as f64 * row_height + 2.0 * size);
-        scene.title = "Cracks by mode".into();
+        let [title, one, many] = self.by.words();
+        scene.title = title.into();
         scene.description = self.describe();
-        let entries: Vec<Entry> = self
-            .modes
-            .iter()
-            .enumerate()
-            .map(|(i, m)| Entry::new(m.clone(), Swatch::Line(mode_style(i, 0.5), None)))
-            .collect();
-        legend::draw(&mut scene, &entries, Rect::new(0.8, 0.8, style.width - 1.6, 0.0), style);
+        legend::draw(&mut scene, &entries, Rect::new(0.8, 0.8, room, 0.0), style);
         for (i, moment) in self.moments.iter().enumerate() {
             let left = 0.8 + (i % columns) as f64 * (width + BETWEEN);
             let y = top + (i / columns) as f64 * row_height;
@@ -79,7 +123,7 @@ impl Figure for Cracks {
             scene.text(Line::new(&moment.title, size), [x, y + 1.1 * size], Anchor::Middle, 0.0, INK);
             self.draw_moment(&mut scene, &frame, moment);
             let count = moment.cracks.len();
-            let counts = format!("{} {}", thousands(count), if count == 1 { "crack" } else { "cracks" });
+            let counts = format!("{} {}", thousands(count), if count == 1 { one } else { many });
             let at = [x, frame.area.bottom + 1.2 * size];
             scene.text(Line::new(&counts, 0.9 * size), at, Anchor::Middle, 0.0, SOFT);
             if i == 0 {
@@ -99,12 +143,24 @@ impl Figure for Cracks {
             Column::reals("y", reals(|c| c.at[1])).with_unit("mm"),
             Column::reals("angle", reals(|c| c.angle.to_degrees())).with_unit("deg"),
             Column::reals("length", reals(|c| c.length)).with_unit("mm"),
-            Column::words("mode", all().map(|(_, c)| self.modes.get(c.mode).cloned().unwrap_or_default()).collect()),
+            Column::words(
+                self.by.column(),
+                all().map(|(_, c)| self.modes.get(c.mode).cloned().unwrap_or_default()).collect(),
+            ),
         ]
     }
 }
 
 impl Cracks {
+    /// Entries of the legend.
+    fn entries(&self) -> Vec<Entry> {
+        let there = (!self.fissures.is_empty()).then(|| Entry::new("fissure", Swatch::Line(fissure(), None)));
+        let class = |(i, name): (usize, &String)| {
+            Entry::new(name.clone(), Swatch::Line(Stroke::new(self.by.color(i), 0.5), None))
+        };
+        there.into_iter().chain(self.modes.iter().enumerate().map(class)).collect()
+    }
+
     fn describe(&self) -> String {
         let tell = |m: &Moment| {
             let count = |i: usize| m.cracks.iter().filter(|c| c.mode == i).count();
@@ -123,6 +179,11 @@ impl Cracks {
             scene.shape(outlines, Color(0xea, 0xec, 0xee), Stroke::new(Color(0xc9, 0xcd, 0xd2), 0.12));
         }
         let first = scene.items.len();
+        let mut fissures = Path::default();
+        self.fissures.iter().for_each(|ends| fissures.add_polyline(&ends.map(|end| frame.place(end))));
+        if !fissures.0.is_empty() {
+            scene.stroke(fissures, fissure());
+        }
         for mode in 0..self.modes.len() {
             let mut path = Path::default();
             for c in moment.cracks.iter().filter(|c| c.mode == mode) {
@@ -134,15 +195,10 @@ impl Cracks {
                 ]);
             }
             if !path.0.is_empty() {
-                scene.stroke(path, Stroke { dash: Vec::new(), ..mode_style(mode, 0.28) });
+                scene.stroke(path, Stroke::new(self.by.color(mode), 0.28));
             }
         }
         scene.group_from(first, Some(frame.area), Vec::new());
         frame.draw_border(scene);
     }
-}
-
-/// Vermilion for the first mode (tension), dark blue for the second (shear), then the categories.
-pub fn mode_style(i: usize, width: f64) -> Stroke {
-    Stroke::new(palette::mode(i), width)
 }

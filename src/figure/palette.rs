@@ -68,6 +68,11 @@ pub fn mode(i: usize) -> Color {
     [VERMILION, Color(0x0b, 0x3c, 0x6f), GREEN, PURPLE, ORANGE, SKY][i % 6]
 }
 
+/// Colour of class `i` of damage, the last one for what is wholly broken: light orange to dark red, in grey from light to dark.
+pub fn damage(i: usize) -> Color {
+    [Color(0xf5, 0xb0, 0x65), Color(0xe0, 0x75, 0x2d), Color(0xb0, 0x3a, 0x1e), Color(0x5c, 0x0f, 0x14)][i.min(3)]
+}
+
 /// Colour of category number `i` for areas: lightness differs more than between lines, so that areas differ in grey.
 pub fn area(i: usize) -> Color {
     [BLUE, ORANGE, Color(0xa6, 0xdb, 0xc4), PURPLE, SKY, VERMILION][i % 6]
@@ -197,6 +202,12 @@ mod tests {
         for c in [BLUE, VERMILION, Color(12, 200, 99)] {
             assert_eq!(from_oklab(oklab(c)), c);
         }
+    }
+
+    #[test]
+    fn damage_darkens() {
+        let light: Vec<f64> = (0..4).map(|i| oklab(damage(i))[0]).collect();
+        assert!(light.windows(2).all(|w| w[0] - w[1] > 0.1), "{light:?}");
     }
 
     #[test]

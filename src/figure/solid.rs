@@ -8,8 +8,9 @@
 use super::Figure;
 use super::Style;
 use super::column::Column;
+use super::cracks::{By, fissure};
 use super::legend::{self, Entry, Swatch};
-use super::palette::{self, INK, PAPER, SOFT};
+use super::palette::{INK, PAPER, SOFT};
 use super::scene::{Anchor, Fill, Item, Path, Point, Rect, Scene, Stroke};
 use super::specimen::{group_color, thousands};
 use super::text::Line;
@@ -27,6 +28,17 @@ pub struct Penny {
     pub radius: f64,
     /// Mode, an index into [`Solid::modes`].
     pub mode: usize,
+}
+
+/// A fissure in space, a disc; lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rim {
+    /// Middle.
+    pub at: [f64; 3],
+    /// Normal.
+    pub normal: [f64; 3],
+    /// Radius.
+    pub radius: f64,
 }
 
 /// A plane across one axis that opens the specimen to the eye.
@@ -55,8 +67,12 @@ pub struct Solid {
     pub groups: Vec<String>,
     /// Cracks; with any, balls are left out and only the frame shows the specimen.
     pub cracks: Vec<Penny>,
-    /// Names of the modes.
+    /// Names of the modes, or classes of damage.
     pub modes: Vec<String>,
+    /// What these are.
+    pub by: By,
+    /// Fissures that were there before, drawn as rims with the cracks.
+    pub fissures: Vec<Rim>,
     /// Where the specimen is cut open.
     pub cut: Option<Cut>,
     /// Whether the vertical of the picture is the y of the numbers, as of specimens that are loaded along y; the axis
@@ -85,7 +101,11 @@ impl Figure for Solid {
         let top = 1.0 + legend::height(&entries, style.width - 1.6, style);
         let height = bounds.height() * scale;
         let mut scene = Scene::new(style.width, top + height + 5.2 * size);
-        scene.title = if self.cracks.is_empty() { "Specimen in space".into() } else { "Cracks in space".into() };
+        let cracks = match self.by {
+            By::Mode => "Cracks in space",
+            By::Damage => "Damage of the interfaces in space",
+        };
+        scene.title = if self.cracks.is_empty() { "Specimen in space".into() } else { cracks.into() };
         scene.description = self.describe();
         legend::draw(&mut scene, &entries, Rect::new(0.8, 0.8, style.width - 1.6, 0.0), style);
         let left = (style.width - bounds.width() * scale) / 2.0;
@@ -127,7 +147,7 @@ impl Figure for Solid {
             columns.push(Column::reals(axis, reals(&|c| self.named(c.normal)[k])));
         }
         columns.push(Column::reals("radius", reals(&|c| c.radius)).with_unit("mm"));
-        columns.push(Column::words("mode", self.cracks.iter().map(mode).collect()));
+        columns.push(Column::words(self.by.column(), self.cracks.iter().map(mode).collect()));
         columns
     }
 }
@@ -160,9 +180,11 @@ impl Solid {
         }
         let count = |i: usize| self.cracks.iter().filter(|c| c.mode == i).count();
         let entry = |(i, name): (usize, &String)| {
-            Entry::new(format!("{name} ({})", thousands(count(i))), Swatch::Box(palette::mode(i)))
+            Entry::new(format!("{name} ({})", thousands(count(i))), Swatch::Box(self.by.color(i)))
         };
-        self.modes.iter().enumerate().map(entry).collect()
+        let modes = self.modes.iter().enumerate().map(entry);
+        let there = Entry::new(format!("fissure ({})", self.fissures.len()), Swatch::Line(fissure(), None));
+        (!self.fissures.is_empty()).then_some(there).into_iter().chain(modes).collect()
     }
 
     /// Names of the axes of the picture; the third is its vertical.
@@ -180,7 +202,7 @@ impl Solid {
         let what = if self.cracks.is_empty() {
             format!("{} balls", self.centres.len())
         } else {
-            format!("{} cracks", self.cracks.len())
+            format!("{} {}", self.cracks.len(), self.by.words()[2])
         };
         let cut = match self.cut {
             Some(cut) => {
@@ -295,10 +317,14 @@ impl Solid {
         let mut order: Vec<&Penny> = self.cracks.iter().collect();
         order.sort_by(|a, b| page.view.depth(a.at).total_cmp(&page.view.depth(b.at)));
         let (far, near) = super::axis::extent(self.corners().map(|c| page.view.depth(c)));
+        for one in &self.fissures {
+            let rim: Vec<Point> = circle(one.at, one.normal, one.radius, 48).map(page.place).collect();
+            scene.stroke(Path::polygon(&rim), Stroke { width: 0.3, ..fissure() });
+        }
         for crack in order {
             let away = 0.62 * (near - page.view.depth(crack.at)) / (near - far).max(f64::MIN_POSITIVE);
             // a disc seen edge on is a line
-            let color = palette::mode(crack.mode).mix(PAPER, away);
+            let color = self.by.color(crack.mode).mix(PAPER, away);
             let points: Vec<Point> = circle(crack.at, crack.normal, crack.radius, 12).map(page.place).collect();
             scene.shape(Path::polygon(&points), Fill { color, opacity: 0.85 }, Stroke::new(color.mix(INK, 0.3), 0.08));
         }

@@ -18,9 +18,11 @@ seed = 5
 [factor]
 a = { sets = "mortar.a", unit = "GPa", levels = [1, 2, 3] }
 b = { sets = "mortar.b", levels = [10, 20, 30] }
+confining = { unit = "MPa", levels = [0, 5, 10, 20] }
 
 [response]
 y = { unit = "MPa" }
+sigma_1 = { unit = "MPa" }
 
 [material.plain]
 mortar = { a = "1 GPa", b = 10 }
@@ -126,6 +128,21 @@ of = "anova"
 kind = "figure"
 show = "dag"
 of = "table"
+
+[stage.confinements]
+kind = "design"
+method = "full-factorial"
+factors = ["confining"]
+
+[stage.strengths]
+kind = "formula"
+design = "confinements"
+responses.sigma_1 = { value = "confining + 150*sqrt(1 + 25*confining/150)", unit = "MPa", scatter = 0.02 }
+
+[stage.envelope]
+kind = "envelope"
+table = "strengths"
+confinement = "confining"
 "#;
 
 const DATA: &str = "a [GPa],b,y [MPa]\n1,10,11\n3,10,17\n1,30,19\n3,30,25.5\n";
@@ -152,6 +169,9 @@ effort cf49a99b0418
 agreement 7abe77c0ea84
 table 464517716712
 figure e5375085b080
+confinements 9c0bb1671473
+strengths de63dd9b98f3
+envelope 18e99f63e7b2
 agreement 3
 anova 4
 calibrate 6
@@ -159,6 +179,7 @@ command 2
 data 3
 design 3
 effort 1
+envelope 1
 figure 14
 fit 4
 formula 2

@@ -44,6 +44,7 @@ mod sets;
 mod slope;
 mod solve;
 mod solved;
+mod start;
 #[cfg(test)]
 mod tests;
 mod twin;
@@ -56,6 +57,7 @@ pub use goal::{Goal, GoalTable, Wanted};
 pub use instrument::{Instrument, Parameter, Surface, instrument};
 pub(super) use read::Judgement;
 pub use slope::Slope;
+pub use start::First;
 pub use words::parameters_in_words;
 
 use super::forecast::{Ahead, Forecast, TaskForecast};

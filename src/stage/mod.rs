@@ -48,6 +48,7 @@ pub mod data;
 mod derived;
 pub mod design;
 pub mod effort;
+pub mod envelope;
 pub mod figure;
 pub mod fitted;
 pub mod forecast;
@@ -370,6 +371,7 @@ kinds! {
     command::Command,
     data::Data,
     design::Design,
+    envelope::Envelope,
     effort::Effort,
     figure::Figure,
     formula::Formula,

@@ -12,6 +12,7 @@
 //! * [`groups`]: rows by equal values of columns: one fit per group, and pivot tables
 //! * [`summary`]: quartiles, whiskers and bins of plain values
 //! * [`band`]: mean and scatter of many curves
+//! * [`envelope`]: strength of rock over the confining stress, by Mohr–Coulomb and Hoek–Brown
 //! * [`agreement`]: how well two sets of values agree: ratios, ranks
 //! * [`canonical`]: stationary point of a second-order surface, its nature and axes, path of steepest ascent
 //! * [`screening`]: effects of an unreplicated two-level design, Lenth's limits
@@ -24,6 +25,7 @@ pub mod band;
 pub mod canonical;
 pub mod categories;
 pub mod diagnostics;
+pub mod envelope;
 pub mod error;
 pub mod fit;
 pub mod groups;

@@ -15,6 +15,7 @@ mod faults;
 mod forecast;
 mod guide;
 mod hostile;
+mod joints;
 mod kill;
 mod nodes;
 mod readme;

@@ -63,6 +63,8 @@ pub(crate) struct Break {
     pub(crate) gap: f64,
     pub(crate) normal: [f64; 3],
     pub(crate) point: [f64; 3],
+    /// Middle of the element that broke.
+    pub(crate) middle: [f64; 3],
 }
 
 /// Touch of two balls.
@@ -277,7 +279,8 @@ fn note<S: Space, K: Law<S>>(
                 tensile: piece.tensile,
                 gap: geometry.gap.0[k],
                 normal,
-                point: std::array::from_fn(|a| point[a] + arm[a] * geometry.radius.0[k]),
+                point,
+                middle: std::array::from_fn(|a| point[a] + arm[a] * geometry.radius.0[k]),
             });
         });
     }

@@ -4,7 +4,7 @@
 use super::{Engine, Settings};
 use crate::body::{self, Rigid};
 use crate::contact::{Contact, Key, LawKind, Other, Section};
-use crate::law::{Interface, KN, REFERENCE, RowIndex, SHEAR, joint_energy};
+use crate::law::{Interface, KN, REFERENCE, RowIndex, SHEAR, read_joint};
 use crate::measure::Crack;
 use crate::particle::{Clump, Group, Particle};
 use crate::space::{Load, Space, Spin, Touch, Tuple, Vector};
@@ -242,8 +242,9 @@ impl<S: Space> Engine<S> {
     fn interface(&self, section: &Section, c: usize, gap: f64) -> Option<Interface> {
         let constants = &self.classes[section.rank.class].constants;
         if section.law == LawKind::SmoothJoint {
-            let energy = joint_energy::<S>(&section.memory::<S>(c), constants)?;
-            return Some(Interface { elements: 1, intact: u32::from(section.bonded::<S>(c)), energy });
+            let [opening, energy] = read_joint::<S>(&section.memory::<S>(c), constants)?;
+            let (intact, fracture) = (u32::from(section.bonded::<S>(c)), self.crossed(section.key(c)));
+            return Some(Interface { elements: 1, intact, opening, energy, fracture });
         }
         let LawKind::FlatJoint { .. } = section.law else { return None };
         let [first, second] = self.contact_radii(section.key(c));

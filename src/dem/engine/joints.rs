@@ -29,10 +29,25 @@ pub struct Fracture<S: Space> {
     pub set: usize,
 }
 
+impl<S: Space> Fracture<S> {
+    /// Whether the line between two points crosses it within its extent. Its normal is a unit vector.
+    fn splits(&self, [x, y]: [Vector<S>; 2]) -> bool {
+        let height = |x: Vector<S>| x.minus(self.centre).dot(self.normal);
+        let (a, b) = (height(x), height(y));
+        if (a < 0.0) == (b < 0.0) {
+            return false;
+        }
+        let through = x.plus(y.minus(x).times(a / (a - b)));
+        through.minus(self.centre).norm() <= self.radius
+    }
+}
+
 /// What was laid.
 #[derive(Clone, Debug)]
 pub(crate) struct Joints<S: Space> {
     fractures: Vec<Fracture<S>>,
+    /// Contacts on each that were closed when it was laid.
+    closed: Vec<usize>,
     sets: Vec<SmoothJoint>,
     /// Gap up to which a contact is bonded when it is laid, m; −∞ once all are laid.
     gap: f64,
@@ -43,7 +58,8 @@ pub(crate) struct Joints<S: Space> {
 
 impl<S: Space> Default for Joints<S> {
     fn default() -> Self {
-        Self { fractures: Vec::new(), sets: Vec::new(), gap: f64::NEG_INFINITY, start: Vec::new(), near: Vec::new() }
+        let (fractures, closed, sets) = (Vec::new(), Vec::new(), Vec::new());
+        Self { fractures, closed, sets, gap: f64::NEG_INFINITY, start: Vec::new(), near: Vec::new() }
     }
 }
 
@@ -75,46 +91,48 @@ impl<S: Space> Engine<S> {
         };
         let near = |x: &Vector<S>| (0..).zip(&fractures).filter(|(_, f)| touches(x, f)).map(|(k, _)| k).collect();
         let near = start.iter().map(near).collect();
-        self.joints = Joints { fractures, sets: sets.to_vec(), gap, start, near };
+        let closed = vec![0; fractures.len()];
+        self.joints = Joints { fractures, closed, sets: sets.to_vec(), gap, start, near };
         self.classes = classes::<S>(&self.table);
         self.classes.extend(self.joints.classes());
         self.margin = (0.02 * self.smallest_radius).max(1.01 * gap);
         self.relist();
         self.joints.gap = f64::NEG_INFINITY;
         self.choose_masses();
-        let closed = |(section, own): (&crate::contact::Section, std::ops::Range<usize>)| {
-            let near = |c: &usize| self.gap(section.key(*c)) <= gap;
-            if section.law == LawKind::SmoothJoint { own.filter(near).count() } else { 0 }
+        let of = |(section, own): (&crate::contact::Section, std::ops::Range<usize>)| {
+            let keys = own.map(|c| section.key(c)).filter(|&key| self.gap(key) <= gap);
+            let mine = |key| if section.law == LawKind::SmoothJoint { self.crossed(key) } else { None };
+            keys.filter_map(mine).collect::<Vec<usize>>()
         };
-        Ok(self.stretches().map(closed).sum())
+        let all: Vec<usize> = self.stretches().flat_map(of).collect();
+        all.iter().for_each(|&fracture| self.joints.closed[fracture] += 1);
+        Ok(all.len())
+    }
+
+    /// The fractures that were laid, and on how many closed contacts each acts.
+    pub fn fractures(&self) -> impl Iterator<Item = (&Fracture<S>, usize)> + '_ {
+        self.joints.fractures.iter().zip(self.joints.closed.iter().copied())
     }
 
     /// The set of the fracture that a pair crosses.
     pub(super) fn joint_of(&self, key: Key) -> Option<usize> {
-        self.crossed(key).map(|fracture| fracture.set)
+        self.crossed(key).map(|fracture| self.joints.fractures[fracture].set)
     }
 
-    fn crossed(&self, key: Key) -> Option<&Fracture<S>> {
+    /// The first fracture that a pair crosses, by its index.
+    pub(super) fn crossed(&self, key: Key) -> Option<usize> {
         if self.joints.fractures.is_empty() || key.at_wall || key.image != 0 {
             return None;
         }
         let (i, j) = (key.i as usize, key.j as usize);
         let (x, y) = (self.joints.start[i], self.joints.start[j]);
-        let near = self.joints.near[i].iter().map(|&k| &self.joints.fractures[k as usize]);
-        near.into_iter().find(|fracture| {
-            let height = |x: Vector<S>| x.minus(fracture.centre).dot(fracture.normal);
-            let (a, b) = (height(x), height(y));
-            if (a < 0.0) == (b < 0.0) {
-                return false;
-            }
-            let through = x.plus(y.minus(x).times(a / (a - b)));
-            through.minus(fracture.centre).norm() <= fracture.radius
-        })
+        self.joints.near[i].iter().map(|&k| k as usize).find(|&k| self.joints.fractures[k].splits([x, y]))
     }
 
     /// Lays the joint of the fracture that a contact crosses, if it crosses one, into its memory.
     pub(super) fn begin_joint(&self, key: Key, memory: &mut Memory) {
-        let Some(fracture) = self.crossed(key) else { return };
+        let Some(crossed) = self.crossed(key) else { return };
+        let fracture = &self.joints.fractures[crossed];
         let (set, radii, gap) = (&self.joints.sets[fracture.set], self.contact_radii(key), self.gap(key));
         let above = self.joints.start[key.i as usize].minus(fracture.centre).dot(fracture.normal) >= 0.0;
         let normal = if above { fracture.normal.times(-1.0) } else { fracture.normal };

@@ -169,8 +169,11 @@ impl<S: Space> Engine<S> {
                 mode: if b.tensile { Mode::Tension } else { Mode::Shear },
                 particle: self.caller[i] as usize,
                 other: if b.at_wall { Other::Wall(j) } else { Other::Particle(self.caller[j] as usize) },
-                position: Vector::<S>::build(|k| b.point[k]),
+                position: Vector::<S>::build(|k| b.middle[k]),
+                contact: Vector::<S>::build(|k| b.point[k]),
                 normal: Vector::<S>::build(|k| b.normal[k]),
+                element: b.element,
+                elements: constants.layout.count,
                 size: 2.0 * constants.multiplier * first.min(second) * constants.layout.size,
                 gap: b.gap,
             });

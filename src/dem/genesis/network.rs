@@ -135,19 +135,19 @@ fn measure(size: f64, dimension: usize) -> f64 {
 /// Whether any of it may lie in the box: in the plane exactly, in space when its ball reaches it.
 fn reaches(drawn: &Drawn, extents: [f64; 3], dimension: usize) -> bool {
     if dimension == 2 {
-        return length_inside(drawn, extents) > 0.0;
+        return length_inside([drawn.centre, drawn.normal], 0.5 * drawn.size, extents) > 0.0;
     }
     let outside = |k: usize| (drawn.centre[k].abs() - 0.5 * extents[k]).max(0.0);
     let square: f64 = (0..3).map(|k| outside(k) * outside(k)).sum();
     square < 0.25 * drawn.size * drawn.size
 }
 
-/// Length of a line in a rectangle about the origin (m).
-fn length_inside(drawn: &Drawn, extents: [f64; 3]) -> f64 {
-    let along = [drawn.normal[1], -drawn.normal[0]];
-    let (mut from, mut to) = (-0.5 * drawn.size, 0.5 * drawn.size);
+/// Length of a line of the plane in a rectangle about the origin (m), from its middle, its normal and half its length.
+pub(crate) fn length_inside([centre, normal]: [[f64; 3]; 2], reach: f64, extents: [f64; 3]) -> f64 {
+    let along = [normal[1], -normal[0]];
+    let (mut from, mut to) = (-reach, reach);
     for k in 0..2 {
-        let edges = [-0.5, 0.5].map(|side| side * extents[k] - drawn.centre[k]);
+        let edges = [-0.5, 0.5].map(|side| side * extents[k] - centre[k]);
         if along[k].abs() < 1e-15 {
             if edges[0] > 0.0 || edges[1] < 0.0 {
                 return 0.0;
@@ -175,7 +175,8 @@ mod tests {
         let seeds = 200;
         let inside = |seed| {
             let all = network().draw(BOX, 2, &mut Stream::new(seed, "network", 0));
-            all.iter().map(|one| length_inside(one, BOX)).sum::<f64>() / (BOX[0] * BOX[1])
+            let length = |one: &Drawn| length_inside([one.centre, one.normal], 0.5 * one.size, BOX);
+            all.iter().map(length).sum::<f64>() / (BOX[0] * BOX[1])
         };
         let found: Vec<f64> = (0..seeds).map(inside).collect();
         let mean = found.iter().sum::<f64>() / seeds as f64;

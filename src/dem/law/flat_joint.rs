@@ -154,8 +154,12 @@ pub struct Interface {
     pub elements: u32,
     /// Those that are bonded.
     pub intact: u32,
+    /// Opening at its middle, m: below 0 where its faces are pressed on each other.
+    pub opening: f64,
     /// Strain energy, J.
     pub energy: f64,
+    /// The fracture whose smooth joint it is, by its index among those that were laid; none for a flat joint.
+    pub fracture: Option<usize>,
 }
 
 impl Interface {
@@ -172,7 +176,7 @@ impl Interface {
         let slope: [f64; 2] =
             std::array::from_fn(|k| if k < Own::<S>::FLAT { memory.tail[Own::<S>::SLOPE - first + k] } else { 0.0 });
         let slope = slope.times(radius);
-        let mut read = Self { elements: layout.count, intact: 0, energy: 0.0 };
+        let mut read = Self { elements: layout.count, intact: 0, opening, energy: 0.0, fracture: None };
         let elements = memory.tail[Own::<S>::ELEMENTS - first..].chunks_exact(Own::<S>::STRIDE);
         for (arm, element) in layout.arms.iter().zip(elements) {
             let gap = opening + arm.dot(slope);

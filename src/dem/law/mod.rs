@@ -16,7 +16,7 @@ pub(crate) use flat_joint::{FlatJointLaw, Layout, idle, join, rows as flat_joint
 pub(crate) use linear::LinearLaw;
 pub(crate) use memory::{Memory, bonded, fresh, unbond};
 pub(crate) use parallel_bond::ParallelBondLaw;
-pub(crate) use smooth_joint::{SmoothJointLaw, energy as joint_energy, lay, rows as smooth_joint_rows};
+pub(crate) use smooth_joint::{SmoothJointLaw, lay, read as read_joint, rows as smooth_joint_rows};
 
 use super::interaction::{Bond, Interaction, NormalForce, ShearBreak, SmoothJoint};
 use super::simd::{Lane, Row};

@@ -56,19 +56,19 @@ pub(crate) fn lay<S: Space>(
     memory.tail.resize(Own::<S>::COUNT - RowIndex::<S>::COUNT, 0.0);
 }
 
-/// Strain energy of a joint, J; nothing if the contact has none.
-pub(crate) fn energy<S: Space>(memory: &Memory, constants: &Constants) -> Option<f64> {
+/// Opening (m) and strain energy (J) of a joint; nothing if the contact has none.
+pub(crate) fn read<S: Space>(memory: &Memory, constants: &Constants) -> Option<[f64; 2]> {
     let stiffness = memory[RowIndex::<S>::BOND];
     if stiffness == 0.0 || memory.tail.is_empty() {
         return None;
     }
     let first = RowIndex::<S>::COUNT;
     let bonded = memory[RowIndex::<S>::TENSION] < f64::INFINITY;
-    let opening = memory.tail[Own::<S>::OPENING - first];
-    let opening = if bonded { opening } else { opening.min(0.0) };
+    let open = memory.tail[Own::<S>::OPENING - first];
+    let opening = if bonded { open } else { open.min(0.0) };
     let shear: f64 = memory.tail[Own::<S>::SHEAR - first..].iter().map(|x| x * x).sum();
     let ks = stiffness * constants.bond_share;
-    Some(0.5 * (stiffness * opening * opening + if ks > 0.0 { shear / ks } else { 0.0 }))
+    Some([open, 0.5 * (stiffness * opening * opening + if ks > 0.0 { shear / ks } else { 0.0 })])
 }
 
 #[inline(always)]

@@ -196,7 +196,9 @@ mod tests {
 
     fn crack<S: Space>(at: [f64; 3]) -> CrackEvent<S> {
         let (position, normal) = (Vector::<S>::build(|k| at[k]), Vector::<S>::zero());
-        CrackEvent { strain: 0.0, mode: Mode::Tension, groups: [0; 2], position, normal, size: 1e-3 }
+        let (mode, groups, balls) = (Mode::Tension, [0; 2], [0, 1]);
+        let (element, elements, size) = (0, 1, 1e-3);
+        CrackEvent { strain: 0.0, mode, groups, balls, position, contact: position, normal, element, elements, size }
     }
 
     /// D = 0.1 m, r̄ = 1 mm: 80 mm in 20 cells of 4 mm.

@@ -1,4 +1,4 @@
-//! Cracks of a loading test: one for each bond that broke, with the strain of the specimen at that moment.
+//! Cracks of a loading test: one for each bond, or element of an interface, that broke, with the strain of the specimen at that moment.
 
 use crate::measure::Mode;
 use crate::{Engine, Other, Space, Vector};
@@ -12,11 +12,19 @@ pub struct CrackEvent<S: Space> {
     pub mode: Mode,
     /// Groups of the two particles, by number, the smaller first.
     pub groups: [usize; 2],
-    /// Contact point (m).
+    /// The two balls, by their indices in the specimen.
+    pub balls: [usize; 2],
+    /// Middle of what broke (m).
     pub position: Vector<S>,
+    /// Contact point (m).
+    pub contact: Vector<S>,
     /// Unit normal of the contact; the crack lies across it.
     pub normal: Vector<S>,
-    /// Length of the crack, the bond's diameter (m).
+    /// Which element of the interface broke, from 0.
+    pub element: u32,
+    /// Elements of the interface, of equal area; 1 for a bond that breaks as a whole.
+    pub elements: u32,
+    /// Length of the crack, the diameter of the bond or of the element (m).
     pub size: f64,
 }
 
@@ -31,16 +39,20 @@ pub(super) fn note_cracks<S: Space>(
     for crack in &engine.cracks()[cracks.len()..] {
         // What broke before the loading counts from its start.
         let share = crack.step.saturating_sub(step) as f64 / steps;
-        let group = |particle: usize| usize::from(engine.group(particle).0);
-        let first = group(crack.particle);
         // Walls are never bonded.
-        let second = if let Other::Particle(other) = crack.other { group(other) } else { first };
+        let other = if let Other::Particle(other) = crack.other { other } else { crack.particle };
+        let balls = [crack.particle, other];
+        let [first, second] = balls.map(|ball| usize::from(engine.group(ball).0));
         cracks.push(CrackEvent {
             strain: strain + share * (now - strain),
             mode: crack.mode,
             groups: [first.min(second), first.max(second)],
+            balls,
             position: crack.position,
+            contact: crack.contact,
             normal: crack.normal,
+            element: crack.element,
+            elements: crack.elements,
             size: crack.size,
         });
     }

@@ -70,6 +70,8 @@ pub struct Run<S: Space> {
     pub samples: Vec<Sample>,
     /// Every crack, in the order of breaking.
     pub cracks: Vec<CrackEvent<S>>,
+    /// Closed contacts on each fissure at the start, in the order in which they are [placed](super::fissure::placed).
+    pub on_fissures: Vec<usize>,
     /// States at the wanted shares of the peak, and the last.
     pub snapshots: Vec<Snapshot<S>>,
     /// Energies at some axial strains, from the start of loading on.
@@ -155,6 +157,7 @@ pub fn drive<S: Space>(
     let run = Run {
         samples: vec![Sample { speed: schedule.speed, ..Sample::default() }],
         cracks: Vec::new(),
+        on_fissures: engine.fractures().map(|(_, closed)| closed).collect(),
         snapshots: Vec::new(),
         energies: Vec::new(),
         at_peak: Reading::default(),

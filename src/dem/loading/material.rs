@@ -78,9 +78,9 @@ pub struct Material {
     /// How a modulus becomes a stiffness.
     #[serde(default)]
     pub convention: Convention,
-    /// Fissures in the piece.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fissures: Option<Fissures>,
+    /// Fissures in the piece, set by set.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fissures: Vec<Fissures>,
 }
 
 /// What is wrong with a microparameter of a contact.

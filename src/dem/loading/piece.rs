@@ -3,6 +3,7 @@
 //! The origin is the centre of the piece and y the axis of loading. In the plane the piece has unit thickness along z.
 //! Lengths in metres.
 
+use crate::genesis::network::length_inside;
 use crate::genesis::region::Region;
 use crate::genesis::specimen::Specimen;
 use crate::space::Tuple;
@@ -59,6 +60,38 @@ impl Outline {
             Self::Disc { diameter, thickness } => diameter * thickness,
             Self::Column { diameter, .. } => FRAC_PI_4 * diameter * diameter,
         }
+    }
+
+    /// Volume (m³); in the plane the area times the unit thickness.
+    pub fn volume(&self) -> f64 {
+        match *self {
+            Self::Block { width, height, depth } => width * height * depth,
+            Self::Disc { diameter, thickness } => FRAC_PI_4 * diameter * diameter * thickness,
+            Self::Column { diameter, height } => FRAC_PI_4 * diameter * diameter * height,
+        }
+    }
+
+    /// Whether a point of space lies in it.
+    pub fn holds(&self, point: [f64; 3]) -> bool {
+        let within = |k: usize| point[k].abs() <= 0.5 * self.extents()[k];
+        let round =
+            |a: usize, b: usize, diameter: f64| point[a] * point[a] + point[b] * point[b] <= 0.25 * diameter * diameter;
+        match *self {
+            Self::Block { .. } => (0..3).all(within),
+            Self::Disc { diameter, .. } => round(0, 1, diameter) && within(2),
+            Self::Column { diameter, .. } => round(0, 2, diameter) && within(1),
+        }
+    }
+
+    /// Length of a line of the plane in it (m), from its middle, its unit normal and half its length.
+    pub fn chord(&self, [middle, normal]: [[f64; 3]; 2], reach: f64) -> f64 {
+        let Self::Disc { diameter, .. } = *self else {
+            return length_inside([middle, normal], reach, self.extents());
+        };
+        let foot = middle[1] * normal[0] - middle[0] * normal[1];
+        let off = middle[0] * normal[0] + middle[1] * normal[1];
+        let half = (0.25 * diameter * diameter - off * off).max(0.0).sqrt();
+        (reach.min(foot + half) - (foot - half).max(-reach)).max(0.0)
     }
 
     /// The field's word for it.

@@ -6,6 +6,7 @@
 //! [`Scales`] are the stress and the strain at which the piece can be expected to fail, from its own bonds: thresholds and
 //! speeds that are given relative to the piece follow from them.
 
+use super::fissure;
 use super::material::{Material, PLATEN};
 use super::piece::Piece;
 use crate::measure::unbalanced_ratio;
@@ -136,9 +137,7 @@ pub fn mount<S: Space>(
         engine.fix(&fixed, true, true)?;
     }
     let gap = material.gap * piece.mean_radius();
-    if let Some(fissures) = &material.fissures {
-        fissures.lay(&mut engine, material, piece, (gap, seed))?;
-    }
+    fissure::lay(&mut engine, material, piece, (gap, seed))?;
     engine.install_bonds(gap, seed)?;
     engine.absorb_overlaps();
     let (bonds, scales) = (engine.bond_count(), scales(&engine, &table, piece.density));

@@ -5,6 +5,7 @@ use super::curve::Curve;
 use super::goal::Goal;
 use super::params::{FactorParam, Params};
 use super::slope::Slope;
+use super::start::First;
 use crate::artifact::Artifact;
 use crate::stage::figure::Names;
 use crate::stage::invalid::Invalid;
@@ -82,8 +83,9 @@ pub struct Calibrate {
     pub surrogate: Option<surrogate::Settings>,
     /// Settings of the proportional corrections.
     pub proportional: Option<Slope>,
-    /// First point of the search, in the factors' units; the middle of the range for factors that are not named.
-    pub start: BTreeMap<String, f64>,
+    /// First point of the search: numbers in the factors' units, or formulas of the targets such as `"1.2*E"`; the middle of
+    /// the range for factors that are not named.
+    pub start: BTreeMap<String, First>,
     /// Seeds of the optimiser, in place of the workflow's: every target set is searched once with each.
     pub seeds: Vec<u64>,
     /// Most evaluations of a set.
@@ -207,7 +209,7 @@ impl Calibrate {
             limits: Limits { evaluations: self.evaluations, misfit: self.stop_at(), polish: self.polish },
             tolerance: self.tolerance.unwrap_or(TOLERANCE),
             full: (!self.coarse.is_empty()).then(|| self.full_runs.unwrap_or(FULL_RUNS)),
-            start: self.start.clone(),
+            start: self.start_numbers(),
             preference: self.preference.clone(),
             solutions: self.solutions.unwrap_or(SOLUTIONS),
             simulators: self.simulators().len(),
@@ -217,7 +219,7 @@ impl Calibrate {
     }
 
     /// Range of a factor: the stage's own, the factor's, or between its levels.
-    fn range(&self, context: &Context, name: &str) -> Option<[f64; 2]> {
+    pub(super) fn range(&self, context: &Context, name: &str) -> Option<[f64; 2]> {
         let factor = context.factors.get(name)?;
         let levels = factor.levels.iter();
         let ends = levels.fold(None, |ends: Option<[f64; 2]>, &level| {
@@ -227,7 +229,7 @@ impl Calibrate {
     }
 
     /// Whether a factor is searched on a logarithmic scale: by the setting of the stage, else of the factor.
-    fn is_log(&self, context: &Context, name: &str) -> bool {
+    pub(super) fn is_log(&self, context: &Context, name: &str) -> bool {
         let own = context.factors.get(name).is_some_and(|factor| factor.scale == Scale::Log);
         self.scales.get(name).map_or(own, |scale| *scale == Scale::Log)
     }

@@ -1,6 +1,7 @@
 //! Faults in the settings of a calibration, found before anything runs.
 
 use super::config::{Calibrate, MethodName};
+use super::start::NoStart;
 use crate::stage::given::check_given;
 use crate::stage::{Complaint, Context};
 use optim::Error;
@@ -38,8 +39,12 @@ impl Calibrate {
             return found;
         }
         for (i, set) in self.targets.iter().enumerate() {
-            if let Err(message) = self.set(context, set) {
-                found.push(Complaint::new("targets", format!("set {}: {message}", i + 1)));
+            match self.set(context, set).map(|targets| self.started(context, &targets)) {
+                Err(message) => found.push(Complaint::new("targets", format!("set {}: {message}", i + 1))),
+                Ok(Err(NoStart { factor, why })) => {
+                    found.push(Complaint::new(&format!("start.{factor}"), format!("set {}: {why}", i + 1)));
+                }
+                Ok(Ok(_)) => {}
             }
         }
         if found.is_empty() {

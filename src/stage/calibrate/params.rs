@@ -136,6 +136,11 @@ pub(super) struct Params {
     pub history: Vec<History>,
 }
 
+/// The middle of a range, by ratios where it is searched by logarithms.
+pub(super) fn middle(log: bool, [low, high]: [f64; 2]) -> f64 {
+    if log { (low * high).sqrt() } else { 0.5 * (low + high) }
+}
+
 impl Params {
     pub(super) fn domain(&self) -> Result<Domain, Vec<Error>> {
         let scale = |log| if log { Scale::Log } else { Scale::Linear };
@@ -157,8 +162,7 @@ impl Params {
 
     /// A point in natural units, with the middle of the range for factors that are not named; `None` when no factor is named.
     fn filled(&self, named: &BTreeMap<String, f64>) -> Option<Vec<f64>> {
-        let middle = |f: &FactorParam| if f.log { (f.low * f.high).sqrt() } else { 0.5 * (f.low + f.high) };
-        let value = |f: &FactorParam| named.get(&f.name).copied().unwrap_or_else(|| middle(f));
+        let value = |f: &FactorParam| named.get(&f.name).copied().unwrap_or_else(|| middle(f.log, [f.low, f.high]));
         (!named.is_empty()).then(|| self.factors.iter().map(value).collect())
     }
 
@@ -168,6 +172,11 @@ impl Params {
         let outside = |point: Option<Vec<f64>>| domain.as_ref().ok().and_then(|domain| domain.check(&point?).err());
         let mut found: Vec<Error> =
             [self.preferred(), self.filled(&self.start)].into_iter().filter_map(outside).collect();
+        for start in self.sets.iter().filter_map(|set| outside(set.start.clone())) {
+            if !found.contains(&start) {
+                found.push(start);
+            }
+        }
         found.extend(domain.err().unwrap_or_default());
         for set in 0..self.sets.len() {
             for fault in self.misfit(set).err().unwrap_or_default() {

@@ -3,6 +3,7 @@
 use super::config::Calibrate;
 use super::goal::Goal;
 use super::params::{SetParam, TargetParam};
+use super::start::NoStart;
 use crate::artifact::Artifact;
 use crate::stage::{Context, StageError};
 use std::collections::BTreeMap;
@@ -36,10 +37,12 @@ impl Calibrate {
                     targets.extend(curve.targets(own, self.form())?);
                 }
             }
+            let no_start = |fault: NoStart| StageError::new(format!("start of `{}`: {}", fault.factor, fault.why));
+            let start = self.started(context, &targets).map_err(no_start)?;
             let held = of_set(&self.held, i).cloned().unwrap_or_default();
             let seeds: Vec<Option<u64>> = self.seeds.iter().copied().map(Some).collect();
             for seed in if seeds.is_empty() { vec![None] } else { seeds } {
-                sets.push(SetParam { targets: targets.clone(), held: held.clone(), start: None, seed });
+                sets.push(SetParam { targets: targets.clone(), held: held.clone(), start: start.clone(), seed });
             }
         }
         Ok(sets)

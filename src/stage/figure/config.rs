@@ -166,6 +166,8 @@ pub enum Show {
     StressStrain,
     /// Crack patterns by mode at several moments.
     Cracks,
+    /// Interfaces by how much of each is broken, at several moments: flat joints.
+    Damage,
     /// Orientation of the cracks.
     CrackRose,
     /// Force chains.
@@ -210,6 +212,8 @@ pub enum Show {
     Box,
     /// A column over two others as a matrix of colours and numbers.
     HeatMap,
+    /// Strength over confining stress: tests, Mohr–Coulomb, Hoek–Brown.
+    Envelope,
     /// Stones with their clumps.
     Stones,
     /// Zingg's diagram of stones.
@@ -262,8 +266,11 @@ impl Show {
         const POINTS: &[Of] = &[Of::DESIGN, Of::RESULTS];
         match self {
             Show::StressStrain => needs(&[Of::RUN], &[], [0, 0], [0, 0]),
-            Show::Cracks | Show::ForceChains | Show::CrackRose => needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0]),
+            Show::Cracks | Show::Damage | Show::ForceChains | Show::CrackRose => {
+                needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0])
+            }
             Show::Specimen => needs(&[Of::SPECIMEN], &[], [0, 0], [0, 0]),
+            Show::Envelope => needs(&[Of::ENVELOPE], &[], [0, 0], [0, 0]),
             Show::Stones | Show::Zingg => needs(&[Of::SHAPES], &[], [0, 0], [0, 0]),
             Show::MainEffects | Show::Range => needs(&[Of::RANGE], &[Of::RANGE], [1, 1], [0, MANY]),
             Show::Points => needs(POINTS, &[], [0, 0], [0, 3]),

@@ -6,7 +6,8 @@
 //! | `show` | `of` | tables read |
 //! |---|---|---|
 //! | `stress-strain` | runs | `curve`, `cracks` |
-//! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`; `forces`, `snapshots` |
+//! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`, `fissures`; `forces`, `snapshots` |
+//! | `damage` | one run with flat joints (`compare`: its specimen) | `cracks`, `interfaces`, `curve`, `fissures` |
 //! | `specimen` | a specimen | its arrays; one in space is shaded, and cut open where it holds clumps |
 //! | `stones`, `zingg` | shapes | their arrays; `shapes` |
 //! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
@@ -16,6 +17,7 @@
 //! | `residuals`, `observed-predicted` | anova, screening, surfaces | `residuals` |
 //! | `pareto` | a screening, or an anova | `effects` and `limits`, or `anova` |
 //! | `half-normal` | a screening, or an anova | `effects`, `limits`, or `anova` and `fit` |
+//! | `envelope` | an envelope | `parameters`, `tests`, `curves` |
 //! | `convergence`, `solutions` | solutions | `history`; `solution`, `solution_set` |
 //! | `verification` | a verification | `summary`, `runs` |
 //! | `xy`, `histogram`, `box`, `heat-map` | any result | the columns named by `x`, `y`, `by`, `value` of the table `table` |
@@ -27,6 +29,7 @@
 
 mod config;
 mod curves;
+mod damage;
 mod design;
 mod flow;
 mod lost;
@@ -341,6 +344,7 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
     let picture: Box<dyn Picture> = match params.show {
         Show::StressStrain => Box::new(run::stress_strain(&params, &sources)?),
         Show::Cracks => run::cracks(&sources)?,
+        Show::Damage => damage::damage(&sources)?,
         Show::CrackRose => Box::new(run::rose(&sources)?),
         Show::ForceChains => Box::new(run::chains(&sources)?),
         Show::Specimen => run::specimen(&sources)?,
@@ -363,6 +367,7 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Histogram => Box::new(own::histogram(&params, &sources)?),
         Show::Box => Box::new(own::boxes(&params, &sources)?),
         Show::HeatMap => Box::new(own::heat_map(&params, &sources)?),
+        Show::Envelope => Box::new(model::envelope(&sources)?),
         Show::Stones => Box::new(space::stones(&sources)?),
         Show::Zingg => Box::new(space::zingg(&sources)?),
         Show::Dag => Box::new(flow::dag(&params.outline)),

@@ -3,6 +3,7 @@
 use super::super::{StageError, artifact_kind};
 use super::source::{Source, Sources, pick, rows_of};
 use super::{Label, Params};
+use crate::artifact::envelope::Envelope;
 use crate::artifact::statistics::{Anova, Residuals as StoredResiduals, Screening};
 use crate::artifact::surfaces::{Coefficients, Domains, Surfaces};
 use figure::Quantity;
@@ -11,8 +12,10 @@ use figure::axis::{fixed, significant};
 use figure::bars::{Bar, RankedBars};
 use figure::contour::Contour;
 use figure::effect_plot::{Coordinates, Effect, EffectPlot};
+use figure::marks::Band;
 use figure::residuals::Residuals;
 use figure::surface::Surface;
+use figure::xy::{self, Xy};
 use math::distribution::normal_quantile;
 use math::elementary::ln;
 use math::scale::Scale;
@@ -419,5 +422,33 @@ pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, S
         quantity,
         bars: (0..found.values.len()).map(bar).collect(),
         references: found.margin.into_iter().chain(simultaneous).collect(),
+    })
+}
+
+/// Tests as points, the two criteria as lines with their parameters in the legend.
+pub(super) fn envelope(sources: &Sources) -> Result<Xy, StageError> {
+    let Envelope { parameters, tests, curves, .. } = Envelope::from_artifact(sources.first()?.0)?;
+    let value = |name: &str| {
+        let row = parameters.parameter.iter().position(|own| own == name);
+        row.map_or(f64::NAN, |row| parameters.value[row])
+    };
+    let cloud = |name: String, y: Vec<f64>| {
+        let line = Some(Band { x: curves.sigma_3.clone(), y, ..Band::default() });
+        xy::Cloud { name, line, ..xy::Cloud::default() }
+    };
+    let line = format!(
+        "Mohr–Coulomb: $c$ {} MPa, $\\varphi$ {}°",
+        fixed(value("cohesion"), 1),
+        fixed(value("friction_angle"), 1)
+    );
+    let curve =
+        format!("Hoek–Brown: $\\sigma_{{ci}}$ {} MPa, $m_i$ {}", fixed(value("sigma_ci"), 0), fixed(value("m_i"), 1));
+    let points = xy::Cloud { name: "tests".to_owned(), x: tests.sigma_3, y: tests.sigma_1, ..xy::Cloud::default() };
+    Ok(Xy {
+        x: Quantity::new("Confining stress", "\\sigma_3", "MPa").keyed("sigma_3"),
+        y: Quantity::new("Stress at failure", "\\sigma_1", "MPa").keyed("sigma_1"),
+        clouds: vec![cloud(line, curves.mohr_coulomb), cloud(curve, curves.hoek_brown)],
+        measured: vec![points],
+        ..Xy::default()
     })
 }

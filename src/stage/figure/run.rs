@@ -10,7 +10,7 @@ use crate::artifact::specimen::Specimen as StoredSpecimen;
 use crate::unit::Conversion;
 use figure::Figure as Picture;
 use figure::chains::{Chains, Link};
-use figure::cracks::{Crack, Cracks, Moment};
+use figure::cracks::{By, Crack, Cracks, Moment};
 use figure::curve::{Curve, StressStrain};
 use figure::rose::Rose;
 use figure::specimen::{Outline, Specimen};
@@ -101,18 +101,18 @@ pub(super) fn specimen(sources: &Sources) -> Result<Box<dyn Picture>, StageError
 }
 
 /// The frame of cracks and forces.
-struct Ground {
-    outline: Outline,
+pub(super) struct Ground {
+    pub(super) outline: Outline,
     /// Lower left corner in mm.
-    low: [f64; 2],
+    pub(super) low: [f64; 2],
     /// Upper right corner in mm.
-    high: [f64; 2],
+    pub(super) high: [f64; 2],
     /// Outlines of the aggregate in mm.
-    polygons: Vec<Vec<[f64; 2]>>,
+    pub(super) polygons: Vec<Vec<[f64; 2]>>,
 }
 
 /// Domain and polygons of the specimen if there is one, else the box around the points.
-fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
+pub(super) fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, StageError> {
     if let Some(specimen) = sources.compare.first() {
         let specimen = stored(specimen.0)?;
         let (low, high) = domain(&specimen);
@@ -145,14 +145,10 @@ fn crack_list(run: &Run) -> Result<CrackList, StageError> {
     Ok((names, (0..length.len()).map(|i| (cracks.axial_strain[i], crack(i))).collect()))
 }
 
-/// In the plane at half, four fifths and all of the peak stress and at the end of the test; in space at its end.
-pub(super) fn cracks(sources: &Sources) -> Result<Box<dyn Picture>, StageError> {
-    let run = Run::from_artifact(sources.first()?.0)?;
-    if run.cracks.as_ref().is_some_and(|cracks| cracks.position.ncols() == 3 && !cracks.mode.is_empty()) {
-        return Ok(Box::new(space::cracks(&run, sources)?));
-    }
-    let (names, list) = crack_list(&run)?;
-    let Stored { axial_strain: axial, stress, .. } = curve_of(&run)?;
+/// Titles and axial strains of the moments of a run that pictures show: half, four fifths and all of the peak stress, and the
+/// end of the test.
+pub(super) fn moments(run: &Run) -> Result<[(String, f64); 4], StageError> {
+    let Stored { axial_strain: axial, stress, .. } = curve_of(run)?;
     let pairs = stress.iter().copied().enumerate().filter(|(_, s)| s.is_finite());
     let peak = pairs.max_by(|a, b| a.1.total_cmp(&b.1)).ok_or_else(|| StageError::new("the curve has no stress"))?;
     let reached = |share: f64| {
@@ -161,17 +157,40 @@ pub(super) fn cracks(sources: &Sources) -> Result<Box<dyn Picture>, StageError> 
     };
     let end = axial.last().copied().unwrap_or(f64::INFINITY);
     let left = stress.last().map_or(0.0, |s| (100.0 * s / peak.1).round());
-    let moments = [
+    Ok([
         ("50 % of the peak".to_owned(), reached(0.5)),
         ("80 % of the peak".to_owned(), reached(0.8)),
         ("peak".to_owned(), axial.get(peak.0).copied().unwrap_or(end)),
         (format!("after the peak, {left} %"), end),
-    ];
+    ])
+}
+
+/// The fissures of a run in the plane, as their ends in mm; those that cut through are as long as the ground is wide and high.
+pub(super) fn fissures(run: &Run, ground: &Ground) -> Vec<[[f64; 2]; 2]> {
+    let Some(fissures) = &run.fissures else { return Vec::new() };
+    let reach = (ground.high[0] - ground.low[0]) + (ground.high[1] - ground.low[1]);
+    let ends = |row: usize| {
+        let half = if fissures.size[row].is_finite() { 0.5 * fissures.size[row] * MM } else { reach };
+        let along = [fissures.normal[[row, 1]], -fissures.normal[[row, 0]]];
+        [-half, half].map(|way| [0, 1].map(|axis| fissures.position[[row, axis]] * MM + way * along[axis]))
+    };
+    (0..fissures.size.len()).map(ends).collect()
+}
+
+/// In the plane at the [`moments`], in space at the end of the test.
+pub(super) fn cracks(sources: &Sources) -> Result<Box<dyn Picture>, StageError> {
+    let run = Run::from_artifact(sources.first()?.0)?;
+    if run.cracks.as_ref().is_some_and(|cracks| cracks.position.ncols() == 3 && !cracks.mode.is_empty()) {
+        return Ok(Box::new(space::cracks(&run, sources)?));
+    }
+    let (modes, list) = crack_list(&run)?;
     let until = |strain: f64| list.iter().filter(|(s, _)| *s <= strain).map(|(_, c)| *c).collect::<Vec<_>>();
     let points: Vec<[f64; 2]> = list.iter().map(|(_, c)| c.at).collect();
-    let Ground { outline, low, high, polygons } = ground(sources, &points)?;
-    let moments = moments.into_iter().map(|(title, strain)| Moment { title, cracks: until(strain) }).collect();
-    Ok(Box::new(Cracks { outline, low, high, modes: names, moments, outlines: polygons }))
+    let ground = ground(sources, &points)?;
+    let fissures = fissures(&run, &ground);
+    let Ground { outline, low, high, polygons: outlines } = ground;
+    let moments = moments(&run)?.map(|(title, strain)| Moment { title, cracks: until(strain) }).into();
+    Ok(Box::new(Cracks { by: By::Mode, outline, low, high, modes, moments, outlines, fissures }))
 }
 
 pub(super) fn rose(sources: &Sources) -> Result<Rose, StageError> {

@@ -7,7 +7,7 @@ use super::source::Sources;
 use crate::artifact::run::Run;
 use crate::artifact::shapes::Shapes;
 use crate::artifact::specimen::Specimen as StoredSpecimen;
-use figure::solid::{Cut, Penny, Solid};
+use figure::solid::{Cut, Penny, Rim, Solid};
 use figure::stones::{Stone, Stones};
 use figure::zingg::Zingg;
 
@@ -57,7 +57,21 @@ pub(super) fn cracks(run: &Run, sources: &Sources) -> Result<Solid, StageError> 
         }
     };
     let modes = found.into_iter().map(|mode| mode.word().to_owned()).collect();
-    Ok(Solid { cracks, modes, ..solid })
+    Ok(Solid { cracks, modes, fissures: rims(run, &solid), ..solid })
+}
+
+/// The fissures of a run in space; those that cut through reach across the whole frame.
+fn rims(run: &Run, frame: &Solid) -> Vec<Rim> {
+    let Some(fissures) = &run.fissures else { return Vec::new() };
+    let across = [0, 1, 2].map(|k| frame.high[k] - frame.low[k]);
+    let reach = 0.5 * across.iter().map(|edge| edge * edge).sum::<f64>().sqrt();
+    let vector = |of: &ndarray::Array2<f64>, row: usize| upright([0, 1, 2].map(|axis| of[[row, axis]]));
+    let rim = |row: usize| Rim {
+        at: vector(&fissures.position, row),
+        normal: vector(&fissures.normal, row).map(|part| part / MM),
+        radius: if fissures.size[row].is_finite() { 0.5 * fissures.size[row] * MM } else { reach },
+    };
+    (0..fissures.size.len()).map(rim).collect()
 }
 
 /// Stones with their clumps, the longest side to the right.

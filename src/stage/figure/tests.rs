@@ -121,6 +121,8 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
     let cases: Vec<Case> = vec![
         ("stress-strain", "", vec![run()], vec![]),
         ("cracks", "compare = 'b'", vec![run()], vec![specimen()]),
+        ("damage", "compare = 'b'", vec![jointed()], vec![specimen()]),
+        ("envelope", "", vec![strength_envelope()], vec![]),
         ("crack-rose", "", vec![run()], vec![]),
         ("force-chains", "compare = 'b'", vec![run()], vec![specimen()]),
         ("specimen", "", vec![specimen()], vec![]),

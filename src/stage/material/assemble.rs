@@ -19,8 +19,8 @@ pub struct Bonding {
     pub gap: f64,
     /// Definition of the stiffness by a modulus.
     pub convention: Convention,
-    /// Fissures in the specimen.
-    pub fissures: Option<Fissures>,
+    /// Fissures in the specimen, set by set.
+    pub fissures: Vec<Fissures>,
     /// Values of the entries that have none of their own.
     pub values: BTreeMap<Parameter, f64>,
 }

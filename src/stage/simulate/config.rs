@@ -83,9 +83,9 @@ pub struct Simulate {
     /// How bonds form and act.
     #[serde(default)]
     pub bond: BondConfig,
-    /// Fissures that are put into the specimen before it is bonded.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fissures: Option<FissureConfig>,
+    /// Fissures that are put into the specimen before it is bonded, set by set.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fissures: Vec<FissureConfig>,
 }
 
 /// Whether different rows share packings.
@@ -125,7 +125,7 @@ impl BondConfig {
             (Parameter::FrictionAngle, self.friction_angle.map(Angle::get)),
         ];
         let values = values.into_iter().filter_map(|(parameter, value)| Some((parameter, value?))).collect();
-        Bonding { kind: self.kind, gap: self.gap, convention: self.convention, fissures: None, values }
+        Bonding { kind: self.kind, gap: self.gap, convention: self.convention, fissures: Vec::new(), values }
     }
 
     fn faults(&self) -> Vec<Complaint> {
@@ -167,6 +167,27 @@ fn damping() -> f64 {
 pub(super) struct Params {
     pub(super) material: Material,
     pub(super) test: Loading,
+    /// Whether the record says which elements of which interfaces its cracks are, and which fissures there are: with flat
+    /// joints and with fissures.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) joints: bool,
+}
+
+/// Whether some contacts are flat joints.
+fn flat(material: &Material) -> bool {
+    material.contacts.values().any(|contact| contact.bond == BondKind::FlatJoint)
+}
+
+impl Params {
+    pub(super) fn new(material: Material, test: Loading) -> Self {
+        let joints = flat(&material) || !material.fissures.is_empty();
+        Self { material, test, joints }
+    }
+
+    /// Whether the record names the interfaces of its cracks.
+    pub(super) fn interfaces(&self) -> bool {
+        self.joints && flat(&self.material)
+    }
 }
 
 impl Simulate {
@@ -204,7 +225,7 @@ impl Simulate {
 
     /// The settings of the stage for all bonds.
     fn bonding(&self) -> Bonding {
-        Bonding { fissures: self.fissures.as_ref().map(FissureConfig::made), ..self.bond.bonding() }
+        Bonding { fissures: self.fissures.iter().map(FissureConfig::made).collect(), ..self.bond.bonding() }
     }
 
     fn need<'a>(&'a self, context: &'a Context, bonding: &'a Bonding) -> Need<'a> {
@@ -216,8 +237,9 @@ impl Simulate {
     pub(super) fn faults(&self, context: &Context) -> Vec<Complaint> {
         let mut faults = self.setting_faults();
         faults.extend(self.bond.faults());
-        faults.extend(self.fissures.iter().flat_map(FissureConfig::faults));
         let region = context.sketches.get(&self.specimen).and_then(|sketch| sketch.region);
+        let dimension = region.map(|region| region.dimension());
+        faults.extend(self.fissures.iter().enumerate().flat_map(|(set, own)| own.faults(set, dimension)));
         let suits = |region: Region| self.test.suits(&region.into(), region.dimension());
         faults.extend(region.and_then(|region| suits(region).err()).map(|e| Complaint::new("test", e.to_string())));
         let named = context.materials.get(&self.material);

@@ -18,14 +18,17 @@
 
 mod config;
 mod fissures;
+mod laid;
 mod loading;
 mod record;
 mod speed;
+mod traces;
 
 pub use config::{BondConfig, PackingChoice, Simulate};
 pub use fissures::{FissureConfig, JointConfig, NetworkConfig};
 pub use speed::PlatenSpeed;
 
+use super::beside::Beside;
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::specimen::Loaded;
@@ -40,6 +43,7 @@ use config::Params;
 use dem::Space;
 use dem::loading::curve::Sample;
 use dem::loading::piece::Piece;
+use laid::Laid;
 use math::random::Stream;
 use serde_json::json;
 use std::sync::Arc;
@@ -69,6 +73,11 @@ impl Stage for Simulate {
         found.extend(given.filter_map(|own| rows::check_response("test", own.name, own.unit, context)));
         found.extend(self.faults(context));
         found
+    }
+
+    fn beside(&self, context: &Context, found: &mut Beside) {
+        let region = context.sketches.get(&self.specimen).and_then(|sketch| sketch.region);
+        fissures::look_into(&self.fissures, region.map(|region| region.dimension()), found);
     }
 
     fn sketch(&self) -> Sketch {
@@ -105,7 +114,8 @@ impl Stage for Simulate {
             PackingChoice::Shared => number,
             PackingChoice::Own => own_packing(&point, number),
         };
-        let task = Task::new("simulate", json!(Params { material, test: self.spec() }));
+        let task = Task::new("simulate", json!(Params::new(material, self.spec())));
+        let task = fissures::add_files(&self.fissures, known, task)?;
         if let Some(make) = (specimen.vary)(&point, packing)? {
             return Ok(task.after("specimen", Arc::new(make)).seed(number));
         }
@@ -185,7 +195,8 @@ fn simulate(job: &Job) -> Result<Artifact, Failure> {
 
 /// Runs the test on a piece, in the plane or in the solid.
 fn tested<S: Space>(job: &Job, piece: &Piece<S>) -> Result<Artifact, Failure> {
-    let params: Params = job.params()?;
+    let mut params: Params = job.params()?;
+    fissures::read_files(job, &mut params.material.fissures, S::DIMENSION)?;
     let fail = |fault: &dyn std::fmt::Display| StageError::new(fault.to_string());
     if let Some(warning) = params.test.warning(piece, &params.material).map_err(|faults| fail(&faults))? {
         (job.say)(Progress::warning(&warning));
@@ -205,5 +216,7 @@ fn tested<S: Space>(job: &Job, piece: &Piece<S>) -> Result<Artifact, Failure> {
         return Err(Failure::Stopped);
     }
     record.invalid().for_each(|check| (job.say)(Progress::warning(&format!("not valid: {check}"))));
-    Ok(record::artifact(&record, &params.test, &params.material))
+    let laid = Laid::of(piece, &params.material, seed, &record.run.on_fissures);
+    laid.iter().filter_map(Laid::idle).for_each(|words| (job.say)(Progress::warning(&words)));
+    Ok(record::artifact(&record, &params, laid.as_ref()))
 }

@@ -1,37 +1,43 @@
 //! Converts the record of a test to its artifact, a [`Run`].
 
+use super::config::Params;
+use super::laid::Laid;
 use crate::artifact::Artifact;
-use crate::artifact::run::{Checks, CrackMode, Cracks, Curve, Energies, Forces, Quantities, Responses, Run, States};
+use crate::artifact::run::{Checks, CrackMode, Cracks, Curve, Energies, Forces, Interfaces, Quantities, Responses};
+use crate::artifact::run::{Run, States};
 use dem::loading::crack::CrackEvent;
 use dem::loading::curve::thinned;
 use dem::loading::kind::TestKind;
 use dem::loading::material::Material;
 use dem::loading::pace::Pace;
 use dem::loading::record::TestRecord;
-use dem::loading::settings::Loading;
 use dem::loading::snapshot::Snapshot;
 use dem::measure::{Energy, Link, Mode};
 use dem::space::Tuple;
 use dem::{Space, Vector};
 use ndarray::{Array2, Array3};
+use std::collections::BTreeMap;
 
 /// Number of points of the stored curve.
 const CURVE_POINTS: usize = 400;
 
 /// The artifact of a record.
-pub(super) fn artifact<S: Space>(record: &TestRecord<S>, test: &Loading, material: &Material) -> Artifact {
+pub(super) fn artifact<S: Space>(record: &TestRecord<S>, params: &Params, laid: Option<&Laid>) -> Artifact {
+    let Params { material, test, .. } = params;
     let snapshots = &record.run.snapshots;
     let run = Run {
         failure: record.run.failure.map_or_else(String::new, |failure| failure.to_string()),
         validity: Some(record.validity()),
         cautions: None,
-        warnings: Some(warnings(record)),
+        warnings: Some(warnings(record, laid)),
         responses: Responses::of(&responses(record, test.kind)),
-        judgement: Some(judgement(record)),
+        judgement: Some(judgement(record, laid)),
         checks: Some(checks(record)),
         curve: Some(curve(record, test.pace)),
         energies: Some(energies(&record.run.energies)),
         cracks: Some(cracks(&record.run.cracks, material)),
+        interfaces: params.interfaces().then(|| interfaces(&record.run.cracks)),
+        fissures: laid.map(|laid| laid.table.clone()),
         states: Some(states(snapshots)),
         state_centres: Some(centres(snapshots)),
         forces: test.rule.forces.then(|| forces(snapshots)),
@@ -43,10 +49,11 @@ fn responses<S: Space>(record: &TestRecord<S>, kind: TestKind) -> Vec<(&'static 
     kind.responses().iter().map(|response| (response.name, (response.read)(&record.values), response.unit)).collect()
 }
 
-/// Sentences on the rate of loading, and on why the run is not valid.
-fn warnings<S: Space>(record: &TestRecord<S>) -> Vec<String> {
+/// Sentences on the rate of loading, on fissures without effect, and on why the run is not valid.
+fn warnings<S: Space>(record: &TestRecord<S>, laid: Option<&Laid>) -> Vec<String> {
     let rate = record.judgement.warning().into_iter().map(|warning| warning.to_string());
-    rate.chain(record.invalid().map(|check| format!("{}{check}", Run::NOT_VALID))).collect()
+    let idle = laid.and_then(Laid::idle);
+    rate.chain(idle).chain(record.invalid().map(|check| format!("{}{check}", Run::NOT_VALID))).collect()
 }
 
 /// A column with one value of every item.
@@ -68,9 +75,9 @@ fn checks<S: Space>(record: &TestRecord<S>) -> Checks {
     }
 }
 
-fn judgement<S: Space>(record: &TestRecord<S>) -> Quantities {
+fn judgement<S: Space>(record: &TestRecord<S>, laid: Option<&Laid>) -> Quantities {
     let j = &record.judgement;
-    Quantities::of(&[
+    let mut all = vec![
         ("time step", j.time_step, "s"),
         ("steps", j.steps as f64, ""),
         ("platen speed", j.speed, "m/s"),
@@ -83,7 +90,9 @@ fn judgement<S: Space>(record: &TestRecord<S>) -> Quantities {
         ("discs across", j.particles_across, ""),
         ("side gauges", j.gauges as f64, ""),
         ("unbalanced force / contact force at the end", j.unbalanced, ""),
-    ])
+    ];
+    all.extend(laid.into_iter().flat_map(Laid::quantities));
+    Quantities::of(&all)
 }
 
 fn curve<S: Space>(record: &TestRecord<S>, pace: Pace) -> Curve {
@@ -128,6 +137,24 @@ fn cracks<S: Space>(cracks: &[CrackEvent<S>], material: &Material) -> Cracks {
         position: rows(cracks, |crack| crack.position),
         normal: rows(cracks, |crack| crack.normal),
         size: each(cracks, |crack| crack.size),
+    }
+}
+
+/// The interfaces of the cracks, and how much of each is broken from each crack on.
+fn interfaces<S: Space>(cracks: &[CrackEvent<S>]) -> Interfaces {
+    let mut broken: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+    let damage = |crack: &CrackEvent<S>| {
+        let count = broken.entry(crack.balls).or_default();
+        *count += 1;
+        *count as f64 / f64::from(crack.elements)
+    };
+    Interfaces {
+        first: each(cracks, |crack| crack.balls[0]),
+        second: each(cracks, |crack| crack.balls[1]),
+        element: each(cracks, |crack| crack.element as usize),
+        elements: each(cracks, |crack| crack.elements as usize),
+        contact: rows(cracks, |crack| crack.contact),
+        damage: cracks.iter().map(damage).collect(),
     }
 }
 

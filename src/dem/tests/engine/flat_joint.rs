@@ -319,6 +319,9 @@ fn cracked(cases: &mut Vec<Case>) {
     // The second ball turns to the left against the first, so the interface opens below, at −y.
     push("2D, N = 4: place of the first crack, m", "−R (1 − 1/N)", -0.75 * R, crack.position[1]);
     push("2D, N = 4: its length, m", "2R/N", 0.5 * R, crack.size);
+    push("2D, N = 4: middle of the interface, m", "0", 0.0, crack.contact[1]);
+    push("2D, N = 4: its element", "0, the lowest", 0.0, f64::from(crack.element));
+    push("2D, N = 4: elements", "4", 4.0, f64::from(crack.elements));
     let read = engine.contacts().next().unwrap().interface.unwrap();
     push("2D, N = 4: elements left", "3", 3.0, f64::from(read.intact));
     let mut engine = pair::<D3>(Bond::Flat(joint(1, 4)));

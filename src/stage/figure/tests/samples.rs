@@ -1,6 +1,8 @@
 //! Results that the figures of the tests are drawn from.
 
 use super::*;
+use crate::artifact::envelope::{self, Curves, Envelope, Tests};
+use crate::artifact::run::{Fissures, Interfaces};
 
 pub(super) fn range_analysis() -> Artifact {
     let factor = words(["Ec", "mu", "null"]);
@@ -26,7 +28,7 @@ pub(super) fn results(shift: f64) -> Artifact {
     artifact("results", vec![("runs", runs)])
 }
 
-pub(super) fn run() -> Artifact {
+fn plain_run() -> Run {
     let axial_strain: Vec<f64> = (0..40).map(|i| f64::from(i) * 5e-5).collect();
     let lateral_strain: Vec<f64> = axial_strain.iter().map(|e| 0.2 * e).collect();
     let n = 30;
@@ -57,15 +59,64 @@ pub(super) fn run() -> Artifact {
     };
     let states = States { axial_strain: vec![1e-4, 1e-3], stress: vec![1e6, 3e7], cracks: vec![0, 0] };
     let centre = |(state, disc, axis)| [1e-3 * (disc as f64 - 15.0), 1e-2 * state as f64][axis];
-    let run = Run {
+    Run {
         curve: Some(curve),
         cracks: Some(cracks),
         forces: Some(forces),
         states: Some(states),
         state_centres: Some(Array3::from_shape_fn((2, 31, 2), centre)),
         ..Run::plain("", Responses::of(&[("E", 3e10, "Pa")]))
+    }
+}
+
+pub(super) fn run() -> Artifact {
+    plain_run().to_artifact()
+}
+
+/// The same run with two elements for each interface and a fissure that cuts through.
+pub(super) fn jointed() -> Artifact {
+    let run = plain_run();
+    let cracks = run.cracks.as_ref().unwrap();
+    let interfaces = Interfaces {
+        first: (0..30).map(|i| i / 2).collect(),
+        second: (0..30).map(|i| i / 2 + 1).collect(),
+        element: (0..30).map(|i| i % 2).collect(),
+        elements: vec![2; 30],
+        contact: cracks.position.clone(),
+        damage: (0..30).map(|i| if i % 2 == 0 { 0.5 } else { 1.0 }).collect(),
     };
-    run.to_artifact()
+    let fissures = Fissures {
+        set: vec![1],
+        position: Array2::zeros((1, 2)),
+        normal: Array2::from_shape_fn((1, 2), |(_, axis)| [0.6, 0.8][axis]),
+        size: vec![f64::NAN],
+        inside: vec![0.05],
+        contacts: vec![12],
+    };
+    Run { interfaces: Some(interfaces), fissures: Some(fissures), ..run }.to_artifact()
+}
+
+pub(super) fn strength_envelope() -> Artifact {
+    let sigma_3: Vec<f64> = (0..5).map(|i| 10.0 * f64::from(i)).collect();
+    let line: Vec<f64> = sigma_3.iter().map(|p| 100.0 + 6.0 * p).collect();
+    let (mohr_coulomb, hoek_brown) = (line.clone(), line.clone());
+    let values = [("cohesion", 20.0), ("friction_angle", 45.0), ("sigma_ci", 100.0), ("m_i", 12.0)];
+    let parameters = envelope::Parameters {
+        criterion: vec![String::new(); 4],
+        parameter: values.iter().map(|one| one.0.to_owned()).collect(),
+        value: values.iter().map(|one| one.1).collect(),
+        std_error: vec![0.1; 4],
+        unit: vec![String::new(); 4],
+        r2: vec![0.99; 4],
+    };
+    let tests = Tests {
+        sigma_3: sigma_3.clone(),
+        sigma_1: line,
+        mohr_coulomb: mohr_coulomb.clone(),
+        hoek_brown: hoek_brown.clone(),
+    };
+    let curves = Curves { sigma_3, mohr_coulomb, hoek_brown };
+    Envelope { parameters, tests, curves, not_valid: None, notes: None }.to_artifact()
 }
 
 pub(super) fn specimen() -> Artifact {

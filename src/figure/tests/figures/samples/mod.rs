@@ -40,6 +40,8 @@ pub(crate) fn all() -> Vec<(&'static str, Style, Box<dyn Figure>)> {
         ("specimen-wide", two.clone(), Box::new(specimen(2.4))),
         ("cracks", two.clone(), Box::new(cracks())),
         ("cracks-2", one.clone(), Box::new(cracks())),
+        ("damage", two.clone(), Box::new(spatial::damage())),
+        ("damage-1", one.clone(), Box::new(spatial::damage())),
         ("cracks-disc", two.clone(), Box::new(spatial::disc_cracks())),
         ("specimen-disc", one.clone(), Box::new(spatial::disc())),
         ("solid", one.clone(), Box::new(spatial::cube(None))),

@@ -1,7 +1,7 @@
 //! Specimens, cracks and forces.
 
 use figure::chains::{Chains, Link};
-use figure::cracks::{Crack, Cracks, Moment};
+use figure::cracks::{By, Crack, Cracks, Moment};
 use figure::rose::Rose;
 use figure::solid::{Cut, Penny, Solid};
 use figure::specimen::{Outline, Specimen};
@@ -102,12 +102,14 @@ pub(super) fn cracks() -> Cracks {
         moment("70 % after the peak", 2400, 0.8),
     ];
     Cracks {
+        by: By::Mode,
         outline: Outline::Rectangle,
         low: [0.0, 0.0],
         high: [100.0, 200.0],
         modes: vec!["tensile crack".into(), "shear crack".into()],
         moments,
         outlines,
+        fissures: Vec::new(),
     }
 }
 
@@ -163,7 +165,26 @@ pub(super) fn disc_cracks() -> Cracks {
     };
     let moments = vec![moment("80 % of the peak", 30), moment("peak", 110), moment("after the peak, 60 %", 420)];
     let modes = vec!["tensile crack".into(), "shear crack".into()];
-    Cracks { outline: Outline::Disc, low: [-25.0; 2], high: [25.0; 2], modes, moments, outlines: Vec::new() }
+    Cracks {
+        outline: Outline::Disc,
+        low: [-25.0; 2],
+        high: [25.0; 2],
+        modes,
+        moments,
+        fissures: vec![[[-5.0, 5.0], [5.0, -5.0]]],
+        ..Cracks::default()
+    }
+}
+
+/// The same cracks as interfaces in four classes of damage.
+pub(super) fn damage() -> Cracks {
+    let cracks = cracks();
+    let class = |(k, crack): (usize, Crack)| Crack { mode: k % 4, ..crack };
+    let moment = |m: Moment| Moment { cracks: m.cracks.into_iter().enumerate().map(class).collect(), ..m };
+    let modes = ["25 % or less broken", "50 % or less", "below 100 %", "100 %"].map(str::to_owned).into();
+    let moments = cracks.moments.into_iter().map(moment).collect();
+    let fissures = vec![[[30.0, 80.0], [70.0, 40.0]]];
+    Cracks { by: By::Damage, modes, moments, fissures, ..cracks }
 }
 
 /// The disc itself.
