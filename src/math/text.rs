@@ -64,7 +64,8 @@ impl fmt::Display for Amount {
             return Number(value).fmt(f);
         }
         let rounded: f64 = digits(value, f).parse().unwrap_or(value);
-        let prefixed = PREFIXED.contains(&unit) && rounded != 0.0 && rounded.is_finite();
+        // Beyond the prefixes a power of ten is plainer than a power of ten of the last of them.
+        let prefixed = PREFIXED.contains(&unit) && (1e-12..1e15).contains(&rounded.abs());
         let fits = |(_, factor): &&(&str, f64)| rounded.abs() >= *factor;
         let (prefix, factor) =
             if prefixed { *PREFIXES.iter().find(fits).unwrap_or(&PREFIXES[PREFIXES.len() - 1]) } else { ("", 1.0) };
@@ -141,6 +142,7 @@ mod tests {
             (-4e-6, "m^2", "-4e-6 m^2"),
             (0.02, "m/s", "20 mm/s"),
             (1.25e-7, "", "1.25e-7"),
+            (1e300, "m/s", "1e300 m/s"),
         ] {
             assert_eq!(Amount(value, unit).to_string(), said, "{value}");
         }

@@ -39,12 +39,15 @@ impl Beside {
         None
     }
 
-    /// The bytes of a file that is named under `key`, where it is small enough to be looked into before anything runs. One
-    /// that cannot be read now is reported when the stage runs.
+    /// The bytes of a file that is named under `key`, where it is small enough to be looked into before anything runs.
     pub fn bytes(&mut self, key: &str, path: &str) -> Option<Vec<u8>> {
         let full = self.file(key, path)?;
         let small = plain(&full).is_ok_and(|meta| meta.len() <= READ_BEFORE);
-        small.then(|| read(&full).ok()).flatten()
+        if !small {
+            return None;
+        }
+        let unread = |why: &String| Complaint::new(key, format!("{}: {why}", full.display()));
+        read(&full).inspect_err(|why| self.faults.push(unread(why))).ok()
     }
 
     /// As [`Beside::file`], for a key that need not be set.
