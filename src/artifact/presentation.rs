@@ -15,6 +15,8 @@ crate::artifact! {
         pub pdf: Vec<u8>, "";
         /// as PNG
         pub png: Vec<u8>, "";
+        /// as SVG that moves, of figures that have several moments
+        pub moving: Option<String>, "";
         /// the numbers that are drawn
         pub data: Table, "";
     }

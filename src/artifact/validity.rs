@@ -140,6 +140,11 @@ impl<'a> Tally<'a> {
         self.reasons.iter().map(|reason| reason.count).sum()
     }
 
+    /// The reasons in words, each with the number of those that have it; numbers in which they differ are left out.
+    pub fn reasons(&self) -> Vec<(String, usize)> {
+        self.reasons.iter().map(|reason| (reason.words(), reason.count)).collect()
+    }
+
     /// `3 of 40 evaluations gave no result: not valid: rotation (3)`; nothing where none has a reason.
     pub fn of_evaluations(&self, what: &str) -> Option<String> {
         (self.count() > 0).then(|| format!("{} of {} evaluations {what}: {}", self.count(), self.all, self.why()))

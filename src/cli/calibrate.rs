@@ -8,10 +8,10 @@
 mod answer;
 mod page;
 
-use super::Exit;
 use super::common::{Campaign, system, workers};
 use super::progress::Progress;
 use super::run::{ahead, interruption};
+use super::{Exit, complete};
 use crate::artifact::calibration::{Solution, Verification};
 use crate::artifact::{self, Artifact};
 use crate::exec::cores;
@@ -34,7 +34,7 @@ pub(super) struct Calibrate {
     #[command(flatten)]
     campaign: Campaign,
     /// A target for a response: `UCS="30 MPa"`, `nu=0.2`. May be given more than once.
-    #[arg(long = "target", value_name = "RESPONSE=VALUE", required_unless_present = "page")]
+    #[arg(long = "target", value_name = "RESPONSE=VALUE", required_unless_present = "page", add = complete::responses())]
     targets: Vec<String>,
     /// The calibration whose surfaces and settings are used; needed when several search on surfaces.
     #[arg(long, value_name = "NAME")]
@@ -122,7 +122,9 @@ impl Calibrate {
         }
         let workflow = campaign.load(&[])?;
         let checks = checks.and_then(Result::ok).unwrap_or_default();
-        Ok(Asked { workflow, store: self.campaign.open()?, stage, checks })
+        // Only a verification runs something.
+        let store = if self.verify { self.campaign.open()? } else { self.campaign.common.read()? };
+        Ok(Asked { workflow, store, stage, checks })
     }
 
     /// The calibration to use: the named one, or the only one that searches on surfaces alone.

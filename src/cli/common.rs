@@ -1,7 +1,7 @@
 //! Options that mean the same on every command that takes a workflow, and the two things each begins with.
 
 use super::color::Color;
-use super::{Exit, message};
+use super::{Exit, complete, message};
 use crate::plan::{self, Overrides, Workflow};
 use crate::report::{duration, moment, quoted};
 use crate::run::commit;
@@ -15,11 +15,11 @@ pub(super) struct Campaign {
     /// The workflow file.
     pub(super) workflow: PathBuf,
     /// Apply the overrides of `[profile.NAME]`.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", add = complete::profiles())]
     pub(super) profile: Option<String>,
     /// Override one value of the workflow: `stage.anova.alpha=0.01`, `material.base.mortar.Ec='"20 GPa"'`. May be given
     /// more than once.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
+    #[arg(long = "set", value_name = "PATH=VALUE", add = complete::settings())]
     pub(super) sets: Vec<String>,
     #[command(flatten)]
     pub(super) common: Common,
@@ -106,6 +106,11 @@ impl Common {
     /// The store.
     pub(super) fn open(&self) -> Result<Store, Exit> {
         Store::open(&self.store).map_err(|e| system(&e))
+    }
+
+    /// The store for a command that only reads: nothing is written into it, and none is made.
+    pub(super) fn read(&self) -> Result<Store, Exit> {
+        Store::open_to_read(&self.store).map_err(|e| system(&e))
     }
 
     /// Prints a note, which is no result.

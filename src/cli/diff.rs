@@ -41,7 +41,7 @@ impl Diff {
     }
 
     fn print(&self) -> Result<Exit, Exit> {
-        let store = self.common.open()?;
+        let store = self.common.read()?;
         let (a, b) = (self.side(&self.a, &store)?, self.side(&self.b, &store)?);
         let mut names: Vec<&String> = a.keys().chain(b.keys()).collect();
         names.sort_unstable();
@@ -109,7 +109,8 @@ impl Diff {
         };
         let Some(campaign) = found else {
             let known: Vec<String> = known.iter().map(|n| format!("#{n}")).collect();
-            err!("error: there is no recorded run #{number}; the store has {}", known.join(", "));
+            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+            err!("error: there is no recorded run #{number}; the store `{}` has {known}", store.root().display());
             return Err(Exit::BadInput);
         };
         if !campaign.own {

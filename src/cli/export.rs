@@ -1,9 +1,9 @@
 //! `flow export`: results as files for people and other programs.
 
-use super::Exit;
 use super::common::{Campaign, system};
 use super::files::Files;
 use super::show::{object, parts};
+use super::{Exit, complete};
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash};
 use crate::export::{File, files, paraview, particles, pfc, shapes, tables};
@@ -25,7 +25,7 @@ pub(super) struct Export {
     #[command(flatten)]
     campaign: Campaign,
     /// The stages, or single runs of them such as `orthogonal[12]`; by default all that have a result.
-    #[arg(value_name = "STAGE[ROW]")]
+    #[arg(value_name = "STAGE[ROW]", add = complete::stages())]
     stages: Vec<String>,
     /// Form of the files.
     #[arg(long, value_enum, value_name = "FORM", default_value_t = Form::Files)]
@@ -66,7 +66,7 @@ impl Export {
         let asked = self.stages.iter().map(|what| parts(what)).collect::<Result<Vec<_>, Exit>>()?;
         let names: Vec<String> = asked.iter().map(|(stage, _)| stage.clone()).collect();
         let workflow = self.campaign.load(&names)?;
-        let store = self.campaign.open()?;
+        let store = self.campaign.common.read()?;
         // Single rows are known only when every task is looked up.
         let memos = asked.iter().all(|(_, row)| row.is_none());
         let report = decide(&workflow, &store, &names, memos).map_err(|e| system(&e))?;

@@ -68,7 +68,7 @@ impl Graph {
         // A command that only reads makes no store.
         let reports = match self.campaign.common.store.exists() {
             true => {
-                let store = self.campaign.open()?;
+                let store = self.campaign.common.read()?;
                 decide(&workflow, &store, &[], true).map_err(|e| system(&e))?.stages
             }
             false => Vec::new(),

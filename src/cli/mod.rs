@@ -9,6 +9,7 @@ mod calibrate;
 mod check;
 mod color;
 mod common;
+mod complete;
 mod completions;
 mod diff;
 mod examples;
@@ -29,7 +30,7 @@ mod store;
 mod whole;
 mod work;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -111,6 +112,8 @@ pub fn main() -> ExitCode {
     // A file beyond the limit of the user (`ulimit -f`) is an error of the write, which is reported, and not the end of the
     // process. Where the signal cannot be taken it ends it, as it would have.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+    // Set by the script of `flow completions` alone, when a shell asks what may stand next on the line.
+    clap_complete::CompleteEnv::with_factory(Arguments::command).var(complete::ASKED).complete();
     ExitCode::from(execute(std::env::args_os()) as u8)
 }
 

@@ -1,7 +1,7 @@
 //! `flow plan`: what `run` would do and why, by the same decisions.
 
-use super::Exit;
 use super::common::Campaign;
+use super::{Exit, complete};
 use crate::exec::cores;
 use crate::report::duration;
 use crate::run::{Past, Report, StageReport, StageStatus, TaskReport, TaskState, decide, forecasts};
@@ -14,6 +14,7 @@ pub(super) struct Plan {
     #[command(flatten)]
     campaign: Campaign,
     /// Only these stages, with all they need.
+    #[arg(add = complete::stages())]
     stages: Vec<String>,
     /// Print one JSON document.
     #[arg(long)]
@@ -33,6 +34,8 @@ struct Line {
     /// Whether nothing is known of its tasks.
     unknown: bool,
     seconds: Option<f64>,
+    /// Whether `seconds` are estimated, for nothing of it has run here.
+    estimated: bool,
 }
 
 impl Plan {
@@ -42,7 +45,7 @@ impl Plan {
 
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load_to_run(&self.stages)?;
-        let store = self.campaign.open()?;
+        let store = self.campaign.common.read()?;
         let report = decide(&workflow, &store, &self.stages, true).map_err(|e| super::common::system(&e))?;
         let past = Past::of(&workflow, &store).map_err(|e| super::common::system(&e))?;
         let open: Vec<TaskReport> = report.tasks().filter(|task| task.state == TaskState::Open).collect();
@@ -89,7 +92,9 @@ fn line(stage: &StageReport, open: Vec<&TaskReport>, ahead: Forecast, past: &Pas
         reasons.push(format!("… and {more} more reasons"));
     }
     let tasks = expected.map_or(open.len(), TaskForecast::count);
-    let seconds = past.seconds(&stage.name).map(|each| each * tasks as f64).filter(|_| tasks > 0);
+    let measured = past.seconds(&stage.name).map(|each| each * tasks as f64);
+    let share = ahead.tasks.map_or(1.0, |all| tasks as f64 / all.count().max(1) as f64);
+    let seconds = measured.or(ahead.seconds.map(|all| all * share.min(1.0))).filter(|_| tasks > 0);
     Line {
         name: stage.name.clone(),
         state,
@@ -98,13 +103,16 @@ fn line(stage: &StageReport, open: Vec<&TaskReport>, ahead: Forecast, past: &Pas
         expected,
         unknown: waits && expected.is_none(),
         seconds,
+        estimated: measured.is_none() && seconds.is_some_and(|seconds| seconds > 0.0),
     }
 }
 
 fn print_lines(lines: &[Line]) {
     let width = lines.iter().map(|line| line.name.chars().count()).max().unwrap_or(0);
     for line in lines {
-        let about = line.seconds.map_or_else(String::new, |s| format!(", about {}", duration(s / cores() as f64)));
+        let word = if line.estimated { "roughly" } else { "about" };
+        let shown = line.seconds.filter(|seconds| !line.estimated && *seconds > 0.0 || *seconds >= 0.05);
+        let about = shown.map_or_else(String::new, |s| format!(", {word} {}", duration(s / cores() as f64)));
         out!("{:width$}  {}{about}", line.name, line.state);
         for reason in &line.reasons {
             out!("{:width$}    {reason}", "");
@@ -131,6 +139,11 @@ fn total(lines: &[Line]) -> Option<String> {
         if unknown > 0 { format!(", and those of {unknown} stages that are not known yet") } else { String::new() };
     let seconds: Option<f64> = busy.iter().map(|line| line.seconds).sum();
     let time = match seconds {
+        Some(seconds) if busy.iter().any(|line| line.estimated) => format!(
+            ", roughly {} (estimated from the numbers of balls and steps, right within a factor of three; measured times \
+             take its place once stages have run here)",
+            duration(seconds / cores() as f64)
+        ),
         Some(seconds) => format!(", about {}", duration(seconds / cores() as f64)),
         None => "; how long they take is known for stages that ran here before".to_owned(),
     };
@@ -146,6 +159,7 @@ fn document(name: &str, report: &Report, lines: &[Line]) -> serde_json::Value {
             serde_json::json!({
                 "name": stage.name, "kind": stage.kind, "state": stage.status.word(),
                 "cached": stage.tasks.cached, "to_run": line.to_run, "reasons": line.reasons, "seconds": line.seconds,
+                "estimated": line.estimated,
                 "expected": line.expected.map(|expected| {
                     serde_json::json!({ "tasks": expected.count(), "at_most": expected.is_bound() })
                 }),

@@ -59,7 +59,7 @@ impl<'a> Progress<'a> {
         });
         let line = screen.as_ref().map(|screen| {
             let line = screen.add(ProgressBar::new(0));
-            line.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+            line.set_style(ProgressStyle::with_template("{wide_msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
             line
         });
         let (stages, whole) = (Mutex::default(), Mutex::default());
@@ -92,7 +92,7 @@ impl<'a> Progress<'a> {
             Some(line) => screen.insert_before(line, ProgressBar::new(0)),
             None => screen.add(ProgressBar::new(0)),
         };
-        let style = ProgressStyle::with_template("{prefix:16} {bar:24.cyan/dim} {pos:>5}/{len:5} {msg}");
+        let style = ProgressStyle::with_template("{prefix:16} {bar:10.cyan/dim} {pos:>5}/{len:5} {wide_msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(stage.to_owned());
         Some(bar)
@@ -234,10 +234,17 @@ impl Watch for Progress<'_> {
     }
 }
 
-/// What a warning is about: its words up to the first number.
+/// What a warning is about: its words up to the first number; where a number stands among the first two words, its first
+/// clause without the numbers.
 fn kind_of(words: &str) -> String {
     let end = words.find(|c: char| c.is_ascii_digit()).unwrap_or(words.len());
-    words[..end].trim_end_matches([' ', ':', '(', '-', '~']).trim_end_matches(" is").to_owned()
+    let kind = words[..end].trim_end_matches([' ', ':', '(', '-', '~']).trim_end_matches(" is");
+    if kind.contains(' ') || end == words.len() {
+        return kind.to_owned();
+    }
+    let clause = words.split([':', ';']).next().unwrap_or_default();
+    let parts = clause.split(' ').map(|word| if word.contains(|c: char| c.is_ascii_digit()) { "…" } else { word });
+    parts.collect::<Vec<_>>().join(" ")
 }
 
 /// A stage or one row of it, as `flow show` takes it.
@@ -245,13 +252,13 @@ pub(super) fn task_name(stage: &str, row: Option<usize>) -> String {
     row.map_or_else(|| stage.to_owned(), |row| format!("{stage}[{}]", row + 1))
 }
 
-/// Rate, elapsed time and expected rest.
+/// Expected rest, elapsed time and rate: what matters most stands first, because a narrow terminal cuts the end off.
 fn pace(ended: usize, left: usize, elapsed: f64, expected: Option<f64>) -> String {
     let measured = elapsed / ended as f64;
     // An earlier campaign gives a better estimate than a few tasks.
     let each = expected.filter(|_| ended < 5).unwrap_or(measured);
     let rate = if measured < 1.0 { format!("{:.0}/s", 1.0 / measured) } else { format!("{} each", duration(measured)) };
-    format!("{rate}, {} elapsed, {} left", duration(elapsed), duration(each * left as f64))
+    format!("{} left, {} elapsed, {rate}", duration(each * left as f64), duration(elapsed))
 }
 
 #[cfg(test)]
@@ -263,11 +270,13 @@ mod tests {
         assert_eq!(kind_of("not valid: rotation: 0.031 rad is above 0.018 rad"), "not valid: rotation");
         assert_eq!(kind_of("strain per step is 4.1e-8, above 3e-8"), "strain per step");
         assert_eq!(kind_of("no number"), "no number");
+        assert_eq!(kind_of("2 of 27 polygons hold no ball: drop the class"), "… of … polygons hold no ball");
+        assert_eq!(kind_of("only 1938 balls; the peak is stable from 2000 on"), "only … balls");
     }
 
     #[test]
     fn the_rest_is_expected_from_earlier_runs_until_this_one_has_told_enough() {
-        assert_eq!(pace(1, 10, 1.0, Some(4.0)), "1.0 s each, 1.0 s elapsed, 40 s left");
-        assert_eq!(pace(5, 10, 5.0, Some(4.0)), "1.0 s each, 5.0 s elapsed, 10 s left");
+        assert_eq!(pace(1, 10, 1.0, Some(4.0)), "40 s left, 1.0 s elapsed, 1.0 s each");
+        assert_eq!(pace(5, 10, 5.0, Some(4.0)), "10 s left, 5.0 s elapsed, 1.0 s each");
     }
 }

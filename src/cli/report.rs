@@ -27,7 +27,7 @@ impl Report {
     fn write(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
         let text = std::fs::read_to_string(&self.campaign.workflow).map_err(|e| system(&e))?;
-        let store = self.campaign.open()?;
+        let store = self.campaign.common.read()?;
         let named = self.campaign.common.store.display().to_string();
         let asked = Asked {
             text,

@@ -1,10 +1,10 @@
 //! `flow run`: computes what is missing.
 
-use super::Exit;
 use super::common::{Campaign, fetched, system, workers};
 use super::notes::notes;
 use super::progress::{Ahead, Progress, task_name};
 use super::site;
+use super::{Exit, complete};
 use crate::cluster::{Site, scheduler};
 use crate::exec::cores;
 use crate::plan::Workflow;
@@ -28,6 +28,7 @@ pub(super) struct Run {
     #[command(flatten)]
     campaign: Campaign,
     /// Only these stages, with all they need.
+    #[arg(add = complete::stages())]
     stages: Vec<String>,
     /// Tasks at once; the number of cores when not given.
     #[arg(long, short, value_name = "N", value_parser = workers)]

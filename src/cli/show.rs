@@ -1,8 +1,8 @@
 //! `flow show`: a result, or one row's run, as a readable table.
 
-use super::Exit;
 use super::common::{Campaign, provenance, system};
 use super::output::steers;
+use super::{Exit, complete};
 use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::export::{cells, csv_text, head};
@@ -21,7 +21,7 @@ pub(super) struct Show {
     campaign: Campaign,
     /// The stage, or one run of it: `orthogonal` or `orthogonal[12]` (rows are counted from 1); by default all stages
     /// and the names of their tables.
-    #[arg(value_name = "STAGE[ROW]")]
+    #[arg(value_name = "STAGE[ROW]", add = complete::stages())]
     what: Option<String>,
     /// One table of it; by default all.
     #[arg(long, value_name = "NAME", requires = "what")]
@@ -49,7 +49,7 @@ impl Show {
     /// Every stage with its tables.
     fn list(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
-        let store = self.campaign.open()?;
+        let store = self.campaign.common.read()?;
         let report = decide(&workflow, &store, &[], true).map_err(|e| system(&e))?;
         let tables_of = |status: &StageStatus| match status {
             StageStatus::Done(content) => {
@@ -84,7 +84,7 @@ impl Show {
     fn print(&self, what: &str) -> Result<Exit, Exit> {
         let (stage, row) = parts(what)?;
         let workflow = self.campaign.load(std::slice::from_ref(&stage))?;
-        let store = self.campaign.open()?;
+        let store = self.campaign.common.read()?;
         // Single rows are known only when every task is looked up.
         let report = decide(&workflow, &store, std::slice::from_ref(&stage), false).map_err(|e| system(&e))?;
         let Some(object) = object(&workflow, &report, &stage, row) else {

@@ -27,10 +27,12 @@ pub fn files(stage: &str, artifact: &Artifact) -> Vec<File> {
             "tex"
         } else if name == "markdown" {
             "md"
+        } else if name == "moving" {
+            "moving.svg"
         } else {
             name
         };
-        let known = ["svg", "pdf", "png", "csv", "tex", "md"].contains(&ending);
+        let known = ["svg", "pdf", "png", "csv", "tex", "md", "moving.svg"].contains(&ending);
         match node {
             Node::Bytes(bytes) if known => files.push((format!("{stage}.{ending}"), bytes.clone())),
             Node::Text(text) if known => files.push((format!("{stage}.{ending}"), text.clone().into_bytes())),

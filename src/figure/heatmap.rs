@@ -58,7 +58,9 @@ impl Figure for HeatMap {
         scene.description = self.describe([low, high]);
         let page = scene.page().inset(0.8, 0.8, 0.8, 0.8);
         let panel = Panel::with_margins(page, margins, x, y);
+        let first = scene.items.len();
         self.draw_cells(&mut scene, &panel, [low, high], style);
+        scene.group_from(first, None, panel.facts());
         panel.draw_axes(&mut scene, style);
         let bar = Rect::new(panel.area.right + 2.4, panel.area.top, BAR, panel.area.height());
         bands.draw_smooth_bar(&mut scene, bar, style);

@@ -3,7 +3,7 @@
 //! A figure is a struct of its data with `impl Figure`; one file each. [`Figure::data`] returns what it draws as columns, so
 //! every figure has its CSV. Sizes are millimetres on paper, text is 8 pt when printed.
 //!
-//! * page: [`scene`] (what is drawn), [`text`] and [`font`] (labels), [`svg`], [`png`], [`pdf`] (writers)
+//! * page: [`scene`] (what is drawn), [`text`] and [`font`] (labels), [`svg`], [`png`], [`pdf`], [`film`] (writers)
 //! * plot: [`axis`], [`panel`], [`legend`], [`palette`], [`marks`]
 //! * words and numbers: [`mod@column`], [`table`]
 //! * every other file is a figure
@@ -23,6 +23,7 @@ pub mod dag;
 pub mod effect_plot;
 pub mod effects;
 pub mod escape;
+pub mod film;
 pub mod font;
 mod footnote;
 mod geometry;
@@ -41,6 +42,7 @@ pub mod residuals;
 pub mod rose;
 pub mod scatter;
 pub mod scene;
+pub mod snapshots;
 pub mod solid;
 pub mod solutions;
 pub mod specimen;
@@ -63,6 +65,10 @@ pub trait Figure {
     fn scene(&self, style: &Style) -> Scene;
     /// The numbers it shows, one column each.
     fn data(&self) -> Vec<Column>;
+    /// Scenes of one size, one after another, of a figure that also moves.
+    fn frames(&self, _style: &Style) -> Vec<Scene> {
+        Vec::new()
+    }
 }
 
 /// Settings shared by all figures of a publication.

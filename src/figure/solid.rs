@@ -5,12 +5,15 @@
 //! eye meets first are drawn: a cube of 67,000 balls shows some thousand of them, and its file stays small.
 //! A cut plane removes all balls in front of it along one axis; balls that it intersects show a flat section.
 
+mod frame;
+pub mod growth;
+
 use super::Figure;
 use super::Style;
 use super::column::Column;
 use super::cracks::{By, fissure};
 use super::legend::{self, Entry, Swatch};
-use super::palette::{INK, PAPER, SOFT};
+use super::palette::{INK, PAPER};
 use super::scene::{Anchor, Fill, Item, Path, Point, Rect, Scene, Stroke};
 use super::specimen::{group_color, thousands};
 use super::text::Line;
@@ -69,12 +72,16 @@ pub struct Solid {
     pub cracks: Vec<Penny>,
     /// Names of the modes, or classes of damage.
     pub modes: Vec<String>,
+    /// Whether cracks are shown even where there is none yet.
+    pub only_cracks: bool,
     /// What these are.
     pub by: By,
     /// Fissures that were there before, drawn as rims with the cracks.
     pub fissures: Vec<Rim>,
     /// Where the specimen is cut open.
     pub cut: Option<Cut>,
+    /// The axis of a cylinder or thick disc, which has a round frame; none of a box.
+    pub round: Option<usize>,
     /// Whether the vertical of the picture is the y of the numbers, as of specimens that are loaded along y; the axis
     /// into the depth of the picture is then their −z. Otherwise the vertical is z.
     pub y_up: bool,
@@ -105,7 +112,7 @@ impl Figure for Solid {
             By::Mode => "Cracks in space",
             By::Damage => "Damage of the interfaces in space",
         };
-        scene.title = if self.cracks.is_empty() { "Specimen in space".into() } else { cracks.into() };
+        scene.title = if self.shows_balls() { "Specimen in space".into() } else { cracks.into() };
         scene.description = self.describe();
         legend::draw(&mut scene, &entries, Rect::new(0.8, 0.8, style.width - 1.6, 0.0), style);
         let left = (style.width - bounds.width() * scale) / 2.0;
@@ -115,7 +122,7 @@ impl Figure for Solid {
         };
         let page = Page { view: &view, place: &place, scale };
         self.draw_frame(&mut scene, &page, false);
-        if self.cracks.is_empty() {
+        if self.shows_balls() {
             self.draw_balls(&mut scene, &page)
         } else {
             self.draw_cracks(&mut scene, &page)
@@ -126,7 +133,7 @@ impl Figure for Solid {
     }
 
     fn data(&self) -> Vec<Column> {
-        if self.cracks.is_empty() {
+        if self.shows_balls() {
             let axis = |k: usize| self.centres.iter().map(|c| self.named(*c)[k]).collect();
             let name = |g: &usize| self.groups.get(*g).cloned().unwrap_or_default();
             return vec![
@@ -166,12 +173,16 @@ enum Part {
 }
 
 impl Solid {
+    fn shows_balls(&self) -> bool {
+        self.cracks.is_empty() && !self.only_cracks
+    }
+
     fn corners(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         (0..8).map(|k| [0, 1, 2].map(|b| if k >> b & 1 == 1 { self.high[b] } else { self.low[b] }))
     }
 
     fn entries(&self) -> Vec<Entry> {
-        if self.cracks.is_empty() {
+        if self.shows_balls() {
             let count = |i: usize| self.group.iter().filter(|g| **g == i).count();
             let entry = |(i, name): (usize, &String)| {
                 Entry::new(format!("{name} ({})", thousands(count(i))), Swatch::Box(group_color(i)))
@@ -199,7 +210,7 @@ impl Solid {
 
     fn describe(&self) -> String {
         let size: Vec<String> = (0..3).map(|k| format!("{} mm", round(self.high[k] - self.low[k]))).collect();
-        let what = if self.cracks.is_empty() {
+        let what = if self.shows_balls() {
             format!("{} balls", self.centres.len())
         } else {
             format!("{} {}", self.cracks.len(), self.by.words()[2])
@@ -317,10 +328,7 @@ impl Solid {
         let mut order: Vec<&Penny> = self.cracks.iter().collect();
         order.sort_by(|a, b| page.view.depth(a.at).total_cmp(&page.view.depth(b.at)));
         let (far, near) = super::axis::extent(self.corners().map(|c| page.view.depth(c)));
-        for one in &self.fissures {
-            let rim: Vec<Point> = circle(one.at, one.normal, one.radius, 48).map(page.place).collect();
-            scene.stroke(Path::polygon(&rim), Stroke { width: 0.3, ..fissure() });
-        }
+        self.draw_rims(scene, page);
         for crack in order {
             let away = 0.62 * (near - page.view.depth(crack.at)) / (near - far).max(f64::MIN_POSITIVE);
             // a disc seen edge on is a line
@@ -330,32 +338,19 @@ impl Solid {
         }
     }
 
-    /// The edges of the domain: those behind before the content, those in front after it.
-    fn draw_frame(&self, scene: &mut Scene, page: &Page, front: bool) {
-        let back = page.view.back();
-        let place = |signs: [f64; 3]| {
-            let at = |k: usize| if signs[k] > 0.0 { self.high[k] } else { self.low[k] };
-            (page.place)([at(0), at(1), at(2)])
-        };
+    /// The rims of the fissures where they lie in the domain.
+    fn draw_rims(&self, scene: &mut Scene, page: &Page) {
+        let within = |p: &[f64; 3]| (0..3).all(|k| (self.low[k]..=self.high[k]).contains(&p[k]));
         let mut path = Path::default();
-        for corner in (0..8).map(|k| [0, 1, 2].map(|b| if k >> b & 1 == 1 { 1.0 } else { -1.0 })) {
-            for axis in (0..3).filter(|&axis| corner[axis] < 0.0) {
-                let mut other = corner;
-                other[axis] = 1.0;
-                let hidden = (0..3).filter(|&k| k != axis).all(|k| corner[k] == back[k]);
-                let cut_away = self.cut.is_some_and(|c| {
-                    front && {
-                        let k = c.axis.min(2);
-                        k == axis || corner[k] != back[k]
-                    }
-                });
-                if hidden != front && !cut_away {
-                    path.add_polyline(&[place(corner), place(other)]);
-                }
+        for one in &self.fissures {
+            let mut rim: Vec<[f64; 3]> = circle(one.at, one.normal, one.radius, 180).collect();
+            rim.extend(rim.first().copied());
+            for part in rim.chunk_by(|a, b| within(a) && within(b)).filter(|part| part.len() > 1) {
+                path.add_polyline(&part.iter().map(|p| (page.place)(*p)).collect::<Vec<Point>>());
             }
         }
         if !path.0.is_empty() {
-            scene.stroke(path, if front { Stroke::new(INK, 0.2) } else { Stroke::new(SOFT, 0.15).dashed(&[1.2, 1.0]) });
+            scene.stroke(path, Stroke { width: 0.3, ..fissure() });
         }
     }
 

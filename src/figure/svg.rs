@@ -18,6 +18,26 @@ pub fn svg(scene: &Scene) -> String {
     for item in &scene.items {
         write_item(&mut body, &mut glyphs, item);
     }
+    document(scene, "", &body, glyphs)
+}
+
+/// The items as a picture with the page, title and words of `scene`, and a style sheet; an item may have a class of it.
+pub(super) fn moving(scene: &Scene, style: &str, items: &[(&Item, Option<String>)]) -> String {
+    let mut body = String::new();
+    let mut glyphs = BTreeSet::new();
+    for (item, class) in items {
+        if let Some(class) = class {
+            put(&mut body, format_args!("<g class=\"{class}\">\n"));
+        }
+        write_item(&mut body, &mut glyphs, item);
+        if class.is_some() {
+            body += "</g>\n";
+        }
+    }
+    document(scene, style, &body, glyphs)
+}
+
+fn document(scene: &Scene, style: &str, body: &str, glyphs: BTreeSet<(Face, u16)>) -> String {
     let (w, h) = (number(scene.width), number(scene.height));
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}mm\" height=\"{h}mm\" viewBox=\"0 0 {w} {h}\" role=\"img\">\n"
@@ -26,23 +46,20 @@ pub fn svg(scene: &Scene) -> String {
     if !scene.description.is_empty() {
         put(&mut out, format_args!("<desc>{}</desc>\n", xml(&scene.description)));
     }
+    if !style.is_empty() {
+        put(&mut out, format_args!("<style>\n{style}</style>\n"));
+    }
     if !glyphs.is_empty() {
         out += "<defs>\n";
         for (face, id) in glyphs {
-            put(
-                &mut out,
-                format_args!(
-                    "<path id=\"{}{id}\" fill-rule=\"nonzero\" d=\"{}\"/>\n",
-                    face.letter(),
-                    outline(face, id)
-                ),
-            );
+            let (letter, outline) = (face.letter(), outline(face, id));
+            put(&mut out, format_args!("<path id=\"{letter}{id}\" fill-rule=\"nonzero\" d=\"{outline}\"/>\n"));
         }
         out += "</defs>\n";
     }
     put(&mut out, format_args!("<path fill=\"#fff\" d=\"M0 0H{w}V{h}H0Z\"/>\n"));
     out += "<g fill-rule=\"evenodd\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n";
-    out += &body;
+    out += body;
     out += "</g>\n</svg>\n";
     out
 }

@@ -42,8 +42,25 @@ const Page = (() => {
     area.remove();
     return done;
   };
-  const copier = (name, text, output) => make("button", { type: "button", onclick: async () => {
-    const done = await copy(text());
+  // Text, and the same as a page where the receiver takes it.
+  const both = async (text, html) => {
+    const blob = (data, type) => new Blob([data], { type });
+    try {
+      await navigator.clipboard.write([new ClipboardItem({ "text/plain": blob(text, "text/plain"), "text/html": blob(html, "text/html") })]);
+      return true;
+    } catch { /* an older way below */ }
+    const put = (event) => {
+      event.clipboardData.setData("text/plain", text);
+      event.clipboardData.setData("text/html", html);
+      event.preventDefault();
+    };
+    document.addEventListener("copy", put);
+    const done = document.execCommand("copy");
+    document.removeEventListener("copy", put);
+    return done;
+  };
+  const copier = (name, text, output, html) => make("button", { type: "button", onclick: async () => {
+    const done = html ? await both(text(), html()) : await copy(text());
     output.textContent = done ? "copied" : "copying is not allowed here";
     setTimeout(() => { output.textContent = ""; }, 2500);
   } }, name);

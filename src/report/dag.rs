@@ -18,7 +18,7 @@ pub(super) fn picture(paper: &Paper, glyphs: &mut Glyphs) -> Markup {
     let position = |index: usize| shown.iter().position(|&i| i == index);
     let stages = shown.iter().map(|&i| {
         let part = &paper.parts[i];
-        let runs = part.runs().filter(|&runs| runs > 1).map(|runs| format!(" · {runs} runs"));
+        let runs = Some(part.outcome.runs).filter(|&runs| runs > 1).map(|runs| format!(" · {runs} runs"));
         Stage {
             name: part.name.clone(),
             note: format!("{}{}", part.kind, runs.unwrap_or_default()),

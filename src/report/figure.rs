@@ -1,7 +1,7 @@
 //! A figure of the page: the picture, the words for those who cannot see it, and its values.
 
-use super::paper::{Paper, Part, State, capital};
-use super::{svg, values};
+use super::paper::{Paper, Part, State, sentence};
+use super::{svg, symbol, values};
 use crate::artifact::presentation::Picture;
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeMap;
@@ -67,23 +67,36 @@ pub(super) fn figure(paper: &Paper, part: &Part, glyphs: &mut Glyphs) -> Markup 
     let Some(artifact) = part.artifact() else { return missing(paper, part) };
     let Ok(drawn) = Picture::from_artifact(artifact) else { return unshown(part) };
     let title = &drawn.title;
-    let description = capital(drawn.description.trim_start_matches([':', ' ']));
+    let description = sentence(drawn.description.trim_start_matches([':', ' ']));
     let label = if description.is_empty() { title.clone() } else { format!("{title}. {description}") };
     let show = part.settings["show"].as_str().unwrap_or_default();
     // Fields of colour with labels in them are shown on paper in both themes.
     let ground = if matches!(show, "contour" | "surface") { "paper" } else { "ink" };
     let Some((picture, width, vector)) = picture(&drawn, &label, glyphs) else { return unshown(part) };
     let numbers = Some(&drawn.data).filter(|_| vector).and_then(|data| values::of(show, data, &paper.context));
+    let set = |words: &str| symbol::typeset(&paper.context, words);
     html! {
         figure id={ "stage-" (part.name) } class=(if width > SINGLE { "double" } else { "single" }) {
             div class={ "plot " (ground) } { (picture) }
+            @if let Some(moving) = &drawn.moving { (in_motion(moving, title)) }
             @if let Some(numbers) = numbers {
                 script.values type="application/json" { (PreEscaped(values::in_script(&numbers))) }
             }
             figcaption {
-                b { (part.words()) "." } " " (title) "."
-                @if !description.is_empty() { " " span { (description) } }
+                b { (part.words()) "." } " " (set(title)) "."
+                @if !description.is_empty() { " " span { (set(&description)) } }
             }
+        }
+    }
+}
+
+/// The picture that moves, which is seen while its element is open: as an image, in which no script runs.
+fn in_motion(moving: &str, title: &str) -> Markup {
+    let data = format!("data:image/svg+xml;base64,{}", base64(moving.as_bytes()));
+    html! {
+        details.motion {
+            summary { "In motion" }
+            img src=(data) alt={ (title) ", in motion" } loading="lazy";
         }
     }
 }

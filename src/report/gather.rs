@@ -1,7 +1,9 @@
 //! Reading a campaign from the store.
 
-use super::paper::{Cost, Paper, Part, State};
-use crate::artifact::ContentHash;
+use super::paper::{Cost, Outcome, Paper, Part, State};
+use crate::artifact::run::Run;
+use crate::artifact::validity::Tally;
+use crate::artifact::{Artifact, ContentHash, Node};
 use crate::plan::{StageNode, Workflow};
 use crate::run::{Report, StageStatus, decide};
 use crate::stage::units::presented;
@@ -29,11 +31,10 @@ pub struct Asked {
 pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper, Box<dyn Error>> {
     // Without memos every task is seen, whichever program ran it, so that the page depends on the results alone.
     let report = decide(workflow, store, &[], false)?;
-    let costs = costs(workflow, &report, store)?;
     let mut parts = Vec::with_capacity(workflow.stages.len());
-    for (node, cost) in workflow.stages.iter().zip(costs) {
+    for (node, (cost, outcome)) in workflow.stages.iter().zip(tasks(workflow, &report, store)?) {
         let status = report.stages.iter().find(|stage| stage.name == node.name).map(|stage| &stage.status);
-        parts.push(part(node, state(status, store, &workflow.context)?, cost));
+        parts.push(part(node, state(status, store, &workflow.context)?, cost, outcome));
     }
     Ok(Paper {
         title: if workflow.title.is_empty() { workflow.name.clone() } else { workflow.title.clone() },
@@ -49,7 +50,7 @@ pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper,
     })
 }
 
-fn part(node: &StageNode, state: State, cost: Cost) -> Part {
+fn part(node: &StageNode, state: State, cost: Cost, outcome: Outcome) -> Part {
     let entry = kind(node.kind);
     Part {
         name: node.name.clone(),
@@ -60,6 +61,7 @@ fn part(node: &StageNode, state: State, cost: Cost) -> Part {
         settings: node.stage.settings(),
         state,
         cost,
+        outcome,
     }
 }
 
@@ -77,16 +79,39 @@ fn state(status: Option<&StageStatus>, store: &Store, context: &Context) -> Resu
     }
 }
 
-/// What the tasks of each stage cost.
-fn costs(workflow: &Workflow, report: &Report, store: &Store) -> Result<Vec<Cost>, StoreError> {
-    let mut costs = vec![Cost::default(); workflow.stages.len()];
+/// What the tasks of each stage cost and came to.
+fn tasks(workflow: &Workflow, report: &Report, store: &Store) -> Result<Vec<(Cost, Outcome)>, StoreError> {
+    let mut all = vec![(Cost::default(), Outcome::default(), Vec::new()); workflow.stages.len()];
     let mut seen = HashSet::new();
     for task in report.tasks() {
         let Some(object) = task.object.filter(|object| seen.insert(object.key)) else { continue };
         let Some(record) = store.find(&object.key)? else { continue };
-        costs[task.stage].add(record.started, record.seconds, &record.origin);
+        let (cost, outcome, warnings) = &mut all[task.stage];
+        cost.add(record.started, record.seconds, &record.origin);
+        let presented = workflow.stages[task.stage].kind;
+        if kind(presented).is_some_and(|kind| kind.class == Class::Presentation) {
+            continue;
+        }
+        match store.get(&object.content) {
+            Ok(artifact) => {
+                outcome.add(&artifact);
+                warnings.extend(own_warnings(&artifact));
+            }
+            Err(error) if error.is_missing() => {}
+            Err(error) => return Err(error),
+        }
     }
-    Ok(costs)
+    let counted = |(cost, mut outcome, warnings): (Cost, Outcome, Vec<String>)| {
+        outcome.warnings = Tally::of(warnings.len(), warnings.iter().map(String::as_str)).reasons();
+        (cost, outcome)
+    };
+    Ok(all.into_iter().map(counted).collect())
+}
+
+/// The warnings in a result. Why a run is not valid is told by its verdict.
+fn own_warnings(artifact: &Artifact) -> Vec<String> {
+    let all = artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default();
+    all.iter().filter(|text| !text.starts_with(Run::NOT_VALID)).cloned().collect()
 }
 
 /// This user's recorded runs of this workflow with these overrides.

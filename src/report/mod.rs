@@ -6,6 +6,7 @@
 //!
 //! * [`gather`](mod@gather): workflow and store → [`Paper`]
 //! * `page`: head, masthead, contents; `summary`, `provenance`: the first sections; `stage`: a section per stage
+//! * `compared`: computed beside published values, judged by their scatter; `tally`: what is counted at the top
 //! * `table`, `figure`: what sections are made of; `svg` lets only harmless pictures in, `values` gives their numbers
 //! * `calibrator`: parameters to responses and back, for someone who has no `flow`; also a page of its own
 //! * `warning`, `symbol`, `time`: warnings; symbols as HTML; times in words
@@ -16,6 +17,7 @@
 //! picture and address that is not its own.
 
 mod calibrator;
+mod compared;
 mod dag;
 mod figure;
 mod gather;
@@ -27,13 +29,14 @@ mod summary;
 mod svg;
 mod symbol;
 mod table;
+mod tally;
 mod time;
 mod values;
 mod warning;
 
 pub use gather::{Asked, gather};
 pub use page::{calibrator_page, page};
-pub use paper::{Cost, Paper, Part, State, quoted};
+pub use paper::{Cost, Outcome, Paper, Part, State, quoted};
 pub use time::{duration, moment};
 
 #[cfg(test)]

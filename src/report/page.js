@@ -38,6 +38,32 @@
   const quoted = (text) => /[",\n\r]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text;
   const tsv = (table) => cells(table).map((row) => row.map((text) => text.replace(/[\t\n\r]+/g, " ")).join("\t")).join("\n") + "\n";
   const csv = (table) => cells(table).map((row) => row.map(quoted).join(",")).join("\n") + "\n";
+  // For word processors: the heads as they are typeset, rules as in print, numbers as they are shown.
+  const word = (table) => {
+    const set = (cell) => {
+      const copy = cell.cloneNode(true);
+      for (const button of all("button", copy)) button.replaceWith(...button.childNodes);
+      for (const bar of all(".bar", copy)) bar.replaceWith(make("span", { style: "text-decoration:overline" }, ...bar.childNodes));
+      return copy.innerHTML;
+    };
+    const rule = { first: "border-top:1.5pt solid;border-bottom:.75pt solid;", last: "border-bottom:1.5pt solid;" };
+    const row = (tr, style) => "<tr>" + [...tr.cells].map((cell) => {
+      const tag = cell.tagName.toLowerCase(), align = cell.classList.contains("t") ? "left" : "right";
+      return `<${tag} style="${style}text-align:${align};padding:1pt 6pt;font-weight:normal">${set(cell)}</${tag}>`;
+    }).join("") + "</tr>";
+    const rows = [...table.tBodies[0].rows];
+    const body = rows.map((tr, i) => row(tr, i + 1 === rows.length ? rule.last : ""));
+    return `<table style="border-collapse:collapse;font-family:'Times New Roman',serif;font-size:10pt"><caption style="text-align:left">${table.caption.querySelector("span").innerHTML}</caption><thead>${row(table.tHead.rows[0], rule.first)}</thead><tbody>${body.join("")}</tbody></table>`;
+  };
+  // LaTeX for booktabs.
+  const latex = (table) => {
+    const signs = { "\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "−": "$-$", "≈": "$\\approx$", "≠": "$\\neq$", "↑": "$\\uparrow$", "↓": "$\\downarrow$" };
+    const plain = (text) => text.replace(/[\\&%$#_{}~^−≈≠↑↓]/g, (c) => signs[c] ?? "\\" + c);
+    const [head, ...rows] = cells(table);
+    const line = (row) => row.map(plain).join(" & ") + " \\\\";
+    const form = [...table.tHead.rows[0].cells].map((th) => th.classList.contains("t") ? "l" : "r").join("");
+    return ["\\begin{tabular}{" + form + "}", "\\toprule", line(head), "\\midrule", ...rows.map(line), "\\bottomrule", "\\end{tabular}"].join("\n") + "\n";
+  };
   const sort = (table, place, head) => {
     const body = table.tBodies[0];
     const up = head.getAttribute("aria-sort") !== "ascending";
@@ -66,7 +92,8 @@
     const output = make("output");
     const name = table.caption.textContent.trim();
     const tools = make("div", { class: "tools", role: "group", "aria-label": "Table " + name },
-      copier("Copy", () => tsv(table), output), copier("Copy as CSV", () => csv(table), output), output);
+      copier("Copy", () => tsv(table), output), copier("Copy as CSV", () => csv(table), output),
+      copier("Copy for Word", () => tsv(table), output, () => word(table)), copier("Copy as LaTeX", () => latex(table), output), output);
     sheet.after(tools);
     sheet.setAttribute("role", "region");
     sheet.setAttribute("aria-label", name);
@@ -80,6 +107,15 @@
     for (const [name, value] of Object.entries(more)) element.setAttribute(name, value);
     return element;
   };
+  // Words with the symbols of the workflow as they are set. The markup of a symbol is the page's own.
+  const symbols = new Map(JSON.parse(document.getElementById("symbols").textContent).map(([plain, markup]) => {
+    const template = make("template");
+    template.innerHTML = markup;
+    return [plain, template.content];
+  }));
+  const sign = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+  const seek = symbols.size && new RegExp("(?<![\\p{L}\\p{N}_\\p{M}])(" + [...symbols.keys()].map(sign).join("|") + ")(?![\\p{L}\\p{N}_\\p{M}])", "u");
+  const typeset = (words) => !seek ? [words] : words.split(seek).map((part, i) => i % 2 ? symbols.get(part).cloneNode(true) : part);
   const told = (number, digits = 4) => {
     if (number === null || !Number.isFinite(number)) return "–";
     const size = Math.abs(number);
@@ -154,7 +190,7 @@
         const d = Math.hypot(found[p].x.at(x) - at[0], found[p].y.at(data.panels[p].y[i]) - at[1]);
         if (!best || d < best.d) best = { d, i };
       });
-      return best && best.d < 8 ? say(p, best.i) : null;
+      return best && (data.cells || best.d < 8) ? say(p, best.i) : null;
     };
     const step = (state, dx, dy) => {
       if (!state) return say(0, 0);
@@ -234,7 +270,7 @@
     let state = null;
     const show = (found) => {
       layer.replaceChildren();
-      readout.textContent = found ? found.words : "";
+      readout.replaceChildren(...(found ? typeset(found.words) : []));
       if (!found) return;
       state = found.state;
       if (found.line !== undefined) layer.append(draw("line", { x1: found.line, x2: found.line, y1: 0, y2: height }));
@@ -279,9 +315,9 @@
       picture.style.width = "100%";
     };
     const button = (name, label, what) => make("button", { type: "button", "aria-label": label, onclick: what }, name);
-    const title = figure.querySelector("figcaption").textContent.trim();
+    const title = [...figure.querySelector("figcaption").cloneNode(true).childNodes];
     dialog.replaceChildren(
-      make("div", { class: "head" }, make("p", {}, title), button("−", "Smaller", () => set(size / 1.5)),
+      make("div", { class: "head" }, make("p", {}, ...title), button("−", "Smaller", () => set(size / 1.5)),
         button("+", "Larger", () => set(size * 1.5)), button("Fit", "Fit the window", () => set(1)), button("Close", "Close", () => dialog.close())),
       box, readout);
     dialog.showModal();

@@ -3,7 +3,8 @@
 use super::figure::{Glyphs, base64};
 use super::paper::{Cost, Paper, State};
 use super::time::moment;
-use super::{calibrator, provenance, stage, summary};
+use super::values::in_script;
+use super::{calibrator, provenance, stage, summary, symbol};
 use crate::stage::StageError;
 use figure::font::Face;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -35,6 +36,7 @@ pub fn page(paper: &Paper) -> String {
         }
         footer { p { (made(paper)) } }
         dialog #zoom aria-label="Figure, enlarged" {}
+        script #symbols type="application/json" { (PreEscaped(symbols(paper))) }
     };
     document(paper, &paper.title, &body, &[BASE, SCRIPT, calibrator::SCRIPT])
 }
@@ -56,6 +58,12 @@ pub fn calibrator_page(paper: &Paper, stage: &str) -> Result<Option<String>, Sta
         footer { p { (made(paper)) } }
     };
     Ok(Some(document(paper, &title, &body, &[BASE, calibrator::SCRIPT])))
+}
+
+/// The symbols of the workflow in plain words with their markup, for words that the script shows.
+fn symbols(paper: &Paper) -> String {
+    let known = symbol::known(&paper.context).into_iter();
+    in_script(&known.map(|(plain, set)| serde_json::json!([plain, set.0])).collect())
 }
 
 /// A page that is complete in itself.

@@ -1,6 +1,6 @@
 //! What the page shows, as plain data.
 
-use crate::artifact::results::Results;
+use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash};
 use crate::stage::{Class, Context};
 use crate::store::{Campaign, Origin};
@@ -52,6 +52,57 @@ pub struct Part {
     pub state: State,
     /// What it cost.
     pub cost: Cost,
+    /// What its runs came to.
+    pub outcome: Outcome,
+}
+
+/// What the runs and other tasks of a stage came to; a task that several stages rest on counts for the first of them.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Runs of a simulator, a program or a formula that ended, whatever asked for them: a design, a calibration, a verification.
+    pub runs: usize,
+    /// Those without a result.
+    pub failed: usize,
+    /// Those with a result that is not valid.
+    pub invalid: usize,
+    /// Valid ones that are to be read with caution.
+    pub cautions: usize,
+    /// Specimens that could not be made: the runs that rest on them never began.
+    pub unmade: usize,
+    /// Warnings of its tasks, each with the number of tasks that have it.
+    pub warnings: Vec<(String, usize)>,
+}
+
+impl Outcome {
+    /// Counts the result of a task.
+    pub(super) fn add(&mut self, artifact: &Artifact) {
+        if artifact.is(ArtifactKind::SPECIMEN) && artifact.root.get("failure").is_some() {
+            self.unmade += 1;
+        }
+        let Some(outcome) = Some(artifact).filter(|a| a.is(Run::KIND)).and_then(|a| Run::outcome(a).ok()) else {
+            return;
+        };
+        self.runs += 1;
+        if !outcome.failure.is_empty() {
+            self.failed += 1;
+        } else if outcome.validity.is_some_and(|why| !why.is_empty()) {
+            self.invalid += 1;
+        } else if !outcome.cautions.is_empty() {
+            self.cautions += 1;
+        }
+    }
+
+    /// Several of them together, without their warnings.
+    pub(super) fn sum<'a>(all: impl Iterator<Item = &'a Self>) -> Self {
+        all.fold(Self::default(), |mut sum, own| {
+            sum.runs += own.runs;
+            sum.failed += own.failed;
+            sum.invalid += own.invalid;
+            sum.cautions += own.cautions;
+            sum.unmade += own.unmade;
+            sum
+        })
+    }
 }
 
 /// Status of a stage.
@@ -136,17 +187,6 @@ impl Part {
     pub(super) fn is_shown_elsewhere(&self) -> bool {
         self.class == Class::Presentation
     }
-
-    /// How many tests or trials of a simulator its result holds; nothing when it is no simulator's.
-    pub(super) fn runs(&self) -> Option<usize> {
-        let artifact = self.artifact()?;
-        if artifact.is(ArtifactKind::RUN) {
-            return Some(1);
-        }
-        let many = artifact.is(ArtifactKind::RESULTS) || artifact.is(ArtifactKind::VERIFICATION);
-        let table = Results::table(artifact).ok().filter(|_| many && self.class.computes());
-        table.map(crate::artifact::Table::rows)
-    }
 }
 
 impl Paper {
@@ -197,6 +237,13 @@ const ABBREVIATIONS: [&str; 7] = ["anova", "bbd", "ccd", "lhs", "pb", "rsm", "uc
 pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// The text with a capital at its beginning, unless that is a symbol or a name: those keep their letters.
+pub(super) fn sentence(text: &str) -> String {
+    let word = text.split([' ', ',', '.', ':', '-']).next().unwrap_or_default();
+    let is_word = word == "a" || word.len() > 1 && word.chars().all(|letter| letter.is_ascii_lowercase());
+    if is_word { capital(text) } else { text.to_owned() }
 }
 
 /// A word as a shell takes it.

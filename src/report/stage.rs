@@ -1,6 +1,7 @@
 //! The section of a stage: what it is, what it cost, its tables and figures, and those that show it.
 
 use super::calibrator::calibrator;
+use super::compared;
 use super::figure::{Glyphs, figure, missing};
 use super::paper::{Paper, Part, State, capital};
 use super::table::Sheet;
@@ -65,7 +66,7 @@ fn facts(paper: &Paper, part: &Part) -> Markup {
                     }
                 } }
             }
-            @if let Some(runs) = part.runs() { div { dt { "Runs" } dd { (runs) } } }
+            @if part.outcome.runs > 0 { div { dt { "Runs" } dd { (part.outcome.runs) } } }
             @if part.cost.tasks > 0 {
                 div { dt { "Cost" } dd { (duration(part.cost.seconds)) " in " (part.cost.tasks) @if part.cost.tasks == 1 { " task" } @else { " tasks" } } }
             } @else {
@@ -164,8 +165,10 @@ fn printed(paper: &Paper, part: &Part) -> Markup {
     let caption = part.settings["caption"].as_str().unwrap_or_default();
     let caption = html! { b { (part.words()) } " " (caption) };
     let command = paper.command("show", &format!("{} --table table", part.name));
+    let sheet = Sheet::new(table, &paper.context, caption, command).printed(&part.settings);
+    let sheet = sheet.judged(compared::judgements(paper, part));
     html! {
-        div.printed id={ "stage-" (part.name) } { (Sheet::new(table, &paper.context, caption, command).printed(&part.settings).markup()) }
+        div.printed id={ "stage-" (part.name) } { (sheet.markup()) }
     }
 }
 

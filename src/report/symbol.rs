@@ -97,6 +97,51 @@ pub(super) fn term(context: &Context, term: &str) -> Option<Markup> {
     })
 }
 
+/// Symbols that are words of their own, and stay as they are among words.
+const WORDS: [&str; 3] = ["a", "A", "I"];
+
+/// The symbols of a workflow as they stand in plain words, such as `σ_u`, with their markup; longer ones first. A symbol
+/// that is the same in both is left out.
+pub(super) fn known(context: &Context) -> Vec<(String, Markup)> {
+    let factors = context.factors.values().map(|factor| &factor.symbol);
+    let symbols = factors.chain(context.responses.values().map(|response| &response.symbol));
+    let pair = |symbol: &String| {
+        let markup = format!("${symbol}$");
+        (Line::new(&markup, 1.0).plain, label(&markup))
+    };
+    let mut found: Vec<(String, Markup)> = symbols.filter(|symbol| !symbol.is_empty()).map(pair).collect();
+    found.retain(|(plain, set)| !plain.is_empty() && *plain != set.0 && !WORDS.contains(&plain.as_str()));
+    found.sort_by(|a, b| b.0.len().cmp(&a.0.len()).then_with(|| a.0.cmp(&b.0)));
+    found.dedup_by(|a, b| a.0 == b.0);
+    found
+}
+
+/// Plain words with the symbols of the workflow in them as they are set.
+pub(super) fn typeset(context: &Context, words: &str) -> Markup {
+    let known = known(context);
+    let mut parts: Vec<Markup> = Vec::new();
+    let (mut rest, mut from, mut before) = (words, 0, None);
+    while let Some(letter) = rest[from..].chars().next() {
+        let here = &rest[from..];
+        let found = known.iter().filter(|_| !before.is_some_and(is_of_a_word)).find(|(plain, _)| {
+            here.strip_prefix(plain.as_str()).is_some_and(|after| !after.chars().next().is_some_and(is_of_a_word))
+        });
+        if let Some((plain, set)) = found {
+            parts.push(html! { (&rest[..from]) (set) });
+            before = plain.chars().last();
+            (rest, from) = (&here[plain.len()..], 0);
+        } else {
+            (before, from) = (Some(letter), from + letter.len_utf8());
+        }
+    }
+    html! { @for part in &parts { (part) } (rest) }
+}
+
+/// Whether a letter beside a symbol makes it a part of a longer word.
+fn is_of_a_word(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_' || ('\u{300}'..='\u{36f}').contains(&letter)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,6 +154,24 @@ mod tests {
         assert_eq!(set(r"$R^2$"), "<i>R</i><sup>2</sup>");
         assert_eq!(set("a < b & c"), "a &lt; b &amp; c");
         assert_eq!(unit("kg/m^3").into_string(), "kg/m<sup>3</sup>");
+    }
+
+    #[test]
+    fn symbols_in_words_are_set_and_words_that_hold_their_letters_are_not() {
+        let factor = |symbol: &str| Factor { symbol: symbol.to_owned(), ..Factor::default() };
+        let factors = [("Ec", r"E_c"), ("sigma", r"\bar\sigma_c"), ("j", r"(\bar\sigma_c)_j"), ("E", "E")];
+        let factors = factors.map(|(name, symbol)| (name.to_owned(), factor(symbol)));
+        let context = Context { factors: factors.into(), ..Context::default() };
+        let set = |text: &str| typeset(&context, text).into_string();
+        let bar = "<i><span class=\"bar\">σ</span></i><sub>c</sub>";
+        assert_eq!(
+            set("σ\u{304}_c over E_c, <Even E_cx>"),
+            format!("{bar} over <i>E</i><sub>c</sub>, &lt;Even E_cx&gt;")
+        );
+        assert_eq!(set("E = 3 GPa"), "<i>E</i> = 3 GPa");
+        // The longer symbol, and not the one that it holds.
+        let plain = Line::new(r"$(\bar\sigma_c)_j$", 1.0).plain;
+        assert!(set(&plain).ends_with("<sub>j</sub>") && set("").is_empty(), "{plain}: {}", set(&plain));
     }
 
     #[test]

@@ -25,6 +25,24 @@ pub(super) struct Sheet<'a> {
     digits: usize,
     decimals: BTreeMap<String, usize>,
     symbols: BTreeMap<String, String>,
+    judgements: Option<Judgements>,
+}
+
+/// What stands in place of the deviations of a column, where per cent say nothing.
+pub(super) struct Judgements {
+    /// The column.
+    pub(super) column: String,
+    /// Its head, and the unit of its numbers in words.
+    pub(super) head: &'static str,
+    pub(super) unit: &'static str,
+    /// Its rows; none of rows that are not judged.
+    pub(super) cells: Vec<Option<Cell>>,
+}
+
+/// A judged deviation.
+pub(super) struct Cell {
+    pub(super) number: Option<String>,
+    pub(super) judged: Judged,
 }
 
 /// Most rows of a table that a stage prints, and of any other.
@@ -48,7 +66,19 @@ impl<'a> Sheet<'a> {
             digits: 5,
             decimals: BTreeMap::new(),
             symbols: BTreeMap::new(),
+            judgements: None,
         }
+    }
+
+    /// The same with judged deviations.
+    pub(super) fn judged(mut self, judgements: Option<Judgements>) -> Self {
+        self.judgements = judgements;
+        self
+    }
+
+    /// The judged deviations of a column.
+    fn judgements_of(&self, column: &str) -> Option<&Judgements> {
+        self.judgements.as_ref().filter(|own| own.column == column)
     }
 
     /// The same as a `table` stage with these settings prints it.
@@ -111,6 +141,9 @@ impl<'a> Sheet<'a> {
 
     fn head(&self, shown: &Shown) -> Markup {
         let key = shown.column.key.as_str();
+        if let Some(Judgements { head, unit, .. }) = self.judgements_of(key) {
+            return html! { th scope="col" data-k=(head) { (head) @if !unit.is_empty() { " " small { (unit) } } } };
+        }
         let (quantity, word) = key.split_once(' ').unwrap_or((key, ""));
         let symbol = match self.symbols.get(quantity) {
             Some(symbol) => Some(symbol::label(&format!("${symbol}$"))),
@@ -127,6 +160,9 @@ impl<'a> Sheet<'a> {
     }
 
     fn cell(&self, shown: &Shown, row: usize, is_name: bool) -> Markup {
+        if let Some(judgements) = self.judgements_of(&shown.column.key) {
+            return judged_cell(judgements.cells.get(row).and_then(Option::as_ref));
+        }
         let inside = shown.cell(row);
         match &shown.column.values {
             column::Values::Words(words) => {
@@ -223,6 +259,17 @@ impl Mark {
             Self::Signed => judged("off", "↓", "low"),
             Self::Size if far => judged("far", "≠", "far off"),
             Self::Size => judged("off", "≠", "off"),
+        }
+    }
+}
+
+fn judged_cell(cell: Option<&Cell>) -> Markup {
+    let Some(Cell { number: own, judged }) = cell else { return html! { td {} } };
+    let value = own.as_deref().unwrap_or(judged.word);
+    html! {
+        td class=(judged.class) data-v=(value) {
+            @if let Some(own) = own { @if !own.starts_with('-') { "+" } (number(own)) " " }
+            em { (judged.sign) " " (judged.word) }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The whole page, from campaigns made up here.
 
 use super::page::STYLE;
-use super::{Cost, Paper, Part, State, page};
+use super::{Cost, Outcome, Paper, Part, State, page};
 use crate::artifact::presentation::Picture;
 use crate::artifact::{Artifact, ArtifactKind, Group, Node, Table};
 use crate::stage::Context;
@@ -28,6 +28,7 @@ fn part(name: &str, kind: &str, inputs: &[usize], artifact: Option<Artifact>) ->
         settings,
         state,
         cost: Cost::default(),
+        outcome: Outcome::default(),
     }
 }
 
@@ -46,6 +47,7 @@ fn hostile() -> Paper {
         svg,
         pdf: Vec::new(),
         png: Vec::new(),
+        moving: Some(HOSTILE.to_owned()),
         data: Table::default(),
     };
     Paper {

@@ -6,7 +6,9 @@
 //! * `curve`: per curve axial strain in %, stress, lateral strain in %, and counts of cracks by mode, on one index;
 //! * `field`: a response on a regular grid of two factors, thinned; between its nodes the script takes the parabola
 //!   through three of them along each side, which is exact for second-order surfaces;
-//! * `points`: per panel points with their words.
+//! * `points`: per panel points with their words; the nearest one is told, of `cells` however far it is.
+
+mod own;
 
 use crate::artifact::{Table, Values};
 use crate::stage::Context;
@@ -22,7 +24,7 @@ const MOST: usize = 4000;
 
 /// The values of a figure that shows `show`; nothing when the script cannot show them.
 pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
-    if show != "contour" && show != "surface" && data.rows() > MOST {
+    if !matches!(show, "contour" | "surface" | "curves") && data.rows() > MOST {
         return None;
     }
     match show {
@@ -33,6 +35,10 @@ pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
         "residuals" => residuals(data),
         "convergence" => convergence(data),
         "half-normal" | "normal" => effect_plot(data),
+        "xy" | "curves" => own::series(data, context),
+        "histogram" => own::bins(data, context),
+        "box" => own::boxes(data),
+        "heat-map" => own::cells(data, context),
         _ => None,
     }
 }

@@ -4,11 +4,10 @@
 use super::paper::Part;
 use crate::artifact::calibration::{Answer, Prediction, Solution, Summary, Verification};
 use crate::artifact::groups::{GroupResiduals, Groups};
-use crate::artifact::run::Run;
 use crate::artifact::statistics::{Anova, Fits, Residuals, Screening};
 use crate::artifact::surfaces::{Coefficients, Surfaces};
 use crate::artifact::validity::sentences;
-use crate::artifact::{Artifact, Node, Wanted};
+use crate::artifact::{Artifact, Wanted};
 
 /// Adjusted and predicted R² of a sound model differ by less than this (a rule of thumb of designed experiments).
 const GAP: f64 = 0.2;
@@ -22,16 +21,24 @@ const LEVEL: f64 = 0.05;
 pub(super) fn warnings(part: &Part) -> Vec<String> {
     let Some(artifact) = part.artifact() else { return Vec::new() };
     let mut found = sentences(artifact);
-    found.extend(own(artifact));
+    found.extend(part.outcome.warnings.iter().map(counted));
     // A result of another version gives no warnings here; the section that shows its tables reports it.
     found.extend(judged(artifact).unwrap_or_default());
     found
 }
 
-/// Warnings in the artifact, and why a run is not valid.
-fn own(artifact: &Artifact) -> Vec<String> {
-    let all = artifact.root.get("warnings").and_then(Node::texts).unwrap_or_default();
-    all.iter().filter(|text| !text.starts_with(Run::NOT_VALID)).cloned().collect()
+/// A warning of tasks, with the number of those that have it.
+fn counted((text, count): &(String, usize)) -> String {
+    if *count == 1 { text.clone() } else { format!("{text} ({count} tasks)") }
+}
+
+/// Targets of a stage that are not met: out of reach of a calibration, or outside the interval of a verification.
+pub(super) fn unmet(part: &Part) -> [usize; 2] {
+    let Some(artifact) = part.artifact() else { return [0, 0] };
+    let prediction = Solution::from_artifact(artifact).map(|found| found.prediction).ok();
+    let out = |found: Prediction| (0..found.reach.len()).filter(|&row| found.out_of_reach(row)).count();
+    let inside = Verification::from_artifact(artifact).map(|found| found.summary.target_inside).unwrap_or_default();
+    [prediction.map_or(0, out), inside.iter().filter(|answer| **answer == Answer::No).count()]
 }
 
 /// Warnings from the numbers of a result.

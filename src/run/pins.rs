@@ -180,7 +180,7 @@ data 3
 design 3
 effort 1
 envelope 1
-figure 14
+figure 15
 fit 4
 formula 2
 gather 2
@@ -191,7 +191,7 @@ screening 5
 shapes 1
 simulate 4
 specimen 2
-table 6
+table 7
 verify 3
 ";
 

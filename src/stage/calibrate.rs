@@ -125,10 +125,12 @@ impl Stage for Calibrate {
         if self.simulators().is_empty() {
             return one;
         }
-        let behind = ["simulator", "simulators", "coarse"].into_iter().flat_map(|port| (ahead.behind)(port));
-        let each: usize = behind.map(|simulator| simulator.per_run).sum();
+        let behind = || ["simulator", "simulators", "coarse"].into_iter().flat_map(|port| (ahead.behind)(port));
+        let each: usize = behind().map(|simulator| simulator.per_run).sum();
         let tasks = self.evaluations.map(|count| count.saturating_mul(sets).saturating_mul(each).saturating_add(1));
-        Forecast { tasks: tasks.map(TaskForecast::AtMost), ..one }
+        let runs = self.evaluations.map(|count| count.saturating_mul(sets));
+        let seconds = runs.and_then(|runs| Forecast::seconds_of(behind(), runs));
+        Forecast { tasks: tasks.map(TaskForecast::AtMost), seconds, ..one }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {

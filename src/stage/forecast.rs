@@ -2,9 +2,10 @@
 //! anything runs.
 
 use super::Context;
+use super::cost::Bulk;
 
 /// Tasks and rows of a stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
     /// Rows of its result, for stages that run them; `None` where only the run shows it.
     pub rows: Option<usize>,
@@ -14,6 +15,12 @@ pub struct Forecast {
     pub per_run: usize,
     /// Its tasks; `None` where only the run shows their number.
     pub tasks: Option<TaskForecast>,
+    /// Seconds that all its tasks take on one core, roughly; none where nothing tells, as of a program.
+    pub seconds: Option<f64>,
+    /// Seconds of one more run of it on a specimen of its own.
+    pub run_seconds: Option<f64>,
+    /// The specimen that it makes.
+    pub bulk: Option<Bulk>,
 }
 
 /// Number of tasks of a stage.
@@ -59,10 +66,23 @@ impl TaskForecast {
 
 impl Forecast {
     /// One task.
-    pub const ONE: Self = Self { rows: None, replicates: 1, per_run: 1, tasks: Some(TaskForecast::Exactly(1)) };
+    pub const ONE: Self = Self {
+        rows: None,
+        replicates: 1,
+        per_run: 1,
+        tasks: Some(TaskForecast::Exactly(1)),
+        seconds: Some(0.0),
+        run_seconds: Some(0.0),
+        bulk: None,
+    };
 
     /// An unknown number of tasks.
-    pub const UNKNOWN: Self = Self { tasks: None, ..Self::ONE };
+    pub const UNKNOWN: Self = Self { tasks: None, seconds: None, run_seconds: None, ..Self::ONE };
+
+    /// Seconds of so many runs of each of these simulators.
+    pub fn seconds_of(simulators: impl Iterator<Item = Self>, runs: usize) -> Option<f64> {
+        simulators.map(|simulator| simulator.run_seconds).sum::<Option<f64>>().map(|each| each * runs as f64)
+    }
 
     /// A run for each row of the design behind the port `design`, on specimens that `specimens` counts from the design's
     /// forecast, and the task that gathers them; one run without a design.

@@ -44,6 +44,7 @@ pub mod census;
 mod columns;
 pub mod command;
 mod context;
+pub mod cost;
 pub mod data;
 mod derived;
 pub mod design;

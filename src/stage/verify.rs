@@ -104,7 +104,8 @@ impl Stage for Verify {
             let runs = replicates.saturating_mul(sets.saturating_mul(simulators().count()).saturating_add(specimens));
             if specimens > 1 { TaskForecast::AtMost(runs) } else { TaskForecast::Exactly(runs) }.and(1)
         };
-        Forecast { rows: sets, tasks: sets.map(tasks), ..Forecast::ONE }
+        let seconds = sets.and_then(|sets| Forecast::seconds_of(simulators(), replicates.saturating_mul(sets)));
+        Forecast { rows: sets, tasks: sets.map(tasks), seconds, ..Forecast::ONE }
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {

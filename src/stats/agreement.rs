@@ -5,6 +5,9 @@
 //! by Spearman's rank correlation (equal values share their mean rank). What the ratio depends on is asked of a
 //! regression: 100 ln ρ against the factors, [`super::regression`].
 
+use math::distribution::t_for_coverage;
+use math::elementary::{exp, ln};
+
 /// Agreement of pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Agreement {
@@ -40,6 +43,20 @@ pub fn agreement(x: &[f64], y: &[f64]) -> Option<Agreement> {
         deviation: (ratios.len() > 1).then(|| (squares / (n - 1.0)).sqrt()),
         spearman: spearman(&x, &y),
     })
+}
+
+/// Geometric mean of positive ratios with its 95 % interval, `[low, mean, high]`: the mean of ln ρ and Student's t of its
+/// standard error. The ends are not finite for fewer than two ratios; `None` where a ratio is not positive, or there is none.
+pub fn geometric_mean(ratios: &[f64]) -> Option<[f64; 3]> {
+    let n = ratios.len() as f64;
+    if ratios.is_empty() || ratios.iter().any(|ratio| !(*ratio > 0.0 && ratio.is_finite())) {
+        return None;
+    }
+    let logarithms: Vec<f64> = ratios.iter().map(|ratio| ln(*ratio)).collect();
+    let mean = logarithms.iter().sum::<f64>() / n;
+    let squares: f64 = logarithms.iter().map(|l| (l - mean) * (l - mean)).sum();
+    let half = if n > 1.0 { t_for_coverage(0.95, n - 1.0) * (squares / (n - 1.0) / n).sqrt() } else { f64::NAN };
+    Some([exp(mean - half), exp(mean), exp(mean + half)])
 }
 
 /// Rows that describe the same point: `ours[f][i]` and `theirs[f][j]` are levels of factor f, and equal within
@@ -110,5 +127,18 @@ mod tests {
         let found = agreement(&[0.0, 2.0, f64::NAN, 4.0], &[1.0, 3.0, 1.0, f64::NAN]).unwrap();
         assert_eq!((found.n, found.mean, found.deviation, found.spearman), (1, 1.5, None, None));
         assert_eq!(agreement(&[0.0], &[1.0]), None);
+    }
+
+    #[test]
+    fn the_geometric_mean_has_the_interval_of_students_t() {
+        // ln ρ = 0, 0.1, 0.2: mean 0.1, s = 0.1, and t of 2 degrees of freedom at 95 % is 4.302653 (tables of Student's t).
+        let ratios = [0.0, 0.1, 0.2].map(exp);
+        let half = 4.302_652_73 * 0.1 / 3.0_f64.sqrt();
+        for (found, wanted) in geometric_mean(&ratios).unwrap().into_iter().zip([0.1 - half, 0.1, 0.1 + half]) {
+            assert!((ln(found) - wanted).abs() < 1e-8, "{found}");
+        }
+        let [low, mean, high] = geometric_mean(&[2.0]).unwrap();
+        assert!(low.is_nan() && high.is_nan() && (mean - 2.0).abs() < 1e-15);
+        assert_eq!([geometric_mean(&[]), geometric_mean(&[1.0, -1.0])], [None, None]);
     }
 }

@@ -159,6 +159,10 @@ impl Store {
     }
 
     fn read_attached(&self) -> Result<Option<Attached>, StoreError> {
+        // Into a store that is only read nothing can be fetched.
+        if self.disk.read_only {
+            return Ok(None);
+        }
         let Some(folder) = self.disk.find_folder(remote::FOLDER)? else { return Ok(None) };
         // A note that cannot be read, or that somebody else has written, attaches nothing.
         let Ok(bytes) = folder.read(&file_name(&self.mark), MOST) else { return Ok(None) };

@@ -12,6 +12,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[derive(Clone, Debug)]
 pub(super) struct Disk {
     pub(super) root: PathBuf,
+    /// Whether nothing is to be written: short cuts are then not stored, and damaged files stay where they are.
+    pub(super) read_only: bool,
 }
 
 /// A new file under a temporary name; it is removed when dropped.
@@ -77,7 +79,7 @@ impl Disk {
     pub(super) fn find_folder(&self, inside: &str) -> Result<Option<Folder>, StoreError> {
         match self.folder(inside) {
             Ok(folder) => Ok(Some(folder)),
-            Err(error) if error.kind() == ErrorKind::NotFound && self.root.is_dir() => Ok(None),
+            Err(error) if error.kind() == ErrorKind::NotFound && (self.read_only || self.root.is_dir()) => Ok(None),
             Err(error) => Err(self.fail("open the folder", &self.root.join(inside), error)),
         }
     }
@@ -88,6 +90,7 @@ impl Disk {
             Err(error) if error.kind() == ErrorKind::NotFound => {}
             other => return other.map_err(|error| self.fail("open the folder", &self.root.join(inside), error)),
         }
+        self.writable(inside)?;
         let root = Folder::at(&self.root).map_err(|error| self.fail("make the folder", &self.root, error))?;
         let inner = |folder: Folder, part| {
             folder.make(part)?;
@@ -170,6 +173,7 @@ impl Disk {
     /// A new file under a temporary name; the user's umask decides who may read it.
     pub(super) fn draft(&self, folder: &str, mode: u32) -> Result<Draft, StoreError> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
+        self.writable(folder)?;
         let at = self.make_folder(folder)?;
         for _ in 0..100 {
             let number = NUMBER.fetch_add(1, Ordering::Relaxed);
@@ -181,6 +185,12 @@ impl Disk {
             }
         }
         Err(self.fail("create a file in", &self.root.join(folder), ErrorKind::AlreadyExists.into()))
+    }
+
+    /// An error where nothing is to be written.
+    fn writable(&self, folder: &str) -> Result<(), StoreError> {
+        let refused = || self.fail("write into", &self.root.join(folder), ErrorKind::PermissionDenied.into());
+        if self.read_only { Err(refused()) } else { Ok(()) }
     }
 
     fn written(&self, folder: &str, name: &str, bytes: &[u8], durable: bool) -> Result<Draft, StoreError> {

@@ -247,7 +247,8 @@ pub(super) fn share(disk: &Disk) -> Option<Held> {
     let root = disk.folder("").ok()?;
     // Open for writing: some file systems give the lock that gc needs for such files only.
     let open = || root.open(IN_USE, true).or_else(|_| root.create(IN_USE, 0o666)).or_else(|_| root.open(IN_USE, true));
-    let file = open().or_else(|_| root.open(IN_USE, false)).ok()?;
+    let written = if disk.read_only { Err(ErrorKind::PermissionDenied.into()) } else { open() };
+    let file = written.or_else(|_| root.open(IN_USE, false)).ok()?;
     file.lock_shared().ok()?;
     Some(Held(file))
 }

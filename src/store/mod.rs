@@ -112,7 +112,21 @@ impl Store {
     /// # Errors
     /// As [`Store::open`].
     pub fn open_as(root: &Path, mark: Mark) -> Result<Self, StoreError> {
-        let disk = Disk { root: root.to_owned() };
+        Self::at(Disk { root: root.to_owned(), read_only: false }, mark)
+    }
+
+    /// Opens the store in the folder `root` to read it. The user's own is opened as ever: it takes what reading finds, such as
+    /// a damaged object or an answer that was asked for. In one of another owner, or one that cannot be written, nothing is
+    /// written or moved. A folder that is not there is an empty store.
+    ///
+    /// # Errors
+    /// The path is no folder, or one that flow has not made; it cannot be read.
+    pub fn open_to_read(root: &Path) -> Result<Self, StoreError> {
+        let read_only = !root::is_own(root);
+        Self::at(Disk { root: root.to_owned(), read_only }, Mark::of_user())
+    }
+
+    fn at(disk: Disk, mark: Mark) -> Result<Self, StoreError> {
         root::open(&disk)?;
         let in_use = lock::share(&disk);
         Ok(Self {
@@ -136,7 +150,7 @@ impl Store {
     /// # Errors
     /// It holds what flow does not make, or nothing that flow made; it cannot be written.
     pub fn adopt(root: &Path) -> Result<(), StoreError> {
-        root::adopt(&Disk { root: root.to_owned() })
+        root::adopt(&Disk { root: root.to_owned(), read_only: false })
     }
 
     /// Says where and by what results are computed, asked when the first is; without it [`Origin::here`] is taken.

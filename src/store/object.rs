@@ -120,6 +120,9 @@ pub(super) fn is_there(disk: &Disk, id: &ObjectId) -> bool {
 pub(super) fn set_aside(disk: &Disk, folder: &str, name: &str, why: &str) -> Result<Damage, StoreError> {
     let path = disk.path(folder, name);
     let damage = |aside| Damage { path: path.clone(), why: why.to_owned(), aside };
+    if disk.read_only {
+        return Ok(damage(Aside::Stays));
+    }
     let (Ok(from), Ok(aside)) = (disk.folder(folder), disk.make_folder(ASIDE)) else { return Ok(damage(Aside::Stays)) };
     for number in 1..10_000 {
         let target = format!("{name}.{number}");

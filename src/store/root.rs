@@ -10,6 +10,7 @@ use super::folder::{Folder, Strange};
 use super::journal;
 use super::presence::is_listing;
 use std::io::ErrorKind;
+use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -46,6 +47,9 @@ pub(super) fn open(disk: &Disk) -> Result<(), StoreError> {
 fn opened(disk: &Disk) -> Result<bool, StoreError> {
     let root = &disk.root;
     if !root.is_dir() {
+        if disk.read_only && !root.exists() {
+            return Ok(true);
+        }
         create(disk)?;
     }
     let folder = Folder::at(root).map_err(|error| disk.fail("open the folder", root, error))?;
@@ -60,6 +64,7 @@ fn opened(disk: &Disk) -> Result<bool, StoreError> {
         Err(error) => return Err(disk.fail("read", &root.join(MARKER), error)),
     }
     match other_names(disk, &folder)?.as_slice() {
+        [] if disk.read_only => Ok(true),
         [] => mark(disk).map(|()| true),
         // Another process has made it in the meantime.
         names if names.iter().any(|name| name == MARKER) => Ok(false),
@@ -106,6 +111,18 @@ fn other_names(disk: &Disk, folder: &Folder) -> Result<Vec<String>, StoreError> 
 /// Whether a network file system left this in place of a file that was removed while it was open.
 fn is_unlinked(name: &str) -> bool {
     [".nfs", ".fuse_hidden"].iter().any(|prefix| name.starts_with(prefix))
+}
+
+/// Whether a store is the user's own: its folder and its marker belong to the user, who may write into the folder.
+pub(super) fn is_own(root: &Path) -> bool {
+    let user = rustix::process::geteuid().as_raw();
+    let owned = |path: &Path| std::fs::metadata(path).map(|data| data.uid() == user);
+    // A folder without a marker becomes a store when it is opened.
+    let marked = match owned(&root.join(MARKER)) {
+        Err(error) if error.kind() == ErrorKind::NotFound => true,
+        other => other.unwrap_or(false),
+    };
+    owned(root).unwrap_or(false) && marked && rustix::fs::access(root, rustix::fs::Access::WRITE_OK).is_ok()
 }
 
 /// Whether flow makes something of this name in the root of a store.

@@ -18,6 +18,7 @@ mod hostile;
 mod joints;
 mod kill;
 mod nodes;
+mod reading;
 mod readme;
 mod report;
 mod reruns;

@@ -7,7 +7,7 @@
 #[path = "../tests/figures/samples/mod.rs"]
 mod samples;
 
-use figure::{pdf::pdf, png::png, svg::svg, table::csv};
+use figure::{film::film, pdf::pdf, png::png, svg::svg, table::csv};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -49,6 +49,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         std::fs::write(folder.join(format!("{name}.png")), raster)?;
         std::fs::write(folder.join(format!("{name}.pdf")), page)?;
         std::fs::write(folder.join(format!("{name}.csv")), csv(&figure.data()))?;
+        if let Some(moving) = film(&figure.frames(&style), 0.12) {
+            std::fs::write(folder.join(format!("{name}.moving.svg")), moving)?;
+        }
     }
     Ok(())
 }

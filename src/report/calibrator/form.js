@@ -17,7 +17,7 @@ const Calibrator = (() => {
       return all;
     };
     const labels = { parameter: (i) => label(heads.parameter(i), parameters[i].unit), response: (k) => label(heads.response(k), responses[k].unit) };
-    const symbol = (head) => head.querySelector(".symbol").cloneNode(true);
+    const symbol = (head) => head.querySelector(".symbol")?.cloneNode(true);
 
     // Targets.
     const readAim = (row, response) => {
@@ -122,8 +122,9 @@ const Calibrator = (() => {
     };
     const extent = (i, known) => {
       const parameter = parameters[i], low = Box.unit(parameter, known.low), high = Box.unit(parameter, known.high), at = Box.unit(parameter, found().point[i]);
-      const by = known.by.map((k) => responses[k].name).join(" and ");
-      const text = known.word === "held" ? "held" : known.word + (by ? " by " + by : known.word === "free" || known.word === "unknown" ? "" : " by all targets together");
+      const by = known.by.flatMap((k, n) => [n ? " and " : " by ", symbol(heads.response(k)) ?? responses[k].name]);
+      const tied = known.word !== "held" && known.word !== "free" && known.word !== "unknown";
+      const text = [known.word, ...(tied && !by.length ? [" by all targets together"] : by)];
       const svg = "http://www.w3.org/2000/svg", bar = document.createElementNS(svg, "svg");
       bar.setAttribute("viewBox", "0 0 200 14");
       bar.setAttribute("preserveAspectRatio", "none");
@@ -133,7 +134,7 @@ const Calibrator = (() => {
       rect(200 * low, Math.max(200 * (high - low), 1), known.word === "free" ? "loose" : "tied", 2, 10);
       rect(200 * at - 1, 2, "here", 0, 14);
       const ends = known.word === "held" ? shown(found().point[i]) : shown(known.low) + " … " + shown(known.high);
-      return make("div", { class: "extent", role: "listitem" }, make("span", { class: "head" }, symbol(heads.parameter(i))), bar, make("span", { class: "range" }, withUnit(ends, parameter.unit)), make("span", { class: "word" }, text));
+      return make("div", { class: "extent", role: "listitem" }, make("span", { class: "head" }, symbol(heads.parameter(i))), bar, make("span", { class: "range" }, withUnit(ends, parameter.unit)), make("span", { class: "word" }, ...text));
     };
     const found = () => state.found;
     const showFound = () => {

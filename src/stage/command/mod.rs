@@ -207,7 +207,8 @@ impl Stage for Command {
     }
 
     fn forecast(&self, ahead: &Ahead) -> Forecast {
-        Forecast::of_design(ahead, |_, _| TaskForecast::Exactly(0))
+        let rows = Forecast::of_design(ahead, |_, _| TaskForecast::Exactly(0));
+        Forecast { seconds: None, run_seconds: None, ..rows }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

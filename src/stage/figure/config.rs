@@ -1,5 +1,6 @@
 //! Settings of a `figure` stage, and those that each figure accepts.
 
+use super::cut::Across;
 use super::plot::{Bars, Direction, Fit};
 use crate::artifact::{Accepts, ArtifactKind as Of};
 use crate::stage::invalid::Invalid;
@@ -63,6 +64,11 @@ pub struct Figure {
     pub joined: bool,
     /// CSV or workbook, beside the workflow, whose columns `x` and `y` are drawn over the others (`xy`, `curves`).
     pub overlay: Option<String>,
+    /// Axis across which a `specimen` in space is cut open: `x`, `y` (along the load), `z` (to the eye), or `none`; by default
+    /// one with clumps is cut across z.
+    pub cut: Option<Across>,
+    /// Distance of the cut from the middle of the specimen: `"5 mm"`; 0 by default.
+    pub cut_at: Option<Length>,
     /// Number of bins of a `histogram`; by default from the scatter.
     pub bins: Option<usize>,
     /// What to do with runs that are not valid: by default a figure of a table of runs leaves them out, and a figure of a
@@ -172,6 +178,8 @@ pub enum Show {
     CrackRose,
     /// Force chains.
     ForceChains,
+    /// The specimen at the stored states of a run, and as a moving picture.
+    Snapshots,
     /// Particles by group, with the aggregate.
     Specimen,
     /// Mean response per level of each factor.
@@ -266,7 +274,7 @@ impl Show {
         const POINTS: &[Of] = &[Of::DESIGN, Of::RESULTS];
         match self {
             Show::StressStrain => needs(&[Of::RUN], &[], [0, 0], [0, 0]),
-            Show::Cracks | Show::Damage | Show::ForceChains | Show::CrackRose => {
+            Show::Cracks | Show::Damage | Show::ForceChains | Show::CrackRose | Show::Snapshots => {
                 needs(&[Of::RUN], &[Of::SPECIMEN], [0, 0], [0, 0])
             }
             Show::Specimen => needs(&[Of::SPECIMEN], &[], [0, 0], [0, 0]),

@@ -8,6 +8,7 @@
 //! | `stress-strain` | runs | `curve`, `cracks` |
 //! | `cracks`, `crack-rose`, `force-chains` | one run (`compare`: its specimen) | `cracks`, `curve`, `fissures`; `forces`, `snapshots` |
 //! | `damage` | one run with flat joints (`compare`: its specimen) | `cracks`, `interfaces`, `curve`, `fissures` |
+//! | `snapshots` | one run and (`compare`) its specimen | `states`, `state_centres`, `cracks`, `curve`; in space `cracks` |
 //! | `specimen` | a specimen | its arrays; one in space is shaded, and cut open where it holds clumps |
 //! | `stones`, `zingg` | shapes | their arrays; `shapes` |
 //! | `main-effects`, `range` | a range analysis (`compare`: another) | `range`, `levels` |
@@ -29,6 +30,7 @@
 
 mod config;
 mod curves;
+mod cut;
 mod damage;
 mod design;
 mod flow;
@@ -41,6 +43,7 @@ mod run;
 mod solution;
 mod source;
 mod space;
+mod states;
 mod validity;
 
 use super::beside::Beside;
@@ -58,6 +61,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 
 pub use config::{Figure, Names, Show, Width};
+pub use cut::Across;
 pub use plot::{Bars, Direction, Fit};
 use plot::{Labels, Plot};
 
@@ -106,6 +110,9 @@ struct Params {
     series: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     band: Option<f64>,
+    /// Where a specimen in space is cut open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cut: Option<cut::Cut>,
     /// The columns of a plot of the user's own columns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     plot: Option<Plot>,
@@ -170,6 +177,12 @@ impl Stage for Figure {
         if self.invalid == Some(Invalid::LeaveOut) && !self.show.needs().runs {
             found.push(self.without_effect("invalid"));
         }
+        if self.show == Show::Specimen {
+            found.extend(cut::Cut::check(self.cut, self.cut_at, &of, context));
+        } else {
+            let keys = [("cut", self.cut.is_some()), ("cut_at", self.cut_at.is_some())];
+            found.extend(keys.into_iter().filter(|(_, given)| *given).map(|(key, _)| self.without_effect(key)));
+        }
         if self.band.is_some() && self.show != Show::Agreement && self.show != Show::ObservedPredicted {
             found.push(self.without_effect("band"));
         }
@@ -187,6 +200,7 @@ impl Stage for Figure {
         let labels = plot.as_ref().map(|plot| plot.labels(self.show, known.context, &self.names)).unwrap_or_default();
         let runs = if self.show == Show::Curves { curves::runs(self, known)? } else { curves::Runs::default() };
         let params = Params {
+            cut: cut::Cut::of(self.cut, self.cut_at),
             plot,
             labels,
             groups: runs.groups,
@@ -240,6 +254,10 @@ impl Figure {
             found.push(self.without_effect("compare"));
         }
         let (from, compare) = (self.of.list().len(), self.compare.list().len());
+        if self.show == Show::Snapshots && compare != 1 {
+            let message = format!("`compare` names {compare} stages; snapshots are drawn on one specimen");
+            found.push(Complaint::new("compare", message).hint("name the specimen of the run"));
+        }
         if self.show == Show::Agreement && from != compare {
             let message = format!("`of` names {from} stages and `compare` {compare}; they are compared in pairs");
             found.push(Complaint::new("compare", message));
@@ -333,9 +351,10 @@ impl Kind for Figure {
     /// where a screening has an error to test against; discs in a round outline. 10: the numbers of curves stand below
     /// one another. 11: runs that are not valid are left out or marked, which is stated below the picture. 12: titles of
     /// axes stay on the page; lines of a contour are labelled in the words of its bar. 13: names
-    /// in what is stated below the picture keep their letters. 15: the scatter of a single run in a verification is
-    /// unknown, not zero.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 15, run: draw }];
+    /// in what is stated below the picture keep their letters. 14: pictures in space name their axes as specimens do: the
+    /// load acts along y. 15: cylinders and thick discs in space have a round frame; cells of a matrix say where they are.
+    /// 16: the scatter of a single run in a verification is unknown, not zero.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 16, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
@@ -347,7 +366,8 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
         Show::Damage => damage::damage(&sources)?,
         Show::CrackRose => Box::new(run::rose(&sources)?),
         Show::ForceChains => Box::new(run::chains(&sources)?),
-        Show::Specimen => run::specimen(&sources)?,
+        Show::Snapshots => states::snapshots(&sources)?,
+        Show::Specimen => run::specimen(&params, &sources)?,
         Show::MainEffects => Box::new(design::main_effects(&params, &sources)?),
         Show::Range => Box::new(design::range(&params, &sources)?),
         Show::Points => Box::new(design::points(&params, &sources)?),
@@ -379,6 +399,9 @@ fn draw(job: &Job) -> Result<Artifact, Failure> {
 /// Resolution of the PNG in dots per inch.
 const DPI: f64 = 300.0;
 
+/// Seconds for each scene of a moving picture.
+const PACE: f64 = 0.12;
+
 /// A stored picture: the three files, a description for those who cannot see it, and its numbers.
 fn picture_artifact(
     picture: &dyn Picture,
@@ -396,11 +419,13 @@ fn picture_artifact(
         let words = format!("{first}{more}; make the figure wider, or give shorter `names` or symbols");
         say(Progress::warning(&words));
     }
+    let frames = picture.frames(style);
     let png = figure::png::png(&scene, DPI).map_err(|e| StageError::new(e.to_string()))?;
     let stored = Stored {
         svg: figure::svg::svg(&scene),
         pdf: figure::pdf::pdf(&scene),
         png,
+        moving: figure::film::film(&frames, PACE),
         data: stored(picture.data()),
         title: scene.title,
         description: scene.description,

@@ -36,12 +36,12 @@ pub(super) fn stress_strain(params: &Params, sources: &Sources) -> Result<Stress
     Ok(StressStrain { curves })
 }
 
-fn curve_of(run: &Run) -> Result<&Stored, StageError> {
+pub(super) fn curve_of(run: &Run) -> Result<&Stored, StageError> {
     run.curve.as_ref().ok_or_else(|| StageError::new("the run has no stress–strain curve"))
 }
 
 /// Converts numbers from their declared unit to the unit of the figure.
-fn shown(values: &[f64], from: &str, to: &str) -> Vec<f64> {
+pub(super) fn shown(values: &[f64], from: &str, to: &str) -> Vec<f64> {
     Conversion::between(from, to).unwrap_or_else(|e| panic!("BUG: {from} in {to}: {e}")).of_all(values.to_vec())
 }
 
@@ -64,13 +64,13 @@ fn counts(cracks: &StoredCracks, axial: &[f64]) -> Vec<(String, Vec<f64>)> {
 }
 
 /// Lower left and upper right corner of a specimen in mm; its centre is the origin.
-fn domain(specimen: &StoredSpecimen) -> ([f64; 2], [f64; 2]) {
+pub(super) fn domain(specimen: &StoredSpecimen) -> ([f64; 2], [f64; 2]) {
     let [w, h] = [specimen.width, specimen.height].map(|v| v * MM / 2.0);
     ([-w, -h], [w, h])
 }
 
 /// Shape of a specimen.
-fn outline(specimen: &StoredSpecimen) -> Outline {
+pub(super) fn outline(specimen: &StoredSpecimen) -> Outline {
     if specimen.outline == "disc" { Outline::Disc } else { Outline::Rectangle }
 }
 
@@ -81,10 +81,10 @@ fn outlines(specimen: &StoredSpecimen) -> Vec<Vec<[f64; 2]>> {
     corners.chunk_by(|a, b| a.0 == b.0).map(polygon).collect()
 }
 
-pub(super) fn specimen(sources: &Sources) -> Result<Box<dyn Picture>, StageError> {
+pub(super) fn specimen(params: &Params, sources: &Sources) -> Result<Box<dyn Picture>, StageError> {
     let stored = stored(sources.first()?.0)?;
     if stored.centres.ncols() == 3 {
-        return Ok(Box::new(space::solid(&stored)));
+        return Ok(Box::new(space::solid(&stored, params.cut)));
     }
     let (group, groups) = groups(&stored);
     let (low, high) = domain(&stored);
@@ -125,9 +125,9 @@ pub(super) fn ground(sources: &Sources, points: &[[f64; 2]]) -> Result<Ground, S
 }
 
 /// Names of the modes, and the cracks with the strain at which they opened.
-type CrackList = (Vec<String>, Vec<(f64, Crack)>);
+pub(super) type CrackList = (Vec<String>, Vec<(f64, Crack)>);
 
-fn crack_list(run: &Run) -> Result<CrackList, StageError> {
+pub(super) fn crack_list(run: &Run) -> Result<CrackList, StageError> {
     let cracks = run.cracks.as_ref().ok_or_else(|| StageError::new("the run has no table of cracks"))?;
     let (found, mode) = modes(cracks);
     if cracks.position.ncols() != 2 {

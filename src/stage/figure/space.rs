@@ -19,11 +19,18 @@ fn upright([x, y, z]: [f64; 3]) -> [f64; 3] {
 /// A specimen in space, without its balls, in mm.
 fn frame(stored: &StoredSpecimen) -> Solid {
     let half = [stored.width, stored.depth, stored.height].map(|edge| 0.5 * edge * MM);
-    Solid { low: half.map(|edge| -edge), high: half, y_up: true, ..Solid::default() }
+    // On the page the second axis is the depth, the third the height.
+    let round = match stored.outline.as_str() {
+        "thick-disc" => Some(1),
+        "cylinder" => Some(2),
+        _ => None,
+    };
+    Solid { low: half.map(|edge| -edge), high: half, y_up: true, round, ..Solid::default() }
 }
 
-/// A specimen in space, cut open through its middle if it holds rigid clumps, which the mortar would hide.
-pub(super) fn solid(stored: &StoredSpecimen) -> Solid {
+/// A specimen in space with the cut that is asked for; without one it is cut open through its middle if it holds rigid clumps,
+/// which the mortar would hide.
+pub(super) fn solid(stored: &StoredSpecimen, cut: Option<super::cut::Cut>) -> Solid {
     let (group, groups) = groups(stored);
     let clumps = stored.clump_of.iter().any(|&clump| clump >= 0);
     Solid {
@@ -31,7 +38,7 @@ pub(super) fn solid(stored: &StoredSpecimen) -> Solid {
         radii: stored.radii.iter().map(|r| r * MM).collect(),
         group,
         groups,
-        cut: clumps.then_some(Cut { axis: 1, at: 0.0 }),
+        cut: cut.map_or(clumps.then_some(Cut { axis: 1, at: 0.0 }), super::cut::Cut::on_page),
         ..frame(stored)
     }
 }
@@ -60,7 +67,7 @@ pub(super) fn cracks(run: &Run, sources: &Sources) -> Result<Solid, StageError> 
     Ok(Solid { cracks, modes, fissures: rims(run, &solid), ..solid })
 }
 
-/// The fissures of a run in space; those that cut through reach across the whole frame.
+/// The fissures of a run in space that reach its specimen; those that cut through reach across the whole frame.
 fn rims(run: &Run, frame: &Solid) -> Vec<Rim> {
     let Some(fissures) = &run.fissures else { return Vec::new() };
     let across = [0, 1, 2].map(|k| frame.high[k] - frame.low[k]);
@@ -71,7 +78,7 @@ fn rims(run: &Run, frame: &Solid) -> Vec<Rim> {
         normal: vector(&fissures.normal, row).map(|part| part / MM),
         radius: if fissures.size[row].is_finite() { 0.5 * fissures.size[row] * MM } else { reach },
     };
-    (0..fissures.size.len()).map(rim).collect()
+    (0..fissures.size.len()).filter(|&row| fissures.inside[row] > 0.0).map(rim).collect()
 }
 
 /// Stones with their clumps, the longest side to the right.

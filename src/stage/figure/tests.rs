@@ -125,6 +125,7 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
         ("envelope", "", vec![strength_envelope()], vec![]),
         ("crack-rose", "", vec![run()], vec![]),
         ("force-chains", "compare = 'b'", vec![run()], vec![specimen()]),
+        ("snapshots", "compare = 'b'", vec![run()], vec![row_of_discs()]),
         ("specimen", "", vec![specimen()], vec![]),
         ("main-effects", "response = 'UCS'\ncompare = 'b'", vec![range_analysis()], vec![range_analysis()]),
         ("range", "response = 'UCS'", vec![range_analysis()], vec![]),
@@ -152,6 +153,7 @@ fn every_figure_is_drawn_from_what_its_stages_give() {
         };
         assert!(starts("pdf", b"%PDF-") && starts("png", b"\x89PNG"), "{show}");
         assert!(picture.table("data").unwrap().rows() > 0, "{show}");
+        assert_eq!(picture.root.get("moving").is_some(), show == "snapshots", "{show}");
     }
 }
 

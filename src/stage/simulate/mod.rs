@@ -29,6 +29,7 @@ pub use fissures::{FissureConfig, JointConfig, NetworkConfig};
 pub use speed::PlatenSpeed;
 
 use super::beside::Beside;
+use super::cost::Bulk;
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::specimen::Loaded;
@@ -93,7 +94,17 @@ impl Stage for Simulate {
             PackingChoice::Shared if self.varies_specimen(ahead.context) => TaskForecast::AtMost(rows),
             PackingChoice::Shared => TaskForecast::Exactly(design.replicates - 1),
         };
-        Forecast { per_run: 2, ..Forecast::of_design(ahead, specimens) }
+        let found = Forecast { per_run: 2, ..Forecast::of_design(ahead, &specimens) };
+        let PlatenSpeed { speed, pace } = self.platen_speed;
+        let bulk = (ahead.behind)("specimen").first().and_then(|specimen| specimen.bulk);
+        let one = |bulk: Bulk| (bulk.test(speed, pace, self.masses), bulk.packing());
+        let all = |(test, packing): (f64, f64)| {
+            let rows = if self.design.is_some() { found.rows? } else { 1 };
+            let packed = found.tasks?.count().saturating_sub(rows + 1);
+            Some(rows as f64 * test + packed as f64 * packing)
+        };
+        let run_seconds = bulk.map(one).map(|(test, packing)| test + packing);
+        Forecast { seconds: bulk.map(one).and_then(all), run_seconds, ..found }
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

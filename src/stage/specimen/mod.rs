@@ -28,6 +28,8 @@ pub use config::{ClassesConfig, PackingConfig, SieveConfig, SizeName, Specimen};
 pub use stones::{FullerConfig, StoneClassConfig, StonesConfig};
 pub use stored::{Loaded, load, stored};
 
+use super::cost::Bulk;
+use super::forecast::{Ahead, Forecast};
 use super::{
     Class, Complaint, Context, Demands, Failure, Job, Kind, Known, Port, Progress, Sketch, Stage, StageError, Step,
     Task, Work, shapes,
@@ -84,6 +86,13 @@ impl Stage for Specimen {
             StageError::new(faults.iter().map(|fault| fault.message.as_str()).collect::<Vec<_>>().join("; "))
         };
         Ok(Step::Finish(self.task(known, 1).map_err(faults)?))
+    }
+
+    fn forecast(&self, _ahead: &Ahead) -> Forecast {
+        let bulk = self.recipe().ok().and_then(|recipe| Bulk::of(&recipe.region, &recipe.packing));
+        // Stones are settled before they are packed, and nothing tells for how long.
+        let bulk = bulk.filter(|_| self.stones.is_none());
+        Forecast { seconds: bulk.map(|bulk| bulk.packing()), bulk, ..Forecast::ONE }
     }
 
     fn demands(&self) -> Option<&dyn Demands> {

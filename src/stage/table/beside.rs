@@ -5,7 +5,8 @@ use super::column_of;
 use crate::artifact;
 use figure::column::{Column, Digits, Values};
 
-/// Adds, after each column of numbers that both tables have, the value of the other and the deviation of ours in per cent.
+/// Adds, after each column of numbers that both tables have, the value of the other and the deviation of ours in per cent; at
+/// the end the notes of the other table.
 pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String]) -> Result<Vec<Column>, StageError> {
     let keys = by.iter().map(|name| {
         let ours = columns.iter().find(|c| c.key == *name);
@@ -49,8 +50,17 @@ pub(super) fn beside(columns: Vec<Column>, other: &artifact::Table, by: &[String
         out.push(Column::reals(&format!("{key} published"), theirs).with_unit(&unit).with_digits(digits));
         out.push(Column::reals(&format!("{key} deviation"), deviation).with_unit("%").with_digits(Digits::Fixed(1)));
     }
+    if let Some(notes) = other.column(NOTE).filter(|_| out.iter().all(|column| column.key != NOTE))
+        && let artifact::Values::Texts(notes) = &notes.values
+    {
+        let own = partner.iter().map(|p| p.map_or_else(String::new, |j| notes[j].clone())).collect();
+        out.push(Column::words(NOTE, own));
+    }
     Ok(out)
 }
+
+/// The column in which the other table says what is odd about a value, such as a misprint.
+const NOTE: &str = "note";
 
 /// Whether two cells are equal; numbers within a thousandth, because printed ones are rounded.
 fn equal(ours: &Values, i: usize, theirs: &artifact::Values, j: usize) -> bool {

@@ -22,7 +22,7 @@ impl RemoteFolder {
         if !path.is_dir() {
             return Err(not("there is no such folder; `flow store push` makes one"));
         }
-        let folder = Self(Disk { root: path.to_owned() });
+        let folder = Self(Disk { root: path.to_owned(), read_only: false });
         match folder.read("", MARKER, 1 << 12)? {
             Some(text) if text.starts_with(b"flow remote 1\n") => Ok(folder),
             Some(_) => Err(not("a newer flow made it")),
@@ -37,7 +37,7 @@ impl RemoteFolder {
             Err(error) => error.kind() == ErrorKind::NotFound,
         };
         if empty {
-            let disk = Disk { root: path.to_owned() };
+            let disk = Disk { root: path.to_owned(), read_only: false };
             std::fs::create_dir_all(path).map_err(|error| disk.fail("make the folder", Path::new("/"), error))?;
             disk.write_new("", MARKER, TEXT.as_bytes(), true)?;
         }

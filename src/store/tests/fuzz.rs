@@ -92,7 +92,7 @@ fn mutated_journals_give_no_own_record_that_was_not_written() {
     let path = std::fs::read_dir(&journal).unwrap().flatten().next().unwrap().path();
     let bytes = std::fs::read(&path).unwrap();
     let first = [b"flow journal 1 {}".to_vec(), bytes[17..].to_vec()].concat();
-    let disk = Disk { root: folder.path().to_owned() };
+    let disk = Disk { root: folder.path().to_owned(), read_only: false };
     fuzz(&[bytes, first, vec![b' '; 700]], |bytes| {
         std::fs::write(&path, bytes).unwrap();
         let mut index = Index::new(mark.clone(), "here");

@@ -31,6 +31,10 @@ fn nothing_is_clipped_in_other_sizes() {
         for (width, points) in [(0.85 * style.width, 8.0), (style.width, 9.0), (1.3 * style.width, 7.0)] {
             let faults = figure.scene(&Style { points, ..Style::wide(width) }).faults();
             assert_eq!(faults, Vec::<String>::new(), "{name} at {width} mm, {points} points");
+            let frames = figure.frames(&Style { points, ..Style::wide(width) });
+            for frame in frames.first().into_iter().chain(frames.last()) {
+                assert_eq!(frame.faults(), Vec::<String>::new(), "{name} in motion, {width} mm, {points} points");
+            }
         }
     }
 }

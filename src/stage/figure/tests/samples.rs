@@ -141,6 +141,14 @@ pub(super) fn specimen() -> Artifact {
     specimen.to_artifact()
 }
 
+/// The specimen of the states of [`run`].
+pub(super) fn row_of_discs() -> Artifact {
+    let mut specimen = Specimen::from_artifact(&specimen()).unwrap();
+    specimen.centres = Array2::from_shape_fn((31, 2), |(disc, axis)| [1e-3 * (disc as f64 - 15.0), 0.0][axis]);
+    (specimen.group_of, specimen.radii, specimen.clump_of) = (vec![0; 31], vec![5e-4; 31], vec![-1; 31]);
+    specimen.to_artifact()
+}
+
 pub(super) fn surfaces() -> Artifact {
     let coefficients = Coefficients {
         response: words(["UCS", "UCS", "UCS", "UCS", "E"]),

@@ -1,6 +1,8 @@
 //! Pictures of what is in space.
 
 use super::*;
+use crate::stage::Sketch;
+use dem::genesis::region::Region;
 
 fn cube() -> Artifact {
     let stored = Specimen {
@@ -34,6 +36,33 @@ fn a_specimen_in_space_stands_upright() {
     assert_eq!(data.shown("z").unwrap().0, [5.0, 0.0, -4.0]);
     assert!(text(&picture, "svg").contains("y 40 mm"));
     assert!(text(&picture, "description").contains("3 balls in 20 mm × 30 mm × 40 mm"));
+}
+
+/// The cut is asked for by the axes of the specimen, and said by them.
+#[test]
+fn a_specimen_in_space_is_cut_where_it_is_asked_for() {
+    let cut = |more: &str| {
+        let picture = made(&format!("show = 'specimen'\nof = 'a'\n{more}"), &[cube()], &[]).unwrap();
+        text(&picture, "description").split_once("cut open at ").map(|(_, at)| at.to_owned())
+    };
+    assert_eq!(cut(""), None);
+    assert_eq!(cut("cut = 'x'").unwrap(), "x = 0 mm.");
+    assert_eq!(cut("cut = 'y'\ncut_at = '5 mm'").unwrap(), "y = 5 mm.");
+    assert_eq!(cut("cut = 'z'\ncut_at = '-4 mm'").unwrap(), "z = -4 mm.");
+    let mut context = context();
+    let region = |region| Sketch { region: Some(region), ..Sketch::default() };
+    context.sketches.insert("a".into(), region(Region::Box { width: 0.02, height: 0.04, depth: 0.03 }));
+    context.sketches.insert("flat".into(), region(Region::Rectangle { width: 0.02, height: 0.04 }));
+    let message_of = |text: &str| {
+        let found = settings(&format!("show = 'specimen'\n{text}")).check(&context);
+        found.into_iter().map(|c| c.message).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(message_of("of = 'a'\ncut = 'y'\ncut_at = '19 mm'"), "");
+    assert_eq!(message_of("of = 'a'\ncut = 'z'\ncut_at = '15 mm'"), "the specimen reaches 15 mm from its middle");
+    assert_eq!(message_of("of = 'a'\ncut_at = '1 mm'"), "`cut_at` has no effect without `cut`");
+    assert_eq!(message_of("of = 'flat'\ncut = 'x'"), "`cut` has no effect on a specimen in the plane");
+    let other = settings("show = 'crack-rose'\nof = 'a'\ncut = 'x'").check(&context);
+    assert_eq!(other[0].message, "`cut` has no effect on a figure that shows `crack-rose`");
 }
 
 /// Cracks of a run in space stand in the frame of its specimen, as discs of half their size.

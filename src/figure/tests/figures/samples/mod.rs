@@ -12,6 +12,7 @@ use figure::dag::{Dag, Stage};
 use figure::effect_plot::Coordinates;
 use figure::effects::{FactorMeans, MainEffects};
 use figure::points::DesignPoints;
+use figure::solid::Cut;
 use figure::surface::Surface;
 use figure::{DOUBLE, Figure, Quantity, SINGLE, Style};
 use fits::{convergence, effect_plot, observed, published, residuals, solutions, verification};
@@ -40,12 +41,17 @@ pub(crate) fn all() -> Vec<(&'static str, Style, Box<dyn Figure>)> {
         ("specimen-wide", two.clone(), Box::new(specimen(2.4))),
         ("cracks", two.clone(), Box::new(cracks())),
         ("cracks-2", one.clone(), Box::new(cracks())),
+        ("snapshots", two.clone(), Box::new(spatial::snapshots())),
+        ("snapshots-2", one.clone(), Box::new(spatial::snapshots())),
         ("damage", two.clone(), Box::new(spatial::damage())),
         ("damage-1", one.clone(), Box::new(spatial::damage())),
         ("cracks-disc", two.clone(), Box::new(spatial::disc_cracks())),
         ("specimen-disc", one.clone(), Box::new(spatial::disc())),
         ("solid", one.clone(), Box::new(spatial::cube(None))),
         ("solid-cut", one.clone(), Box::new(spatial::cube(Some(60.0)))),
+        ("core", one.clone(), Box::new(spatial::core(None))),
+        ("core-cut", one.clone(), Box::new(spatial::core(Some(Cut { axis: 1, at: 60.0 })))),
+        ("core-cut-up", one.clone(), Box::new(spatial::core(Some(Cut { axis: 2, at: 90.0 })))),
         ("solid-cracks", one.clone(), Box::new(spatial::prism_cracks())),
         ("rose", one.clone(), Box::new(rose())),
         ("chains", one.clone(), Box::new(chains())),

@@ -3,6 +3,7 @@
 use figure::chains::{Chains, Link};
 use figure::cracks::{By, Crack, Cracks, Moment};
 use figure::rose::Rose;
+use figure::snapshots::{Snapshots, State};
 use figure::solid::{Cut, Penny, Solid};
 use figure::specimen::{Outline, Specimen};
 use math::random::Stream;
@@ -113,6 +114,41 @@ pub(super) fn cracks() -> Cracks {
     }
 }
 
+/// The specimen slides along its shear band.
+pub(super) fn snapshots() -> Snapshots {
+    let (specimen, cracks) = (specimen(1.0), cracks());
+    let last = cracks.moments.last().expect("four moments");
+    let count = last.cracks.len();
+    let strain = |i: usize| 2.4e-3 * (0.2 + 0.8 * (i as f64 / count as f64).sqrt());
+    let moved = |share: f64| {
+        let at = |c: &[f64; 2]| {
+            let slid = if c[1] > (c[0] - 20.0) * 200.0 / 62.0 { share.powi(4) } else { 0.0 };
+            [c[0] - 0.2 * slid, c[1] - 0.24 * share * (c[1] / 200.0 - 0.5) - 0.4 * slid]
+        };
+        specimen.centres.iter().map(at).collect()
+    };
+    let state = |title: &str, share: f64| State { strain: 2.4e-3 * share, title: title.into(), centres: moved(share) };
+    let stress = |e: f64| if e < 1.5e-3 { 3e4 * e * (1.0 - e / 3.2e-3) } else { 23.9 * (-(e - 1.5e-3) / 1.2e-3).exp() };
+    Snapshots {
+        outline: specimen.outline,
+        low: specimen.low,
+        high: specimen.high,
+        states: vec![
+            state("50 % of the peak", 0.2),
+            state("80 % of the peak", 0.4),
+            state("peak", 0.63),
+            state("after the peak, 50 %", 1.0),
+        ],
+        modes: cracks.modes.clone(),
+        cracks: last.cracks.iter().enumerate().map(|(i, c)| (strain(i), *c)).collect(),
+        curve: (0..=200).map(|i| [1.2e-5 * f64::from(i), stress(1.2e-5 * f64::from(i))]).collect(),
+        centres: specimen.centres,
+        radii: specimen.radii,
+        group: specimen.group,
+        groups: specimen.groups,
+    }
+}
+
 pub(super) fn rose() -> Rose {
     let mut random = Stream::new(5, "rose", 0);
     let tensile = (0..1700).map(|_| 1.57 + 0.42 * random.normal()).collect();
@@ -207,6 +243,21 @@ pub(super) fn disc() -> Specimen {
 }
 
 /// A cube of 150 mm of mortar with large and small aggregate.
+/// A core drilled out of the cube along z.
+pub(super) fn core(cut: Option<Cut>) -> Solid {
+    let cube = cube(None);
+    let inside = |i: &usize| (cube.centres[*i][0] - 75.0).hypot(cube.centres[*i][1] - 75.0) + cube.radii[*i] < 75.0;
+    let members: Vec<usize> = (0..cube.centres.len()).filter(inside).collect();
+    Solid {
+        centres: members.iter().map(|&i| cube.centres[i]).collect(),
+        radii: members.iter().map(|&i| cube.radii[i]).collect(),
+        group: members.iter().map(|&i| cube.group[i]).collect(),
+        round: Some(2),
+        cut,
+        ..cube
+    }
+}
+
 pub(super) fn cube(cut: Option<f64>) -> Solid {
     let mut random = Stream::new(8, "cube", 0);
     let (mut centres, mut radii, mut group) = (Vec::new(), Vec::new(), Vec::new());
