@@ -35,6 +35,7 @@ const SHIPPED: &[Shipped] = &[
     Shipped { name: "concrete", text: include_str!("../../workflows/concrete.toml"), files: &[] },
     Shipped { name: "c30", text: include_str!("../../workflows/c30.toml"), files: SU2021 },
     Shipped { name: "brazilian", text: include_str!("../../workflows/brazilian.toml"), files: &[] },
+    Shipped { name: "rcc", text: include_str!("../../workflows/rcc.toml"), files: RCC },
     Shipped { name: "calibrate", text: include_str!("../../workflows/calibrate.toml"), files: &[] },
     Shipped { name: "su2021-published", text: include_str!("../../workflows/su2021-published.toml"), files: SU2021 },
 ];
@@ -54,6 +55,15 @@ const SU2021: &[(&str, &str)] = &[
     ("su2021/table12.csv", include_str!("../../workflows/su2021/table12.csv")),
     ("su2021/table13.csv", include_str!("../../workflows/su2021/table13.csv")),
     ("su2021/trial.csv", include_str!("../../workflows/su2021/trial.csv")),
+];
+
+const RCC: &[(&str, &str)] = &[
+    ("stones/sections.csv", include_str!("../../workflows/stones/sections.csv")),
+    ("rcc/measured_2h.csv", include_str!("../../workflows/rcc/measured_2h.csv")),
+    ("rcc/measured_4h.csv", include_str!("../../workflows/rcc/measured_4h.csv")),
+    ("rcc/measured_6h.csv", include_str!("../../workflows/rcc/measured_6h.csv")),
+    ("rcc/measured_8h.csv", include_str!("../../workflows/rcc/measured_8h.csv")),
+    ("rcc/table02.csv", include_str!("../../workflows/rcc/table02.csv")),
 ];
 
 impl New {

@@ -266,7 +266,7 @@ impl Loop<'_, '_> {
             }
         }
         let keeps = (!self.settings.dry).then_some(self.store);
-        for report in self.stages.close(self.workflow, &self.board, keeps) {
+        for report in self.stages.close(self.workflow, &self.board, keeps, &mut self.streamed) {
             moved = true;
             self.failed |= matches!(report.status, StageStatus::Failed(_));
             let without_result = matches!(report.status, StageStatus::Failed(_) | StageStatus::Skipped(_));
@@ -342,7 +342,7 @@ impl Loop<'_, '_> {
                 continue;
             }
             let again = self.forced(node);
-            match task::Order::new(&mut self.board, node, self.store, &self.streamed, again) {
+            match task::Order::new(&mut self.board, node, self.store, &mut self.streamed, again) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
                     Ok(()) => return,

@@ -3,9 +3,11 @@
 use super::leftover::{self, Record};
 use super::{Params, template};
 use crate::stage::{Failure, Job, StageError};
-use rustix::process::{Pid, Signal, kill_process_group};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
 use std::fs::File;
 use std::io::ErrorKind;
+use std::os::fd::OwnedFd;
 use std::os::unix::process::CommandExt;
 use std::path::{Component, Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -18,6 +20,9 @@ const LARGEST: u64 = 64 << 20;
 /// Most bytes that a program may print, so that one that prints without end does not fill the disk.
 const MOST_PRINTED: u64 = 1 << 30;
 
+/// Longest time between two looks at the clock, the stop and what the program has printed.
+const LONGEST_PAUSE: Duration = Duration::from_millis(50);
+
 /// Longest part of a path between two slashes, bytes.
 const LONGEST_NAME: usize = 255;
 
@@ -25,6 +30,15 @@ const LONGEST_NAME: usize = 255;
 pub(super) fn is_plain(name: &str) -> bool {
     let part = |part: Component| matches!(part, Component::Normal(name) if name.len() <= LONGEST_NAME);
     !name.is_empty() && !name.contains('\0') && Path::new(name).components().all(part)
+}
+
+/// Waits for the end of a program, but at most for this time. Kernels before 5.3 have no descriptor of a process: there
+/// it waits for all of it.
+fn wait_for(end: Option<&OwnedFd>, most: Duration) {
+    let Some(end) = end else { return std::thread::sleep(most) };
+    let most = Timespec { tv_sec: 0, tv_nsec: most.subsec_nanos().into() };
+    // A signal only makes it return earlier.
+    let _ = poll(&mut [PollFd::new(end, PollFlags::IN)], Some(&most));
 }
 
 /// A run's own temporary folder; `stdout` and `stderr` lie beside what the program writes.
@@ -88,6 +102,7 @@ impl Folder {
     fn wait(&self, mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
         let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
         let group = Pid::from_child(&child);
+        let end = pidfd_open(group, PidfdFlags::empty()).ok();
         loop {
             if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
                 // Processes that it started and left running are ended too.
@@ -117,8 +132,8 @@ impl Folder {
                     Some(_) | None => Failure::Stopped,
                 });
             }
-            std::thread::sleep(pause);
-            pause = (pause * 2).min(Duration::from_millis(20));
+            wait_for(end.as_ref(), pause);
+            pause = (pause * 2).min(LONGEST_PAUSE);
         }
     }
 
