@@ -2,6 +2,7 @@
 
 use super::Exit;
 use crate::plan::{nearest, schema};
+use crate::report::quoted;
 use clap::Args;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -80,7 +81,8 @@ impl New {
                 for file in beside {
                     out!("{} is written", file.display());
                 }
-                out!("{0} is written; next: flow plan {0}", path.display());
+                let next = quoted(&path.display().to_string());
+                out!("{} is written; next: flow plan {next}", path.display());
                 Exit::Done
             }
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {

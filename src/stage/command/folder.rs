@@ -6,6 +6,7 @@ use crate::stage::{Failure, Job, StageError};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
 use std::fs::File;
+use std::io::ErrorKind;
 use std::os::fd::OwnedFd;
 use std::os::unix::process::CommandExt;
 use std::path::{Component, Path, PathBuf};
@@ -88,15 +89,16 @@ impl Folder {
         command.stdout(output("stdout")?).stderr(output("stderr")?);
         command.env_clear().envs(std::env::var_os("PATH").map(|path| ("PATH", path))).envs(&params.environment);
         command.env(leftover::VARIABLE, self.root.path());
-        let child = command.spawn().map_err(|e| {
-            StageError::new(format!("`{}` cannot be started: {e}", params.run[0]))
-                .hint("is it installed and on the PATH?")
-        })?;
-        let status = self.wait(child, job)?;
+        let child = leftover::start(&mut command).map_err(|e| not_started(&params.run[0], &e))?;
+        let program = child.id();
+        let status = self.wait(child, job);
+        leftover::ended(program);
+        leftover::end_strays(self.root.path());
+        let status = status?;
         Ok(if status.success() { Ok(()) } else { Err(format!("`{}` ended with {status}", params.run.join(" "))) })
     }
 
-    /// Waits until the program ends, the time limit is reached or the run is interrupted; then ends all processes of the run.
+    /// Waits until the program ends, the time limit is reached or the run is interrupted; then ends its process group.
     fn wait(&self, mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
         let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
         let group = Pid::from_child(&child);
@@ -105,13 +107,11 @@ impl Folder {
             if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
                 // Processes that it started and left running are ended too.
                 let _ = kill_process_group(group, Signal::KILL);
-                leftover::end_strays(self.root.path());
                 return Ok(status);
             }
             if let Some(name) = ["stdout", "stderr"].into_iter().find(|name| self.printed(name) > MOST_PRINTED) {
                 let _ = kill_process_group(group, Signal::KILL);
                 let _ = child.wait();
-                leftover::end_strays(self.root.path());
                 let gigabytes = MOST_PRINTED >> 30;
                 return Err(StageError::new(format!(
                     "the program wrote more than {gigabytes} GiB to {name} and was ended"
@@ -123,7 +123,6 @@ impl Folder {
             if late || job.stopped() {
                 let _ = kill_process_group(group, Signal::KILL);
                 let _ = child.wait();
-                leftover::end_strays(self.root.path());
                 return Err(match job.time_limit {
                     Some(limit) if late => {
                         StageError::new(format!("the program ran longer than its limit of {limit} s"))
@@ -209,6 +208,17 @@ pub(super) fn shown(line: &str) -> String {
         Some((end, _)) => format!("{}…", &plain[..end]),
         None => plain,
     }
+}
+
+/// The failure of a program that cannot be started, with what helps there.
+fn not_started(program: &str, error: &std::io::Error) -> StageError {
+    let hint = match error.kind() {
+        ErrorKind::NotFound => "is it installed and on the PATH?",
+        ErrorKind::PermissionDenied => "is it a program, and may you run it?",
+        ErrorKind::ArgumentListTooLong => "give long texts in a file: `templates`",
+        _ => "the system grants no more processes, files or memory: see `ulimit -a`, and try fewer with `--jobs`",
+    };
+    StageError::new(format!("`{program}` cannot be started: {error}")).hint(hint)
 }
 
 fn io(doing: &str, error: std::io::Error) -> Failure {
