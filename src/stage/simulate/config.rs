@@ -14,6 +14,7 @@ use dem::loading::rig::Machine;
 use dem::loading::settings::{Loading, Notch, Rule};
 use dem::parameter::Parameter;
 use dem::{Convention, Masses};
+use math::text::Amount;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -131,8 +132,10 @@ impl BondConfig {
         let outside =
             self.bonding().values.into_iter().filter(|(parameter, value)| !parameter.declaration().range.holds(*value));
         let fault = |(parameter, value): (Parameter, f64)| {
-            let (key, range) = (parameter.key(), parameter.declaration().range);
-            Complaint::new(&format!("bond.{key}"), format!("`{key}` is {value}; it must be {}", range.words()))
+            let (key, declared) = (parameter.key(), parameter.declaration());
+            let found = Amount(value, declared.quantity.unit());
+            let message = format!("`{key}` is {found:#}; it must be {}", declared.range.words());
+            Complaint::new(&format!("bond.{key}"), message)
         };
         let mut faults: Vec<Complaint> = outside.map(fault).collect();
         if !(0.0..=1.0).contains(&self.gap) {
