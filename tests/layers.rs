@@ -200,15 +200,22 @@ fn faults(path: &Path, text: &str) -> Vec<String> {
     faults
 }
 
+/// The sources of this crate.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    let mut all = Vec::new();
+    every_source(folder, &mut all);
+    let of_another =
+        |path: &PathBuf| path.ancestors().take_while(|own| *own != folder).any(|own| own.join("Cargo.toml").is_file());
+    found.extend(all.into_iter().filter(|path| !of_another(path)));
+}
+
+/// The sources of this crate and of those of the domains.
+fn every_source(folder: &Path, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
     for path in entries {
-        if path.join("Cargo.toml").is_file() {
-            continue; // a crate of its own
-        }
         if path.is_dir() {
-            sources(&path, found);
+            every_source(&path, found);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             found.push(path);
         }
@@ -229,6 +236,35 @@ fn imports_run_one_way() {
         found.extend(faults(inside, &fs::read_to_string(path).unwrap()));
     }
     assert!(found.is_empty(), "\n{}", found.join("\n"));
+}
+
+/// Macros of the language that print, and panic when nobody can read any more: the closed pipe, the full disk.
+const PRINTERS: [&str; 5] = ["println!", "eprintln!", "print!", "eprint!", "dbg!"];
+
+/// Lines of a source that print by such a macro, outside its tests.
+fn printing(path: &Path, text: &str) -> Vec<String> {
+    let code = code(text);
+    let prints = |line: &str| {
+        PRINTERS.iter().any(|printer| line.match_indices(printer).any(|(at, _)| starts_a_path(&line[..at])))
+    };
+    let lines = code.lines().take_while(|line| line.trim() != "#[cfg(test)]").enumerate();
+    lines.filter(|(_, line)| prints(line)).map(|(at, _)| format!("src/{}:{}", path.display(), at + 1)).collect()
+}
+
+#[test]
+fn only_the_command_line_prints_and_only_by_writes_that_may_fail() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut paths = Vec::new();
+    every_source(&root, &mut paths);
+    let own = |path: &&PathBuf| {
+        !path.iter().any(|part| ["benches", "examples", "tests", "tests.rs"].iter().any(|no| part == *no))
+    };
+    let told = |path: &PathBuf| printing(path.strip_prefix(&root).unwrap(), &fs::read_to_string(path).unwrap());
+    let found: Vec<String> = paths.iter().filter(own).flat_map(told).collect();
+    assert!(paths.len() > 300 && found.is_empty(), "print with `out!` and `err!`:\n{}", found.join("\n"));
+    let one = |text: &str| printing(Path::new("a.rs"), text).len();
+    assert_eq!(one("fn f() {\n    eprintln!(\n        \"x\"\n    );\n}"), 1);
+    assert_eq!(one("// println!\nlet a = \"print!\";\n#[cfg(test)]\nprintln!();"), 0);
 }
 
 #[test]

@@ -168,11 +168,7 @@ impl Calibrate {
     /// Refuses to answer while something that the answer rests on is missing.
     fn finished(&self, asked: &Asked) -> Result<(), Exit> {
         let ours: Vec<String> = std::iter::once(asked.stage.clone()).chain(asked.checks.clone()).collect();
-        let report = decide(&asked.workflow, &asked.store, &ours, true);
-        if let Some(why) = &report.broken {
-            err!("error: {why}");
-            return Err(Exit::System);
-        }
+        let report = decide(&asked.workflow, &asked.store, &ours, true).map_err(|e| system(&e))?;
         let missing: Vec<&str> = report
             .stages
             .iter()

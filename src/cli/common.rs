@@ -124,6 +124,9 @@ impl Common {
 /// When, by what version, where and of which commit something was computed.
 pub(super) fn provenance(started: i64, seconds: f64, origin: &Origin) -> String {
     let Origin { machine, version, commit } = origin;
+    if !origin.is_known() {
+        return "nobody knows when and where: its record was lost, and the result was found again".to_owned();
+    }
     let commit = if commit.is_empty() { String::new() } else { format!(", git commit {commit}") };
     format!("{} UTC, took {}, by flow {version} on {machine}{commit}", moment(started), duration(seconds))
 }

@@ -88,7 +88,7 @@ impl Diff {
         };
         let campaign = Campaign::of(PathBuf::from(file), profile, &self.common);
         let workflow = campaign.load(&[])?;
-        let report = decide(&workflow, store, &[], true);
+        let report = decide(&workflow, store, &[], true).map_err(|e| system(&e))?;
         let mut sides = Sides::new();
         for (node, stage) in workflow.stages.iter().zip(&report.stages) {
             let object = match stage.status {
@@ -115,7 +115,7 @@ impl Diff {
         };
         if !campaign.own {
             let file = quoted(&campaign.workflow);
-            eprintln!(
+            err!(
                 "error: run #{number} was not recorded by you, or its record was changed since, so what it says of results \
                  cannot be believed; compare the workflow itself: `flow diff {file} …`"
             );

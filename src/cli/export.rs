@@ -1,7 +1,7 @@
 //! `flow export`: results as files for people and other programs.
 
 use super::common::{Campaign, system};
-use super::output::replace;
+use super::files::Files;
 use super::show::{object, parts};
 use super::{Exit, complete};
 use crate::artifact::run::Run;
@@ -16,7 +16,7 @@ use crate::store::{ObjectId, Store};
 use clap::{Args, ValueEnum};
 use dem::Space;
 use dem::genesis::specimen::Specimen;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Write results as files: pictures, printed tables, CSV, or what ParaView and other particle codes read.
@@ -69,14 +69,13 @@ impl Export {
         let store = self.campaign.common.read()?;
         // Single rows are known only when every task is looked up.
         let memos = asked.iter().all(|(_, row)| row.is_none());
-        let report = decide(&workflow, &store, &names, memos);
+        let report = decide(&workflow, &store, &names, memos).map_err(|e| system(&e))?;
         let (chosen, missing) = choose(&workflow, &report, &asked);
-        let unwritten = |path: &Path, error: std::io::Error| {
-            err!("error: {}: {error}", path.display());
+        std::fs::create_dir_all(&self.folder).map_err(|error| {
+            err!("error: {}: {error}", self.folder.display());
             Exit::System
-        };
-        std::fs::create_dir_all(&self.folder).map_err(|e| unwritten(&self.folder, e))?;
-        let mut written = 0;
+        })?;
+        let (own, mut written) = (Files::of(&workflow), 0);
         for one in &chosen {
             let artifact = store.get(&one.object.content).map_err(|e| system(&e))?;
             let read = matches!(self.to, Form::Files | Form::Csv);
@@ -87,7 +86,7 @@ impl Export {
             })?;
             for (name, bytes) in files {
                 let path = self.folder.join(name);
-                replace(&path, &bytes).map_err(|e| unwritten(&path, e))?;
+                own.put(&path, &bytes)?;
                 if !self.campaign.common.quiet {
                     out!("{}", path.display());
                 }

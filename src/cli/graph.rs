@@ -1,7 +1,7 @@
 //! `flow graph`: the stages of a workflow, their inputs, and their progress.
 
 use super::Exit;
-use super::common::Campaign;
+use super::common::{Campaign, system};
 use crate::plan::{StageNode, Workflow};
 use crate::run::{StageStatus, decide};
 use clap::{Args, ValueEnum};
@@ -69,7 +69,7 @@ impl Graph {
         let reports = match self.campaign.common.store.exists() {
             true => {
                 let store = self.campaign.common.read()?;
-                decide(&workflow, &store, &[], true).stages
+                decide(&workflow, &store, &[], true).map_err(|e| system(&e))?.stages
             }
             false => Vec::new(),
         };

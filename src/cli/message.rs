@@ -1,20 +1,22 @@
 //! Faults as a person reads them: the line, a caret under the location, what is known, what to do.
 
 use super::color::Color;
-use crate::plan::{Fault, Location};
+use super::output::{on_screen, steers};
+use crate::plan::{Fault, Location, Source};
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Prints all faults on standard error.
 pub(super) fn print(found: &[Fault], color: Color) {
-    super::output::print_err(&faults(found, color.on()));
+    super::output::print_raw(&faults(found, color.on()));
 }
 
 /// Prints warnings on standard error.
 pub(super) fn warnings(found: &[Fault], color: Color) {
     let renderer = renderer(color.on());
-    for fault in found {
-        super::output::print_err(&format!("{}\n\n", renderer.render(&[group(fault, Level::WARNING)])));
+    for fault in found.iter().map(clean) {
+        super::output::print_raw(&format!("{}\n\n", renderer.render(&[group(&fault, Level::WARNING)])));
     }
 }
 
@@ -26,8 +28,8 @@ fn renderer(colour: bool) -> Renderer {
 fn faults(faults: &[Fault], colour: bool) -> String {
     let renderer = renderer(colour);
     let mut text = String::new();
-    for fault in faults {
-        text.push_str(&renderer.render(&[group(fault, Level::ERROR)]));
+    for fault in faults.iter().map(clean) {
+        text.push_str(&renderer.render(&[group(&fault, Level::ERROR)]));
         text.push_str("\n\n");
     }
     let what = if faults.len() == 1 { "1 fault".to_owned() } else { format!("{} faults", faults.len()) };
@@ -36,6 +38,25 @@ fn faults(faults: &[Fault], colour: bool) -> String {
     );
     text.push('\n');
     text
+}
+
+/// A fault without what steers a terminal. Spans stay where they are: each sign takes as many bytes as what it stands for.
+fn clean(fault: &Fault) -> Fault {
+    let words = |text: &String| on_screen(text);
+    let sign =
+        |c: char| if steers(c) && !matches!(c, '\n' | '\t' | '\r') { "?".repeat(c.len_utf8()) } else { c.to_string() };
+    let location = |location: &Location| {
+        let Source { name, text } = &*location.source;
+        let (name, text) = (on_screen(&name.replace(['\n', '\r'], "?")), text.chars().map(sign).collect());
+        Location { source: Arc::new(Source { name, text }), span: location.span.clone() }
+    };
+    Fault {
+        location: fault.location.as_ref().map(location),
+        message: on_screen(&fault.message),
+        label: fault.label.as_ref().map(words),
+        hint: fault.hint.as_ref().map(words),
+        also: fault.also.iter().map(|(own, label)| (location(own), on_screen(label))).collect(),
+    }
 }
 
 fn group<'f>(fault: &'f Fault, level: Level<'f>) -> Group<'f> {

@@ -14,6 +14,7 @@ mod completions;
 mod diff;
 mod examples;
 mod export;
+mod files;
 mod graph;
 mod message;
 mod new;
@@ -118,7 +119,11 @@ pub fn main() -> ExitCode {
 
 /// Executes a command line; its first word is the program.
 fn execute<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Exit {
-    match Arguments::parse_from(arguments).command {
+    let read = match Arguments::try_parse_from(arguments) {
+        Ok(read) => read,
+        Err(answer) => return answered(&answer),
+    };
+    match read.command {
         Command::Run(run) => run.go(),
         Command::Plan(plan) => plan.go(),
         Command::Show(show) => show.go(),
@@ -134,6 +139,15 @@ fn execute<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Command::New(new) => new.go(),
         Command::Schema(schema) => schema.go(),
         Command::Completions(completions) => completions.go(),
+    }
+}
+
+/// Prints what the reader of the command line answers itself: what is wrong with it, or the help that it asks for.
+fn answered(answer: &clap::Error) -> Exit {
+    match answer.print() {
+        _ if answer.use_stderr() => Exit::BadInput,
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Exit::System,
+        _ => Exit::Done,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Exit;
 use crate::plan::{nearest, schema};
+use crate::report::quoted;
 use clap::Args;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -34,6 +35,7 @@ const SHIPPED: &[Shipped] = &[
     Shipped { name: "concrete", text: include_str!("../../workflows/concrete.toml"), files: &[] },
     Shipped { name: "c30", text: include_str!("../../workflows/c30.toml"), files: SU2021 },
     Shipped { name: "brazilian", text: include_str!("../../workflows/brazilian.toml"), files: &[] },
+    Shipped { name: "rcc", text: include_str!("../../workflows/rcc.toml"), files: RCC },
     Shipped { name: "calibrate", text: include_str!("../../workflows/calibrate.toml"), files: &[] },
     Shipped { name: "su2021-published", text: include_str!("../../workflows/su2021-published.toml"), files: SU2021 },
 ];
@@ -55,6 +57,15 @@ const SU2021: &[(&str, &str)] = &[
     ("su2021/trial.csv", include_str!("../../workflows/su2021/trial.csv")),
 ];
 
+const RCC: &[(&str, &str)] = &[
+    ("stones/sections.csv", include_str!("../../workflows/stones/sections.csv")),
+    ("rcc/measured_2h.csv", include_str!("../../workflows/rcc/measured_2h.csv")),
+    ("rcc/measured_4h.csv", include_str!("../../workflows/rcc/measured_4h.csv")),
+    ("rcc/measured_6h.csv", include_str!("../../workflows/rcc/measured_6h.csv")),
+    ("rcc/measured_8h.csv", include_str!("../../workflows/rcc/measured_8h.csv")),
+    ("rcc/table02.csv", include_str!("../../workflows/rcc/table02.csv")),
+];
+
 impl New {
     pub(super) fn go(self) -> Exit {
         let Some(shipped) = SHIPPED.iter().find(|shipped| shipped.name == self.from) else {
@@ -70,7 +81,8 @@ impl New {
                 for file in beside {
                     out!("{} is written", file.display());
                 }
-                out!("{0} is written; next: flow plan {0}", path.display());
+                let next = quoted(&path.display().to_string());
+                out!("{} is written; next: flow plan {next}", path.display());
                 Exit::Done
             }
             Err(e) if e.kind() == ErrorKind::AlreadyExists => {

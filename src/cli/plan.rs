@@ -46,7 +46,7 @@ impl Plan {
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load_to_run(&self.stages)?;
         let store = self.campaign.common.read()?;
-        let report = decide(&workflow, &store, &self.stages, true);
+        let report = decide(&workflow, &store, &self.stages, true).map_err(|e| super::common::system(&e))?;
         let past = Past::of(&workflow, &store).map_err(|e| super::common::system(&e))?;
         let open: Vec<TaskReport> = report.tasks().filter(|task| task.state == TaskState::Open).collect();
         let of = |stage: &StageReport| -> Vec<&TaskReport> {

@@ -1,5 +1,6 @@
 //! What a person sees while a campaign runs: a live table on a terminal, plain lines elsewhere.
 
+use super::output::on_screen;
 use super::whole::Whole;
 use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, TaskCount, Watch};
@@ -80,7 +81,7 @@ impl<'a> Progress<'a> {
     fn say(&self, line: &str) {
         match &self.screen {
             // Its `suspend` panics when the terminal has gone.
-            Some(screen) => drop(screen.println(line)),
+            Some(screen) => drop(screen.println(on_screen(line))),
             None => err!("{line}"),
         }
     }
@@ -217,7 +218,7 @@ impl Watch for Progress<'_> {
                 if let Some(bar) = self.stages().get(stage).and_then(|live| live.bar.as_ref()) {
                     let row = row.map_or_else(String::new, |row| format!("[{}] ", row + 1));
                     let part = progress.fraction.map_or_else(String::new, |part| format!("{:.0} % ", 100.0 * part));
-                    bar.set_message(format!("{row}{part}{}", progress.note));
+                    bar.set_message(on_screen(&format!("{row}{part}{}", progress.note)));
                 }
             }
             Event::Asked { stage, count, note } => self.asked(stage, count, note),

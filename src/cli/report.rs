@@ -2,6 +2,7 @@
 
 use super::Exit;
 use super::common::{Campaign, fetched, system};
+use super::files::Files;
 use super::output;
 use super::store::bytes;
 use crate::report::{Asked, Paper, gather, page};
@@ -33,7 +34,7 @@ impl Report {
             sets: self.campaign.sets.clone(),
             store: if named == "store" { String::new() } else { named },
         };
-        let paper = gather(&workflow, asked, &store).map_err(|e| system(&e))?;
+        let paper = gather(&workflow, asked, &store).map_err(|e| system(&*e))?;
         for damage in store.take_damages() {
             err!("warning: {damage}");
         }
@@ -44,10 +45,7 @@ impl Report {
         if self.output == Path::new("-") {
             output::write(&html);
         } else {
-            output::replace(&self.output, html.as_bytes()).map_err(|e| {
-                err!("error: {}: {e}", self.output.display());
-                Exit::System
-            })?;
+            Files::of(&workflow).put(&self.output, html.as_bytes())?;
             if !self.campaign.common.quiet {
                 out!("{}  {}", self.output.display(), bytes(html.len() as u64));
             }

@@ -116,7 +116,7 @@ impl Run {
         if !self.campaign.common.quiet {
             notes(&self.campaign, &report, &store).iter().for_each(|line| err!("{line}"));
         }
-        missed.iter().for_each(|(stage, why)| eprintln!("unmet: {stage}: {why}"));
+        missed.iter().for_each(|(stage, why)| err!("unmet: {stage}: {why}"));
         let exit = match exit(&report) {
             Exit::Done if !missed.is_empty() => Exit::Failed,
             exit => exit,

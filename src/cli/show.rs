@@ -1,6 +1,7 @@
 //! `flow show`: a result, or one row's run, as a readable table.
 
 use super::common::{Campaign, provenance, system};
+use super::output::steers;
 use super::{Exit, complete};
 use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
@@ -49,7 +50,7 @@ impl Show {
     fn list(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
         let store = self.campaign.common.read()?;
-        let report = decide(&workflow, &store, &[], true);
+        let report = decide(&workflow, &store, &[], true).map_err(|e| system(&e))?;
         let tables_of = |status: &StageStatus| match status {
             StageStatus::Done(content) => {
                 let artifact = store.get(content).map_err(|e| system(&e))?;
@@ -85,7 +86,7 @@ impl Show {
         let workflow = self.campaign.load(std::slice::from_ref(&stage))?;
         let store = self.campaign.common.read()?;
         // Single rows are known only when every task is looked up.
-        let report = decide(&workflow, &store, std::slice::from_ref(&stage), false);
+        let report = decide(&workflow, &store, std::slice::from_ref(&stage), false).map_err(|e| system(&e))?;
         let Some(object) = object(&workflow, &report, &stage, row) else {
             err!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
             return Err(Exit::BadInput);
@@ -100,6 +101,14 @@ impl Show {
     /// Why the result cannot be shown.
     fn missing(&self, what: &str, workflow: &Workflow, report: &Report, (stage, row): (&str, Option<usize>)) -> String {
         let index = workflow.position(stage);
+        let status = |name: &str| report.stages.iter().find(|stage| stage.name == name).map(|stage| &stage.status);
+        let why = match status(stage) {
+            Some(StageStatus::Skipped(cause)) => status(cause),
+            status => status,
+        };
+        if let Some(StageStatus::Failed(why)) = why {
+            return format!("`{what}` has no result: {why}");
+        }
         let rows: Vec<Option<usize>> =
             report.tasks().filter(|task| Some(task.stage) == index).map(|task| task.row).collect();
         match (row, rows.iter().flatten().max()) {
@@ -121,7 +130,7 @@ impl Show {
         let tables = self.chosen(what, &artifact)?;
         // Beside its numbers, in whatever form they are shown.
         for said in sentences(&artifact) {
-            err!("warning: {what}: {}", on_screen(&said));
+            err!("warning: {what}: {said}");
         }
         if self.json {
             let value = match &self.table {
@@ -236,26 +245,19 @@ const MOST_ROWS: usize = 100;
 /// Most columns shown at once.
 const MOST_COLUMNS: usize = 200;
 
-/// A cell for a terminal: control characters, which a log or a file may hold, are shown as signs.
-fn on_screen(cell: &str) -> String {
+/// A cell: what would steer the terminal, which a log or a file may hold, is shown as a sign.
+fn in_cell(cell: &str) -> String {
     cell.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
-}
-
-/// Characters that steer the terminal, or change what is read: control characters, and those without width that turn the
-/// direction of the text around or hide in it.
-fn steers(c: char) -> bool {
-    c.is_control()
-        || matches!(c, '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 pub(super) fn text(table: &Table) -> String {
     let mut shown = comfy_table::Table::new();
     shown.load_style(comfy_table::presets::NOTHING);
     let seen = &table.columns[..table.columns.len().min(MOST_COLUMNS)];
-    shown.set_header(seen.iter().map(|column| on_screen(&head(column))));
+    shown.set_header(seen.iter().map(|column| in_cell(&head(column))));
     let columns: Vec<Vec<String>> = seen.iter().map(|column| short(&column.values)).collect();
     for row in 0..table.rows().min(MOST_ROWS) {
-        shown.add_row(columns.iter().map(|column| on_screen(&column[row])));
+        shown.add_row(columns.iter().map(|column| in_cell(&column[row])));
     }
     for (index, column) in seen.iter().enumerate() {
         if let (Some(shown), Values::Reals(_) | Values::Ints(_)) = (shown.column_mut(index), &column.values) {

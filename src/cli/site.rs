@@ -1,6 +1,7 @@
 //! `flow site`: descriptions of clusters, and the script that would be submitted to one.
 
 use super::Exit;
+use super::common::system;
 use crate::cluster::Site;
 use crate::cluster::script::{Order, script};
 use crate::cluster::site::{self, Needs};
@@ -102,11 +103,10 @@ fn text(site: &Site, needs: &Needs, store: &Path, workers: usize) -> String {
 
 /// Prints what `flow run` would submit first.
 pub(super) fn show_submission(workflow: &Workflow, store: &Store, site: &Site, stages: &[String]) -> Exit {
-    let report = decide(workflow, store, stages, true);
-    if let Some(why) = &report.broken {
-        err!("error: {why}");
-        return Exit::System;
-    }
+    let report = match decide(workflow, store, stages, true) {
+        Ok(report) => report,
+        Err(unreadable) => return system(&unreadable),
+    };
     let mut counts: Vec<(Needs, usize)> = Vec::new();
     for task in report.tasks().filter(|task| task.state == TaskState::Open) {
         let stage = &workflow.stages[task.stage].name;

@@ -203,7 +203,12 @@ fn reach(path: &std::path::Path, common: &Common, store: &Store, keys: &mut Hash
     let profiles = plain.profiles.iter().cloned().map(Some);
     for profile in std::iter::once(None).chain(profiles) {
         let workflow = campaign(profile).load(&[])?;
-        let report = decide(&workflow, store, &[], false);
+        if let Some(absent) = workflow.absent.first() {
+            let why = &absent.message;
+            err!("error: {}: {why}\n  what rests on it would count as not needed; nothing was removed", path.display());
+            return Err(Exit::Failed);
+        }
+        let report = decide(&workflow, store, &[], false).map_err(|e| system(&e))?;
         keys.extend(report.objects().map(|object| object.key));
     }
     Ok(())

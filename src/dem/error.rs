@@ -1,32 +1,32 @@
 //! What can be wrong with a model, and why a run can fail.
 
 use super::particle::Group;
-use super::words::Quantity;
+use math::text::Amount;
 
 /// One fault of the input. All faults of a model are reported together.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A number of a particle is out of range.
-    #[error("particle {particle}: {quantity} is {value}, wanted {wanted}")]
+    #[error("particle {particle}: {quantity} is {value:#}, wanted {wanted}")]
     Particle {
         /// Index in the caller's list.
         particle: usize,
         /// What it is.
         quantity: &'static str,
         /// What was found.
-        value: f64,
+        value: Amount,
         /// What is allowed.
         wanted: &'static str,
     },
     /// A number of a clump is out of range.
-    #[error("clump {clump}: {quantity} is {value}, wanted {wanted}")]
+    #[error("clump {clump}: {quantity} is {value:#}, wanted {wanted}")]
     Clump {
         /// Index in the caller's list.
         clump: usize,
         /// What it is.
         quantity: &'static str,
         /// What was found.
-        value: f64,
+        value: Amount,
         /// What is allowed.
         wanted: &'static str,
     },
@@ -41,14 +41,14 @@ pub enum Fault {
         problem: &'static str,
     },
     /// A number of a wall is out of range.
-    #[error("wall {wall}: {quantity} is {value}, wanted {wanted}")]
+    #[error("wall {wall}: {quantity} is {value:#}, wanted {wanted}")]
     Wall {
         /// Index in the caller's list.
         wall: usize,
         /// What it is.
         quantity: &'static str,
         /// What was found.
-        value: f64,
+        value: Amount,
         /// What is allowed.
         wanted: &'static str,
     },
@@ -69,7 +69,7 @@ pub enum Fault {
         wall: usize,
     },
     /// A number of the contact table is out of range.
-    #[error("contact of groups {} and {}: {quantity} is {value}, wanted {wanted}", a.0, b.0)]
+    #[error("contact of groups {} and {}: {quantity} is {value:#}, wanted {wanted}", a.0, b.0)]
     Interaction {
         /// First group.
         a: Group,
@@ -78,7 +78,7 @@ pub enum Fault {
         /// What it is.
         quantity: &'static str,
         /// What was found.
-        value: f64,
+        value: Amount,
         /// What is allowed.
         wanted: &'static str,
     },
@@ -91,12 +91,12 @@ pub enum Fault {
         b: Group,
     },
     /// A setting is out of range.
-    #[error("{quantity} is {value}, wanted {wanted}")]
+    #[error("{quantity} is {value:#}, wanted {wanted}")]
     Setting {
         /// What it is.
         quantity: &'static str,
         /// What was found.
-        value: f64,
+        value: Amount,
         /// What is allowed.
         wanted: &'static str,
     },
@@ -141,7 +141,7 @@ pub enum Failure {
     /// A body moved further in one step than contacts can be found.
     #[error(
         "particle {particle} moved {} in step {step}, more than the {} within which contacts are found: unstable",
-        Quantity(*.travel, "m"), Quantity(*.limit, "m")
+        Amount(*.travel, "m"), Amount(*.limit, "m")
     )]
     Instability {
         /// Index in the caller's list.

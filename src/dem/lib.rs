@@ -99,7 +99,6 @@ pub mod space;
 pub mod strength;
 
 mod union;
-mod words;
 
 pub use boundary::{Cell, Motion, Servo, Wall};
 pub use contact::{Contact, Other};
@@ -110,6 +109,7 @@ pub use interaction::{
     Linear, NormalForce, ParallelBond, Shares, ShearBreak, SmoothJoint, Stiffness,
 };
 pub use law::Interface;
+pub use math::text::Amount;
 pub use particle::{Clump, Group, Particle};
 pub use space::{D2, D3, Space, Spin, Vector};
 pub use strength::{Distribution, Scatter};

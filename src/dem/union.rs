@@ -18,6 +18,7 @@ use super::error::{Fault, Faults};
 use super::genesis::clump::union_moments;
 use super::particle::{Clump, Particle};
 use super::space::{Space, Spin, Tuple, Vector, flat};
+use math::text::Amount;
 
 /// Gauss–Legendre, eight points on −1 … 1: the positive abscissae, their weights (Abramowitz & Stegun, table 25.4).
 static GAUSS: [[f64; 2]; 4] = [
@@ -55,8 +56,8 @@ impl<S: Space> Clump<S> {
         let mut check = |quantity, value, good: bool, wanted| {
             faults.extend((!good).then_some(Fault::Clump { clump, quantity, value, wanted }));
         };
-        check("number of pebbles", 0.0, !pebbles.is_empty(), "at least 1");
-        check("density", density, density > 0.0 && density.is_finite(), "a number above 0");
+        check("number of pebbles", Amount::number(0.0), !pebbles.is_empty(), "at least 1");
+        check("density", Amount(density, "kg/m^3"), density > 0.0 && density.is_finite(), "a number above 0");
         if !faults.is_empty() {
             return Err(Faults(faults));
         }

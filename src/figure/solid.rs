@@ -328,16 +328,29 @@ impl Solid {
         let mut order: Vec<&Penny> = self.cracks.iter().collect();
         order.sort_by(|a, b| page.view.depth(a.at).total_cmp(&page.view.depth(b.at)));
         let (far, near) = super::axis::extent(self.corners().map(|c| page.view.depth(c)));
-        for one in &self.fissures {
-            let rim: Vec<Point> = circle(one.at, one.normal, one.radius, 48).map(page.place).collect();
-            scene.stroke(Path::polygon(&rim), Stroke { width: 0.3, ..fissure() });
-        }
+        self.draw_rims(scene, page);
         for crack in order {
             let away = 0.62 * (near - page.view.depth(crack.at)) / (near - far).max(f64::MIN_POSITIVE);
             // a disc seen edge on is a line
             let color = self.by.color(crack.mode).mix(PAPER, away);
             let points: Vec<Point> = circle(crack.at, crack.normal, crack.radius, 12).map(page.place).collect();
             scene.shape(Path::polygon(&points), Fill { color, opacity: 0.85 }, Stroke::new(color.mix(INK, 0.3), 0.08));
+        }
+    }
+
+    /// The rims of the fissures where they lie in the domain.
+    fn draw_rims(&self, scene: &mut Scene, page: &Page) {
+        let within = |p: &[f64; 3]| (0..3).all(|k| (self.low[k]..=self.high[k]).contains(&p[k]));
+        let mut path = Path::default();
+        for one in &self.fissures {
+            let mut rim: Vec<[f64; 3]> = circle(one.at, one.normal, one.radius, 180).collect();
+            rim.extend(rim.first().copied());
+            for part in rim.chunk_by(|a, b| within(a) && within(b)).filter(|part| part.len() > 1) {
+                path.add_polyline(&part.iter().map(|p| (page.place)(*p)).collect::<Vec<Point>>());
+            }
+        }
+        if !path.0.is_empty() {
+            scene.stroke(path, Stroke { width: 0.3, ..fissure() });
         }
     }
 

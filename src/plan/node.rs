@@ -195,7 +195,8 @@ impl Node {
         match &self.value {
             Value::Text(text) => format!("the text {}", shortened(&format!("{text:?}"))),
             Value::Int(value) => format!("the number {value}"),
-            Value::Real(value) => format!("the number {value}"),
+            // With its point: 1.0 is no whole number.
+            Value::Real(value) => format!("the number {value:?}"),
             Value::Flag(value) => format!("{value}"),
             Value::Date(text) => format!("the date {text}"),
             Value::List(list) => format!("a list of {} value{}", list.len(), if list.len() == 1 { "" } else { "s" }),

@@ -51,21 +51,39 @@ pub(super) fn profile(root: &mut Table, name: Option<&str>, sources: &mut Source
     }
 }
 
-/// Lays the options `path=value` over the root.
+/// Lays the options `path=value` over the root. Two that give one value are a fault: nobody would see which of them counts.
 pub(super) fn sets(root: &mut Table, sets: &[String], sources: &mut Sources, faults: &mut Vec<Fault>) {
+    let mut earlier = Table::default();
     for set in sets {
         let whole = sources.add("--set", set);
         match option(set, sources, whole) {
             Ok(table) => {
                 let before = faults.len();
                 check_paths(root, &table, "the option", sources, faults);
+                if let Some((first, second)) = clash(&earlier, &table) {
+                    let fault = Fault::new(format!("`{set}` gives what an option before it gives"));
+                    let fault = fault.at(sources.location(second)).hint("leave one of them out");
+                    faults.push(fault.also(sources.location(first), "the other one"));
+                }
                 if faults.len() == before {
                     lay_over(root, &table);
+                    lay_over(&mut earlier, &table);
                 }
             }
             Err(mut new) => faults.append(&mut new),
         }
     }
+}
+
+/// The keys of a value that both tables give, whole or a part of it.
+fn clash(earlier: &Table, later: &Table) -> Option<(Span, Span)> {
+    later.in_order().into_iter().find_map(|(name, own)| {
+        let other = earlier.0.get(name)?;
+        match (other.node.table(), own.node.table()) {
+            (Some(earlier), Some(later)) => clash(earlier, later),
+            _ => Some((other.key, own.key)),
+        }
+    })
 }
 
 /// The tables that `path=value` stands for.

@@ -8,6 +8,7 @@ use crate::stage::vary::with_values;
 use crate::stage::{Context, Factor};
 use crate::unit::{Dimension, Unit};
 use math::scale::Scale;
+use math::text::typed;
 use std::collections::BTreeSet;
 
 /// Levels of a factor that are tried in the settings of a stage.
@@ -59,8 +60,8 @@ impl Check<'_> {
                 Ok(stage) => stage.check(context).into_iter().map(|fault| fault.message).collect(),
             };
             if let Some(fault) = faults.into_iter().find(|fault| !base.contains(fault)) {
-                let message = format!("factor `{name}` sets `{path}` to {value} {}: {fault}", factor.unit);
-                self.complain(factors, &at, Fault::new(message.replace(" :", ":")));
+                let message = format!("factor `{name}` sets `{path}` to {}: {fault}", with_unit(*value, factor));
+                self.complain(factors, &at, Fault::new(message));
                 return;
             }
         }
@@ -116,7 +117,8 @@ impl Check<'_> {
         let all = factor.levels.iter().chain(factor.range.iter().flatten());
         if let Some(value) = all.copied().find(|value| !range.holds(value * unit.factor)) {
             let key = if factor.levels.contains(&value) { "levels" } else { "range" };
-            let message = format!("factor `{name}` sets `{path}` to {value}; it must be {}", range.words());
+            let found = with_unit(value, factor);
+            let message = format!("factor `{name}` sets `{path}` to {found}; it must be {}", range.words());
             self.complain(factors, &steps([name, key]), Fault::new(message));
         }
     }
@@ -125,10 +127,16 @@ impl Check<'_> {
     pub(super) fn scale(&mut self, name: &str, factor: &Factor, node: &Node) {
         let all = factor.levels.iter().chain(factor.range.iter().flatten());
         if let (Scale::Log, Some(value)) = (factor.scale, all.copied().find(|value| *value <= 0.0)) {
-            let message = format!("factor `{name}` has a logarithmic scale and the value {value}");
+            let found = with_unit(value, factor);
+            let message = format!("factor `{name}` has a logarithmic scale and the value {found}");
             self.complain(node, &steps(["scale"]), Fault::new(message).hint("equal ratios need values above 0"));
         }
     }
+}
+
+/// A value of a factor in its unit.
+fn with_unit(value: f64, factor: &Factor) -> String {
+    format!("{} {}", typed(value), factor.unit).trim_end().to_owned()
 }
 
 /// One path of a factor.

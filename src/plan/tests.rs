@@ -70,8 +70,21 @@ fn profiles_and_options_lie_over_the_file_in_that_order() {
     assert_eq!(settings(Some("quick"), &[]), ok("3 \"few.csv\""));
     assert_eq!(settings(Some("quick"), &["stage.runs.file='set.csv'", "workflow.seed = 0x10"]), ok("16 \"set.csv\""));
     assert_eq!(settings(None, &["stage.runs.file=plain text.csv"]), ok("3 \"plain text.csv\""), "falls back to text");
-    assert_eq!(settings(None, &["stage.runs.file=a", "stage.\"runs\".file=b"]), ok("3 \"b\""), "the last one counts");
     assert_eq!(settings(None, &["workflow.title=new key"]), ok("3 \"runs.csv\""));
+}
+
+#[test]
+fn two_options_for_one_value_are_a_fault() {
+    let fault = |first: &str, second: &str| settings(None, &[first, second]).unwrap_err();
+    let words = "gives what an option before it gives";
+    let file = "stage.runs.file=a";
+    assert_eq!(fault(file, "stage.\"runs\".file=b"), format!("--set:1:1: `stage.\"runs\".file=b` {words}"));
+    assert_eq!(fault(file, file), format!("--set:1:1: `{file}` {words}"));
+    assert_eq!(fault(file, "stage.runs={file = 'b'}"), format!("--set:1:13: `stage.runs={{file = 'b'}}` {words}"));
+    assert_eq!(fault("stage.runs={file = 'b'}", file), format!("--set:1:1: `{file}` {words}"));
+    assert_eq!(fault("factor.Ec.levels=[1]", "factor.Ec=2"), format!("--set:1:1: `factor.Ec=2` {words}"));
+    assert_eq!(settings(None, &[file, "stage.runs.delimiter=comma"]), Ok("3 \"a\"".to_owned()));
+    assert_eq!(settings(None, &["stage.runs={file = 'b'}", "stage.runs.delimiter=tab"]), Ok("3 \"b\"".to_owned()));
 }
 
 #[test]

@@ -10,6 +10,7 @@ use crate::stage::units::presented;
 use crate::stage::{Class, Context, kind};
 use crate::store::{Campaign, Store, StoreError};
 use std::collections::HashSet;
+use std::error::Error;
 use std::sync::Arc;
 
 /// What was asked for on the command line, besides the workflow.
@@ -27,9 +28,9 @@ pub struct Asked {
 ///
 /// # Errors
 /// The store cannot be read.
-pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper, StoreError> {
+pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper, Box<dyn Error>> {
     // Without memos every task is seen, whichever program ran it, so that the page depends on the results alone.
-    let report = decide(workflow, store, &[], false);
+    let report = decide(workflow, store, &[], false)?;
     let mut parts = Vec::with_capacity(workflow.stages.len());
     for (node, (cost, outcome)) in workflow.stages.iter().zip(tasks(workflow, &report, store)?) {
         let status = report.stages.iter().find(|stage| stage.name == node.name).map(|stage| &stage.status);

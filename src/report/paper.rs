@@ -137,10 +137,13 @@ pub struct Cost {
 impl Cost {
     /// Adds a finished task.
     pub(super) fn add(&mut self, started: i64, seconds: f64, origin: &Origin) {
+        self.tasks += 1;
+        if !origin.is_known() {
+            return;
+        }
         let end = started.saturating_add((1000.0 * seconds) as i64);
         let (first, last) = self.span.unwrap_or((started, end));
         self.span = Some((first.min(started), last.max(end)));
-        self.tasks += 1;
         self.seconds += seconds;
         if !self.origins.contains(origin) {
             self.origins.insert(origin.clone());

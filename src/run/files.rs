@@ -1,7 +1,7 @@
 //! The files that stages look at while they decide.
 
 use crate::plan::Workflow;
-use crate::stage::beside::plain;
+use crate::stage::beside::read;
 use std::path::{Path, PathBuf};
 
 /// Files that were looked at, with their digests.
@@ -16,7 +16,6 @@ pub(super) fn path_of(workflow: &Workflow, path: &str) -> PathBuf {
 pub(super) fn unchanged(workflow: &Workflow, files: &Files) -> bool {
     files.iter().all(|(path, digest)| {
         let path = path_of(workflow, path);
-        let bytes = plain(&path).ok().and_then(|_| std::fs::read(&path).ok());
-        bytes.is_some_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
+        read(&path).is_ok_and(|bytes| blake3::hash(&bytes).to_hex().as_str() == digest)
     })
 }

@@ -3,14 +3,14 @@
 use super::files::path_of;
 use super::stages::wanted;
 use crate::plan::Workflow;
-use crate::stage::beside::plain;
+use crate::stage::beside::read;
 use crate::stage::forecast::{Ahead, Forecast};
 
 /// The forecast of every stage, in the order of the workflow.
 pub fn forecasts(workflow: &Workflow) -> Vec<Forecast> {
     let file = |path: &str| {
         let path = path_of(workflow, path);
-        plain(&path).ok().and_then(|_| std::fs::read(&path).ok())
+        read(&path).ok()
     };
     let mut all: Vec<Forecast> = Vec::with_capacity(workflow.stages.len());
     for node in &workflow.stages {

@@ -5,6 +5,7 @@ use super::far::{Far, Heard, Leave};
 use super::{Answer, Cluster, Event, Loop, Watch, task};
 use crate::artifact::{ContentHash, Key};
 use crate::cluster::Line;
+use crate::stage::rows::GATHER;
 use crate::stage::{Failure, StageError, is_far};
 use crate::store::{Claim, Store, StoreError};
 use std::sync::atomic::Ordering;
@@ -28,8 +29,9 @@ impl Loop<'_, '_> {
         let goes = |node: &NodeId| {
             let stage = &self.workflow.stages[self.board.stage(*node)].name;
             let task = self.board.task(*node);
+            // A gathering task needs a summary of each run, which is here.
             // Workers do not know of one another, so they could not keep a bound on a program's runs.
-            task.at_once.is_none() && far.takes(stage, is_far(task.work))
+            task.work != GATHER.name && task.at_once.is_none() && far.takes(stage, is_far(task.work))
         };
         let nodes: Vec<NodeId> = self.ready.iter().filter(goes).collect();
         for node in nodes {

@@ -6,7 +6,7 @@ use super::run_memo::RunMemo;
 use super::task::Lost;
 use crate::artifact::{Artifact, ContentHash};
 use crate::plan::Workflow;
-use crate::stage::beside::plain;
+use crate::stage::beside::read;
 use crate::stage::cached::CachedRun;
 use crate::stage::rows::DesignRows;
 use crate::stage::{FileInput, Library, Memory, Outcome, StageError, Task};
@@ -72,8 +72,7 @@ impl Library for Shelf<'_> {
             let message = format!("{}: {why}", full.display());
             StageError::new(message).hint("paths are relative to the folder of the workflow")
         };
-        plain(&full).map_err(absent)?;
-        let bytes = std::fs::read(&full).map_err(|e| absent(e.to_string()))?;
+        let bytes = read(&full).map_err(absent)?;
         let digest = blake3::hash(&bytes);
         self.lookups.borrow_mut().files.push((path.to_owned(), digest.to_hex().to_string()));
         Ok(FileInput { name: name.to_owned(), path: full, digest: *digest.as_bytes() })

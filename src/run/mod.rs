@@ -41,7 +41,7 @@ pub use commit::commit;
 pub use event::{Event, Silent, Watch};
 pub use forecast::{forecasts, forecasts_of};
 pub use memo::remembered;
-pub use report::Report;
+pub use report::{Report, Unreadable};
 pub use settings::{Cluster, RunSettings};
 pub use stages::{StageReport, StageStatus};
 pub use worker::{Worked, Worker, program};
@@ -121,7 +121,10 @@ fn panicked(panic: &(dyn Any + Send)) -> Failure {
 
 /// Decides what is done of `workflow` and what is left, by the decisions of [`run`], and starts nothing. `targets` are the
 /// stages that are wanted, all when empty; without `memos` every task is looked up.
-pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Report {
+///
+/// # Errors
+/// The store cannot be read: nobody knows what is in it, which is not the same as nothing.
+pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: bool) -> Result<Report, Unreadable> {
     let settings = RunSettings {
         jobs: 0,
         keep_going: true,
@@ -131,7 +134,11 @@ pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: boo
         memos,
         cluster: None,
     };
-    run(workflow, store, &settings, &Silent, &AtomicBool::new(false))
+    let report = run(workflow, store, &settings, &Silent, &AtomicBool::new(false));
+    match report.broken {
+        Some(why) => Err(Unreadable(why)),
+        None => Ok(report),
+    }
 }
 
 /// What a worker sends back.
@@ -259,7 +266,7 @@ impl Loop<'_, '_> {
             }
         }
         let keeps = (!self.settings.dry).then_some(self.store);
-        for report in self.stages.close(self.workflow, &self.board, keeps) {
+        for report in self.stages.close(self.workflow, &self.board, keeps, &mut self.streamed) {
             moved = true;
             self.failed |= matches!(report.status, StageStatus::Failed(_));
             let without_result = matches!(report.status, StageStatus::Failed(_) | StageStatus::Skipped(_));
@@ -335,7 +342,7 @@ impl Loop<'_, '_> {
                 continue;
             }
             let again = self.forced(node);
-            match task::Order::new(&mut self.board, node, self.store, &self.streamed, again) {
+            match task::Order::new(&mut self.board, node, self.store, &mut self.streamed, again) {
                 Ok(order) => self.give(order),
                 Err(lost) => match self.recompute(*lost) {
                     Ok(()) => return,
@@ -350,7 +357,12 @@ impl Loop<'_, '_> {
     fn recompute(&mut self, lost: task::Lost) -> Result<(), StageError> {
         if !lost.error.is_missing() || !self.lost.insert(lost.content) {
             let hint = "`flow store verify` says what is damaged; see that the store can be read and written";
-            return Err(StageError::new(lost.error.to_string()).hint(hint));
+            let error = StageError::new(lost.error.to_string()).hint(hint);
+            // Who only asks what there is takes a failed stage for one without results.
+            if self.settings.dry && !lost.error.is_missing() {
+                self.fatal.get_or_insert(lost.error);
+            }
+            return Err(error);
         }
         self.again = true;
         Ok(())

@@ -4,6 +4,11 @@ use super::board::{Board, TaskCount, TaskReport};
 use super::stages::{StageReport, Stages};
 use crate::store::ObjectId;
 
+/// Why nobody can tell what a store holds.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Unreadable(pub(super) String);
+
 /// The outcome of a campaign.
 pub struct Report {
     /// Every wanted stage, in the order of the workflow.

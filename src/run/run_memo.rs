@@ -7,6 +7,7 @@
 
 use super::board::{Board, NodeId, TaskState};
 use super::files::{Files, unchanged};
+use super::streamed::Streamed;
 use crate::artifact::Key;
 use crate::plan::Workflow;
 use crate::stage::cached::{CachedRun, CachedRuns, RunSummaries};
@@ -79,7 +80,15 @@ impl RunMemo {
     /// Stores a memo of the runs of a gathering task for the next campaign. `rows` are the rows of its design, `files` the
     /// files that the runs read. Nothing is written when nearly all runs came from the old memo, which then serves again, or
     /// when nothing was gathered now, because all runs would have to be read for it.
-    pub(super) fn store(store: &Store, key: &Key, board: &Board, gather: NodeId, rows: &DesignRows, files: &Files) {
+    pub(super) fn store(
+        store: &Store,
+        streamed: &mut Streamed,
+        key: &Key,
+        board: &Board,
+        gather: NodeId,
+        rows: &DesignRows,
+        files: &Files,
+    ) {
         if !matches!(board.state(gather), TaskState::Done { cached: false, .. }) {
             return;
         }
@@ -89,7 +98,7 @@ impl RunMemo {
         if runs.len() != rows.len() || new * FEW <= runs.len() {
             return;
         }
-        let Some((objects, summaries)) = objects(store, board, gather, &runs) else { return };
+        let Some((objects, summaries)) = objects(store, streamed, board, gather, &runs) else { return };
         let mut data: Vec<u8> = rows.words().iter().flat_map(|word| word.to_le_bytes()).collect();
         data.extend(summaries.to_bytes());
         // Without a memo the next campaign looks at every task, and gets the same result.
@@ -103,7 +112,13 @@ impl RunMemo {
 const FEW: usize = 20;
 
 /// Objects and summaries of the runs at these indices among the inputs of a node that is done.
-fn objects(store: &Store, board: &Board, gather: NodeId, indices: &[usize]) -> Option<(Vec<ObjectId>, RunSummaries)> {
+fn objects(
+    store: &Store,
+    streamed: &mut Streamed,
+    board: &Board,
+    gather: NodeId,
+    indices: &[usize],
+) -> Option<(Vec<ObjectId>, RunSummaries)> {
     let task = board.task(gather);
     let nothing = CachedRuns::default();
     let cached = task.cached.as_deref().unwrap_or(&nothing);
@@ -118,9 +133,7 @@ fn objects(store: &Store, board: &Board, gather: NodeId, indices: &[usize]) -> O
                 cached.runs[run].2
             }
             None => {
-                if !summaries.push_run(&*store.get(&content).ok()?) {
-                    return None;
-                }
+                summaries.push(streamed.run(&content, store).ok()??);
                 board.input_key(gather, *index)?
             }
         };

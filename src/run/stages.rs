@@ -5,6 +5,7 @@ use super::files::Files;
 use super::library::{Lookups, Shelf};
 use super::memo::{self, Base};
 use super::run_memo::RunMemo;
+use super::streamed::Streamed;
 use super::task::Lost;
 use crate::artifact::{ContentHash, FirstBytes, Key};
 use crate::plan::Workflow;
@@ -243,7 +244,13 @@ impl Stages {
     }
 
     /// Ends the stages that can end now, and stores their memos in `store`, if there is one.
-    pub(super) fn close(&mut self, workflow: &Workflow, board: &Board, store: Option<&Store>) -> Vec<StageReport> {
+    pub(super) fn close(
+        &mut self,
+        workflow: &Workflow,
+        board: &Board,
+        store: Option<&Store>,
+        streamed: &mut Streamed,
+    ) -> Vec<StageReport> {
         let mut closed = Vec::new();
         for index in 0..self.entries.len() {
             if !self.entries[index].wanted {
@@ -251,7 +258,7 @@ impl Stages {
             }
             let Some(status) = self.end(workflow, index, board) else { continue };
             if let (StageStatus::Done(content), Some(store)) = (&status, store) {
-                self.store_memos(index, *content, board, store);
+                self.store_memos(index, *content, board, store, streamed);
             }
             self.entries[index].state = State::Ended(status);
             closed.push(self.report(workflow, index, board));
@@ -259,11 +266,18 @@ impl Stages {
         closed
     }
 
-    fn store_memos(&mut self, index: usize, content: ContentHash, board: &Board, store: &Store) {
+    fn store_memos(
+        &mut self,
+        index: usize,
+        content: ContentHash,
+        board: &Board,
+        store: &Store,
+        streamed: &mut Streamed,
+    ) {
         let entry = &mut self.entries[index];
         if let Some(key) = &entry.key {
             if let (State::Finishing(node), Some(run), Some(rows)) = (&entry.state, &entry.run, &entry.rows) {
-                RunMemo::store(store, run, board, *node, rows, &entry.files);
+                RunMemo::store(store, streamed, run, board, *node, rows, &entry.files);
             }
             let nodes = board.closure(&entry.asked);
             memo::store(store, key, content, board, &nodes, std::mem::take(&mut entry.files));

@@ -3,10 +3,11 @@
 
 use crate::artifact::{Artifact, ContentHash, FirstBytes};
 use crate::stage::cached::{RunSummaries, RunSummary};
+use crate::store::{Store, StoreError};
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
-/// Summaries of the runs that this campaign has computed, by the content of their results.
+/// Summaries of the runs that this campaign has computed or read, by the content of their results.
 #[derive(Default)]
 pub(super) struct Streamed {
     summaries: RunSummaries,
@@ -30,8 +31,17 @@ impl Streamed {
         }
     }
 
-    /// The run with this result.
-    pub(super) fn get(&self, content: &ContentHash) -> Option<RunSummary<'_>> {
-        self.summaries.get(*self.indices.get(content)? as usize)
+    /// The run with this result, none when the result is no run. It is read when its summary is not there yet: another
+    /// process or a worker on another machine computed it, or an earlier campaign.
+    ///
+    /// # Errors
+    /// Those of [`Store::get`].
+    pub(super) fn run(&mut self, content: &ContentHash, store: &Store) -> Result<Option<RunSummary<'_>>, StoreError> {
+        if !self.indices.contains_key(content)
+            && let Some(summary) = summary(&*store.get_once(content)?)
+        {
+            self.put(*content, &summary);
+        }
+        Ok(self.indices.get(content).and_then(|&index| self.summaries.get(index as usize)))
     }
 }

@@ -56,7 +56,7 @@ impl Order {
         board: &mut Board,
         node: NodeId,
         store: &Store,
-        streamed: &Streamed,
+        streamed: &mut Streamed,
         again: bool,
     ) -> Result<Self, Box<Lost>> {
         let known = (board.take_text(node), board.inputs(node), board.key_of(node));
@@ -74,18 +74,15 @@ impl Order {
             let lost = |error| Box::new(Lost { content: *content, error });
             let known = match cached.next_if(|(_, cached)| *cached == index) {
                 Some((run, _)) => old.summaries.get(run),
-                None => streamed.get(content).filter(|_| gathers && name == RUN),
+                None if gathers && name == RUN => streamed.run(content, store).map_err(lost)?,
+                None => None,
             };
             if let Some(summary) = known {
                 summaries.push(summary);
                 indices.push(index);
                 continue;
             }
-            let artifact = store.get(content).map_err(lost)?;
-            match gathers && name == RUN && summaries.push_run(&artifact) {
-                true => indices.push(index),
-                false => inputs.push((name.to_string(), artifact)),
-            }
+            inputs.push((name.to_string(), store.get(content).map_err(lost)?));
         }
         if !indices.is_empty() {
             inputs.push(("cached".to_owned(), Arc::new(summaries.artifact(&indices))));

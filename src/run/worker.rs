@@ -51,6 +51,8 @@ pub struct Worked {
 const LOOK_EACH: Duration = Duration::from_millis(200);
 /// Pause between two reports of where a task stands.
 const STANDS_EACH: Duration = Duration::from_secs(5);
+/// Tasks in a row that others had begun before a worker looks which are.
+const PATIENCE: usize = 8;
 /// Part of a worker's life that is left for ending it, and the most that is.
 const ENDING: (f64, f64) = (0.05, 60.0);
 /// A task that begins within this first part of a worker's life counts as having had all of it.
@@ -92,6 +94,8 @@ impl Worker {
                 running: HashMap::new(),
                 lasted: HashMap::new(),
                 begun: 0,
+                missed: 0,
+                patience: PATIENCE,
                 worked: Worked::default(),
             }
             .go(&inbox)
@@ -134,6 +138,10 @@ struct Loop<'pool, 'env> {
     /// By stage: the longest duration of a task so far, seconds.
     lasted: HashMap<String, f64>,
     begun: usize,
+    /// Tasks in a row that others had begun.
+    missed: usize,
+    /// So many of them make it look which tasks are begun, so that it does not try a hundred thousand one by one.
+    patience: usize,
     worked: Worked,
 }
 
@@ -181,10 +189,14 @@ impl Loop<'_, '_> {
             self.slices.add(tasks);
         }
         // Workers of a later round skip the tasks that are begun.
-        if first < self.lists.tasks() {
-            let begun = self.queue.begun().map_err(|error| error.to_string())?;
-            self.slices.forget(&begun.into_iter().collect());
-        }
+        if first < self.lists.tasks() { self.forget_begun() } else { Ok(()) }
+    }
+
+    /// Forgets what others have begun. A shared disk may show that late, so the next look comes after twice as many misses.
+    fn forget_begun(&mut self) -> Result<(), String> {
+        let begun = self.queue.begun().map_err(|error| error.to_string())?;
+        self.slices.forget(&begun.into_iter().collect());
+        (self.missed, self.patience) = (0, 2 * self.patience);
         Ok(())
     }
 
@@ -208,8 +220,13 @@ impl Loop<'_, '_> {
                 return Ok(());
             }
             if !self.queue.begin(task).map_err(|error| error.to_string())? {
+                self.missed += 1;
+                if self.missed >= self.patience {
+                    self.forget_begun()?;
+                }
                 continue;
             }
+            (self.missed, self.patience) = (0, PATIENCE);
             tell(self.report, &Message::Begun { task }).map_err(|error| error.to_string())?;
             self.begun += 1;
             self.running.insert(task, (self.started.elapsed().as_secs_f64(), line.stage.clone()));

@@ -20,6 +20,7 @@ use super::vector::{dot, minus, norm};
 use super::voxels::Voxels;
 use super::{medial, transform, union};
 use math::elementary::acos;
+use math::text::Amount;
 use std::f64::consts::PI;
 
 /// Points of the surface from which bubbles grow.
@@ -136,12 +137,12 @@ impl Clump {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ClumpFault {
     /// A setting outside its range.
-    #[error("{name} is {found}; it must be {expected}")]
+    #[error("{name} is {found:#}; it must be {expected}")]
     Value {
         /// Which.
         name: &'static str,
         /// What was given.
-        found: f64,
+        found: Amount,
         /// What it must be.
         expected: &'static str,
     },
@@ -156,13 +157,14 @@ pub fn faults(pebbles: &Pebbles, bound: &Bound) -> Vec<ClumpFault> {
     let mut need = |ok: bool, name, found, expected| {
         faults.extend((!ok).then_some(ClumpFault::Value { name, found, expected }));
     };
-    need(pebbles.ratio > 0.0 && pebbles.ratio < 1.0, "ratio", pebbles.ratio, "above 0 and below 1");
+    need(pebbles.ratio > 0.0 && pebbles.ratio < 1.0, "ratio", Amount::number(pebbles.ratio), "above 0 and below 1");
     let distance = pebbles.distance.unwrap_or(90.0);
-    need(distance > 0.0 && distance < 180.0, "distance", distance, "an angle above 0 and below 180 degrees");
+    let angle = Amount(distance, "degrees");
+    need(distance > 0.0 && distance < 180.0, "distance", angle, "an angle above 0 and below 180 degrees");
     for (name, value) in [("volume", bound.volume), ("inertia", bound.inertia), ("surface", bound.surface)] {
-        need(value > 0.0 && value.is_finite(), name, value, "a relative error above 0");
+        need(value > 0.0 && value.is_finite(), name, Amount::number(value), "a relative error above 0");
     }
-    need((1..=1000).contains(&bound.most), "most", bound.most as f64, "from 1 to 1000 pebbles");
+    need((1..=1000).contains(&bound.most), "most", Amount::number(bound.most as f64), "from 1 to 1000 pebbles");
     faults
 }
 

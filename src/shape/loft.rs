@@ -14,16 +14,17 @@
 
 use super::mesh::Mesh;
 use math::elementary::{pow, sin_cos};
+use math::text::Amount;
 use std::f64::consts::TAU;
 
 /// A section across the longest side.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Section {
-    /// Where along the longest side.
+    /// Where along the longest side (m).
     pub position: f64,
-    /// Largest thickness a.
+    /// Largest thickness a (m).
     pub thickness: f64,
-    /// Largest height b.
+    /// Largest height b (m).
     pub height: f64,
     /// Exponent of the outline; 2 is an ellipse.
     pub exponent: f64,
@@ -36,36 +37,36 @@ pub enum LoftFault {
     #[error("{0} sections; a stone needs at least 2, the first and the last where it ends")]
     Few(usize),
     /// Order.
-    #[error("section {section} is at {at:e}, not beyond the one before it; list sections along the longest side")]
+    #[error("section {section} is at {at:#}, not beyond the one before it; list sections along the longest side")]
     Order {
         /// From 1.
         section: usize,
         /// Its position.
-        at: f64,
+        at: Amount,
     },
     /// A number outside its range.
-    #[error("section {section}: {name} is {found}; it must be {expected}")]
+    #[error("section {section}: {name} is {found:#}; it must be {expected}")]
     Value {
         /// From 1.
         section: usize,
         /// Which number.
         name: &'static str,
         /// What was given.
-        found: f64,
+        found: Amount,
         /// What it must be.
         expected: &'static str,
     },
     /// One extent only.
     #[error(
-        "section {section} has a thickness of {thickness:e} and a height of {height:e}; give both, or 0 for both at a pointed end"
+        "section {section} has a thickness of {thickness:#} and a height of {height:#}; give both, or 0 for both at a pointed end"
     )]
     Line {
         /// From 1.
         section: usize,
         /// Its thickness.
-        thickness: f64,
+        thickness: Amount,
         /// Its height.
-        height: f64,
+        height: Amount,
     },
     /// No extent between the ends.
     #[error("section {0} is a point between the ends: the stone would fall in two")]
@@ -86,22 +87,23 @@ pub fn faults(sections: &[Section]) -> Vec<LoftFault> {
         let mut need = |ok: bool, name, found, expected| {
             faults.extend((!ok).then_some(LoftFault::Value { section, name, found, expected }));
         };
-        need(s.position.is_finite(), "position", s.position, "a finite length");
+        need(s.position.is_finite(), "position", Amount(s.position, "m"), "a finite length");
         let length = |x: f64| x >= 0.0 && x.is_finite();
-        need(length(s.thickness), "thickness", s.thickness, "a finite length of at least 0");
-        need(length(s.height), "height", s.height, "a finite length of at least 0");
+        need(length(s.thickness), "thickness", Amount(s.thickness, "m"), "a finite length of at least 0");
+        need(length(s.height), "height", Amount(s.height, "m"), "a finite length of at least 0");
         need(
             (1.0..=20.0).contains(&s.exponent),
             "exponent",
-            s.exponent,
+            Amount::number(s.exponent),
             "from 1 (rhombus) over 2 (ellipse) to 20 (box)",
         );
         if k > 0 && !(s.position > sections[k - 1].position) {
-            faults.push(LoftFault::Order { section, at: s.position });
+            faults.push(LoftFault::Order { section, at: Amount(s.position, "m") });
         }
         let point = s.thickness == 0.0 && s.height == 0.0;
         if !point && (s.thickness == 0.0 || s.height == 0.0) {
-            faults.push(LoftFault::Line { section, thickness: s.thickness, height: s.height });
+            let [thickness, height] = [s.thickness, s.height].map(|extent| Amount(extent, "m"));
+            faults.push(LoftFault::Line { section, thickness, height });
         }
         if point && k > 0 && section < sections.len() {
             faults.push(LoftFault::Waist(section));
@@ -261,7 +263,7 @@ mod tests {
         let odd = [good, section(0.0, f64::NAN, 1.0, 2.0), section(1.0, 0.0, 0.0, 2.0), section(2.0, 1.0, 0.0, 50.0)];
         let found = faults(&odd);
         assert!(matches!(found[0], LoftFault::Value { section: 2, name: "thickness", .. }));
-        assert!(found.contains(&LoftFault::Order { section: 2, at: 0.0 }));
+        assert!(found.contains(&LoftFault::Order { section: 2, at: Amount(0.0, "m") }));
         assert!(found.contains(&LoftFault::Waist(3)));
         assert!(matches!(found[found.len() - 2], LoftFault::Value { section: 4, name: "exponent", .. }));
         assert!(matches!(found[found.len() - 1], LoftFault::Line { section: 4, .. }));

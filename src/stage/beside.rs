@@ -1,8 +1,10 @@
 //! Files beside the workflow, checked before anything runs: missing files, and files outside every key.
 
 use super::Complaint;
-use std::fs::Metadata;
-use std::io::ErrorKind;
+use rustix::fs::OFlags;
+use std::fs::{Metadata, OpenOptions};
+use std::io::{ErrorKind, Read};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
 /// Largest file that a workflow may name, in bytes.
@@ -37,12 +39,15 @@ impl Beside {
         None
     }
 
-    /// The bytes of a file that is named under `key`, where it is small enough to be looked into before anything runs. One
-    /// that cannot be read now is reported when the stage runs.
+    /// The bytes of a file that is named under `key`, where it is small enough to be looked into before anything runs.
     pub fn bytes(&mut self, key: &str, path: &str) -> Option<Vec<u8>> {
         let full = self.file(key, path)?;
         let small = plain(&full).is_ok_and(|meta| meta.len() <= READ_BEFORE);
-        small.then(|| std::fs::read(full).ok()).flatten()
+        if !small {
+            return None;
+        }
+        let unread = |why: &String| Complaint::new(key, format!("{}: {why}", full.display()));
+        read(&full).inspect_err(|why| self.faults.push(unread(why))).ok()
     }
 
     /// As [`Beside::file`], for a key that need not be set.
@@ -59,6 +64,29 @@ impl Beside {
 
 /// Largest file that is read by the check before anything runs, bytes.
 const READ_BEFORE: u64 = 4 << 20;
+
+/// The bytes of a plain file.
+///
+/// A file of the system may call itself plain and empty, and have a reader wait for ever or read without end: it is opened so
+/// that nothing waits, and read no further than [`LARGEST`].
+///
+/// # Errors
+/// Why it cannot be read, in a few words.
+pub fn read(path: &Path) -> Result<Vec<u8>, String> {
+    plain(path)?;
+    let fail = |e: std::io::Error| match e.kind() {
+        ErrorKind::WouldBlock => "is no plain file: it has a reader wait".to_owned(),
+        _ => format!("cannot be read: {e}"),
+    };
+    let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
+    let file = OpenOptions::new().read(true).custom_flags(flags.bits() as i32).open(path).map_err(fail)?;
+    let mut bytes = Vec::new();
+    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(fail)?;
+    match bytes.len() as u64 > LARGEST {
+        true => Err(format!("has more than {LARGEST} bytes")),
+        false => Ok(bytes),
+    }
+}
 
 /// Metadata of a plain file that is not too large. A folder, a pipe and a device are refused before they are opened,
 /// because opening a pipe waits for ever.

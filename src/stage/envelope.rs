@@ -26,7 +26,8 @@ use stats::envelope::{Estimate, HoekBrown, MohrCoulomb};
 pub struct Envelope {
     /// The stage whose runs are analysed.
     pub table: String,
-    /// The factor that is the confining stress.
+    /// The response or factor that is the confining stress; by default `sigma_3`, that at the peak as the test measured it.
+    #[serde(default = "sigma_3")]
     pub confinement: String,
     /// The response that is the greatest stress at failure; `sigma_1` by default.
     #[serde(default = "sigma_1")]
@@ -34,6 +35,10 @@ pub struct Envelope {
     /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     pub invalid: Invalid,
+}
+
+fn sigma_3() -> String {
+    "sigma_3".to_owned()
 }
 
 fn sigma_1() -> String {
@@ -44,6 +49,7 @@ fn sigma_1() -> String {
 struct Params {
     columns: Columns,
     confinement: String,
+    strength: String,
     units: [String; 2],
 }
 
@@ -62,7 +68,7 @@ impl Stage for Envelope {
     }
 
     fn check(&self, context: &Context) -> Vec<Complaint> {
-        let (factors, responses) = ([self.confinement.clone()], [self.strength.clone()]);
+        let (factors, responses) = self.names(context);
         let mut found = check_names(context, &factors, &responses);
         found.extend(check_given(context, "strength", &[&self.table], &responses));
         for (key, unit) in ["confinement", "strength"].into_iter().zip(self.units(context)) {
@@ -77,21 +83,36 @@ impl Stage for Envelope {
     fn next(&self, known: &Known) -> Result<Step, StageError> {
         let input = known.one("table")?;
         let artifact = known.load(input)?;
-        let (factors, responses) = ([self.confinement.clone()], [self.strength.clone()]);
+        let (factors, responses) = self.names(known.context);
         let wanted = Wanted { factors: &factors, responses: &responses, invalid: self.invalid, ..Wanted::default() };
         let columns = Columns::of(runs(&artifact)?, known.context, wanted)?;
-        let params = Params { columns, confinement: self.confinement.clone(), units: self.units(known.context) };
+        let params = Params {
+            columns,
+            confinement: self.confinement.clone(),
+            strength: self.strength.clone(),
+            units: self.units(known.context),
+        };
         Ok(Step::Finish(Task::new(Self::WORKS[0].name, json!(params)).input("table", input.content)))
     }
 }
 
 impl Envelope {
+    /// The factors (none for all of the table) and responses that it reads.
+    fn names(&self, context: &Context) -> (Vec<String>, Vec<String>) {
+        let (confinement, strength) = (self.confinement.clone(), self.strength.clone());
+        if context.factors.contains_key(&confinement) {
+            return (vec![confinement], vec![strength]);
+        }
+        (Vec::new(), vec![confinement, strength])
+    }
+
     /// Units of the confining stress and of the strength.
     fn units(&self, context: &Context) -> [String; 2] {
-        let factor = context.factors.get(&self.confinement).map(|factor| factor.unit.clone());
-        let response = context.responses.get(&self.strength).map(|response| response.unit.clone());
+        let factor = |name: &String| context.factors.get(name).map(|factor| factor.unit.clone());
+        let response = |name: &String| context.responses.get(name).map(|response| response.unit.clone());
+        let confinement = factor(&self.confinement).or_else(|| response(&self.confinement));
         // A name that is not declared is a fault of its own.
-        [factor, response].map(|unit| unit.unwrap_or_else(|| UNIT.to_owned()))
+        [confinement, response(&self.strength)].map(|unit| unit.unwrap_or_else(|| UNIT.to_owned()))
     }
 }
 
@@ -110,21 +131,27 @@ fn fit(job: &Job) -> Result<Artifact, Failure> {
     let sample = params.columns.sample(table)?;
     let convert = |unit: &str| Conversion::between(unit, UNIT).map_err(|e| StageError::new(e.to_string()));
     let (to_confinement, to_strength) = (convert(&params.units[0])?, convert(&params.units[1])?);
-    let factor = sample.factors.iter().find(|factor| factor.name == params.confinement);
-    let (Some(factor), [strength]) = (factor, &sample.responses[..]) else {
+    let values = |name: &str| -> Option<Vec<Option<f64>>> {
+        let factor = sample.factors.iter().find(|factor| factor.name == name);
+        let measured = || sample.responses.iter().find(|response| response.name == name);
+        factor
+            .map(|factor| factor.values.iter().copied().map(Some).collect())
+            .or_else(|| measured().map(|response| response.values.clone()))
+    };
+    let (Some(confinements), Some(strengths)) = (values(&params.confinement), values(&params.strength)) else {
         return Err(StageError::new("the table lacks the confining stress or the strength").into());
     };
-    let pairs = factor.values.iter().zip(&strength.values);
+    let pairs = confinements.iter().zip(&strengths);
     let points: Vec<[f64; 2]> =
-        pairs.filter_map(|(&p, s)| Some([to_confinement.of(p), to_strength.of((*s)?)])).collect();
+        pairs.filter_map(|(&p, &s)| Some([to_confinement.of(p?), to_strength.of(s?)])).collect();
     let both = MohrCoulomb::fit(&points).zip(HoekBrown::fit(&points));
     let (line, curve) = both.ok_or_else(|| {
         let message = format!("{} tests give no envelope", points.len());
         StageError::new(message).hint("two confining stresses are needed at least, and a strength that rises with them")
     })?;
     let mut notes = Notes::of(&not_valid);
-    notes.missing(&strength.name, points.len(), factor.values.len() - points.len());
-    notes.add(&strength.name, ratio(&curve));
+    notes.missing(&params.strength, points.len(), strengths.len() - points.len());
+    notes.add(&params.strength, ratio(&curve));
     let notes = notes.table();
     let stored = Stored {
         parameters: parameters(&line, &curve),

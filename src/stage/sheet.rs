@@ -17,6 +17,9 @@ pub(super) struct Sheet {
     pub(super) columns: Vec<Vec<String>>,
 }
 
+/// Most columns of a table.
+const MOST_COLUMNS: usize = 1 << 15;
+
 /// White space, and the byte order mark, which inside a file is a blank without width.
 fn blank(c: char) -> bool {
     c.is_whitespace() || c == '\u{feff}'
@@ -59,6 +62,10 @@ impl Sheet {
         let fail = |e: &csv::Error| unequal(e, skipped);
         let heads: Vec<String> =
             reader.headers().map_err(|e| fail(&e))?.iter().map(|head| head.trim_matches(blank).to_owned()).collect();
+        if heads.len() > MOST_COLUMNS {
+            let message = format!("the first line has {} cells; at most {MOST_COLUMNS} columns are read", heads.len());
+            return Err(StageError::new(message).hint("write a row for each of what is now a column"));
+        }
         check(&heads)?;
         let mut columns = vec![Vec::new(); heads.len()];
         for (row, record) in reader.records().enumerate() {

@@ -1,6 +1,6 @@
 //! The unit of work, and the function that computes it.
 
-use super::beside::plain;
+use super::beside::read;
 use super::cached::CachedRuns;
 use super::{Packed, StageError};
 use crate::artifact::{Artifact, ContentHash};
@@ -175,8 +175,7 @@ impl Job<'_> {
         let fail = |message: String| Failure::from(StageError::new(message));
         let file = self.files.iter().find(|f| f.name == name).ok_or_else(|| fail(format!("no file `{name}`")))?;
         let unread = |why: String| fail(format!("{}: {why}", file.path.display()));
-        plain(&file.path).map_err(unread)?;
-        let bytes = std::fs::read(&file.path).map_err(|e| unread(e.to_string()))?;
+        let bytes = read(&file.path).map_err(unread)?;
         if *blake3::hash(&bytes).as_bytes() != file.digest {
             return Err(fail(format!("{} changed while the campaign ran", file.path.display())));
         }

@@ -8,7 +8,6 @@ use super::folder::{Folder, Strange};
 use super::mark::Mark;
 use super::{Origin, StoreError};
 use serde::{Deserialize, Serialize};
-use std::io::ErrorKind;
 
 /// Folder of the records.
 pub(super) const FOLDER: &str = "runs";
@@ -123,7 +122,7 @@ pub(super) fn read(disk: &Disk, mark: &Mark, number: u64) -> Result<Option<Campa
     let bytes = match disk.folder(FOLDER).and_then(|folder| folder.read(&name, MOST)) {
         Ok(bytes) => bytes,
         Err(error) if Strange::is(&error) => return Ok(None),
-        Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => return Ok(None),
+        Err(error) if disk.lacks(&error) => return Ok(None),
         Err(error) => return Err(disk.fail("read", &disk.path(FOLDER, &name), error)),
     };
     let Ok(campaign) = serde_json::from_slice::<Campaign>(&bytes) else { return Ok(None) };

@@ -110,6 +110,7 @@ impl Store {
     }
 
     fn sweep_alone(&self, reachable: &HashSet<Key>, really: bool, grace: bool) -> Result<Swept, StoreError> {
+        object::check_shards(&self.disk)?;
         let mut swept = Swept::default();
         let mut doomed: Vec<(String, String)> = Vec::new();
         // Names hold the first bytes of a key: an object goes only if no reachable key begins like that.

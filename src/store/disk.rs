@@ -75,11 +75,16 @@ impl Disk {
         inside.split('/').filter(|part| !part.is_empty()).try_fold(root, |folder, part| folder.inner(part))
     }
 
+    /// Whether an error says that a file or folder is not there, though the store is. One that is only read need not be there.
+    pub(super) fn lacks(&self, error: &std::io::Error) -> bool {
+        error.kind() == ErrorKind::NotFound && (self.read_only || self.root.is_dir())
+    }
+
     /// As [`Disk::folder`], but `None` when there is no such folder.
     pub(super) fn find_folder(&self, inside: &str) -> Result<Option<Folder>, StoreError> {
         match self.folder(inside) {
             Ok(folder) => Ok(Some(folder)),
-            Err(error) if error.kind() == ErrorKind::NotFound && (self.read_only || self.root.is_dir()) => Ok(None),
+            Err(error) if self.lacks(&error) => Ok(None),
             Err(error) => Err(self.fail("open the folder", &self.root.join(inside), error)),
         }
     }

@@ -71,6 +71,8 @@ impl Store {
             return Ok(artifact);
         }
         let proven = self.noted(&located.object, prove::object(&self.disk, &located.object, Some(&located.seal)))?;
-        Ok(self.cached(content, proven.artifact))
+        let artifact = Arc::new(proven.artifact);
+        locked(&self.cache).put(content, artifact.clone());
+        Ok(artifact)
     }
 }

@@ -53,7 +53,7 @@ pub(super) fn read(disk: &Disk, mark: &Mark, key: &Key) -> Result<Option<Memo>, 
     let (folder, name) = place(mark, key);
     match disk.folder(&folder).and_then(|folder| folder.read(&name, MOST)) {
         Ok(bytes) => Ok(unpack(mark, key, &bytes)),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound && disk.root.is_dir() => Ok(None),
+        Err(error) if disk.lacks(&error) => Ok(None),
         Err(error) if Strange::is(&error) => Ok(None),
         Err(error) => Err(disk.fail("read", &disk.path(&folder, &name), error)),
     }

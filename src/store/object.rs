@@ -157,6 +157,24 @@ pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Folder, &str, &str, u64))
     Ok(())
 }
 
+/// Whether every folder of objects can be listed: what cannot be seen is not gone.
+///
+/// # Errors
+/// One that cannot, or that is no folder.
+pub(super) fn check_shards(disk: &Disk) -> Result<(), StoreError> {
+    let Some(objects) = disk.find_folder("objects")? else { return Ok(()) };
+    let mut names = Vec::new();
+    let listed = objects.list(|name, _| names.extend(is_shard(name).then(|| format!("objects/{name}"))));
+    listed.map_err(|error| disk.fail("list", &disk.root.join("objects"), error))?;
+    names.sort_unstable();
+    for name in names {
+        if let Some(shard) = disk.find_folder(&name)? {
+            shard.list(|_, _| {}).map_err(|error| disk.fail("list", &disk.root.join(&name), error))?;
+        }
+    }
+    Ok(())
+}
+
 /// The folder of objects, and the names of the folders inside it.
 pub(super) fn shards(disk: &Disk) -> Result<Option<(Folder, Vec<String>)>, StoreError> {
     let Some(objects) = disk.find_folder("objects")? else { return Ok(None) };

@@ -22,6 +22,11 @@ impl Origin {
         Self { machine: Self::machine(), version: env!("CARGO_PKG_VERSION").to_owned(), commit: String::new() }
     }
 
+    /// Whether anything is known of it: a result whose record was lost is found again by its object, which does not say.
+    pub fn is_known(&self) -> bool {
+        !(self.machine.is_empty() && self.version.is_empty())
+    }
+
     /// Name of this machine.
     pub(super) fn machine() -> String {
         let machine = ["/proc/sys/kernel/hostname", "/etc/hostname"].iter().find_map(|file| {

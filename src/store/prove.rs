@@ -10,7 +10,6 @@ use super::folder::Strange;
 use super::hdf5::{self, Hdf5Error};
 use super::object::{self, ObjectId, Seal};
 use crate::artifact::{Artifact, ContentHash, Key};
-use std::io::ErrorKind;
 
 /// The largest object that is opened without an own record of its size, bytes.
 const MOST_UNRECORDED: u64 = 1 << 32;
@@ -78,7 +77,7 @@ fn image(
     let missing = || StoreError::Missing { content: *content };
     let found = disk.find_folder(folder)?.ok_or_else(missing)?;
     let read = |most| match found.read(name, most) {
-        Err(error) if error.kind() == ErrorKind::NotFound && disk.root.is_dir() => Err(missing()),
+        Err(error) if disk.lacks(&error) => Err(missing()),
         Err(error) if Strange::is(&error) => damaged(&error.to_string()),
         other => other.map_err(|error| disk.fail("read", &disk.path(folder, name), error)),
     };

@@ -80,21 +80,36 @@ impl Store {
     /// [`StoreError::Missing`] or [`StoreError::Damaged`] (see [`StoreError::is_missing`]): compute it again. Any
     /// other: the store, or the remote, cannot be read.
     pub fn get(&self, content: &ContentHash) -> Result<Arc<Artifact>, StoreError> {
+        if let Some(artifact) = locked(&self.cache).get(content) {
+            return Ok(artifact);
+        }
+        let artifact = Arc::new(self.get_from_disk(content)?);
+        locked(&self.cache).put(*content, artifact.clone());
+        Ok(artifact)
+    }
+
+    /// As [`Store::get`], for one that nobody is likely to read again soon: what others read stays in memory.
+    ///
+    /// # Errors
+    /// Those of [`Store::get`].
+    pub fn get_once(&self, content: &ContentHash) -> Result<Arc<Artifact>, StoreError> {
+        let in_memory = locked(&self.cache).get(content);
+        in_memory.map_or_else(|| self.get_from_disk(content).map(Arc::new), Ok)
+    }
+
+    fn get_from_disk(&self, content: &ContentHash) -> Result<Artifact, StoreError> {
         match self.get_here(content) {
             Err(error) if error.is_missing() && self.fetch(content)? => self.get_here(content),
             got => got,
         }
     }
 
-    fn get_here(&self, content: &ContentHash) -> Result<Arc<Artifact>, StoreError> {
-        if let Some(artifact) = locked(&self.cache).get(content) {
-            return Ok(artifact);
-        }
+    fn get_here(&self, content: &ContentHash) -> Result<Artifact, StoreError> {
         let mut failure = StoreError::Missing { content: *content };
         let records = locked(self.index()?).with_content(content);
         for record in records {
             match self.read(&record) {
-                Ok(proven) => return Ok(self.cached(*content, proven.artifact)),
+                Ok(proven) => return Ok(proven.artifact),
                 Err(error) => failure = error,
             }
         }
@@ -102,16 +117,10 @@ impl Store {
         for name in object::with_content(&self.disk, content) {
             if let Some(proven) = self.if_sound(prove::named(&self.disk, &name))? {
                 self.record_again(&proven.id, proven.seal);
-                return Ok(self.cached(*content, proven.artifact));
+                return Ok(proven.artifact);
             }
         }
         Err(failure)
-    }
-
-    pub(super) fn cached(&self, content: ContentHash, artifact: Artifact) -> Arc<Artifact> {
-        let artifact = Arc::new(artifact);
-        locked(&self.cache).put(content, artifact.clone());
-        artifact
     }
 
     /// The text of a finished task, from its object.

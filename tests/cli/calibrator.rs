@@ -30,9 +30,27 @@ fn the_page_is_one_small_file_with_the_numbers_of_the_surfaces_and_computes_noth
     assert!(space.stdout(&["calibrate", "w.toml", "--page", "-"]).starts_with("<!DOCTYPE html>"));
 }
 
-/// Needs Chromium and playwright; CI installs both.
+/// Factors and responses may be called as what every object of the language of the page has.
+#[test]
+fn names_of_the_language_of_the_page_are_names_like_others() {
+    let renamed = CAMPAIGN
+        .replace("\na = {", "\nconstructor = {")
+        .replace("\ny = {", "\ntoString = {")
+        .replace("\"a\"", "\"constructor\"")
+        .replace("\"y\"", "\"toString\"")
+        .replace("{ y = \"16", "{ toString = \"16")
+        .replace("responses.y", "responses.toString")
+        .replace("3*a", "3*constructor");
+    in_a_browser(&renamed);
+}
+
 #[test]
 fn the_page_says_in_a_browser_what_flow_calibrate_says() {
+    in_a_browser(CAMPAIGN);
+}
+
+/// Needs Chromium and playwright; CI installs both.
+fn in_a_browser(campaign: &str) {
     let required = std::env::var("FLOW_TEST_READERS").is_ok();
     let there = Command::new("python3").args(["-c", "import playwright"]).output().is_ok_and(|o| o.status.success())
         && ["chromium", "chromium-browser", "google-chrome"]
@@ -43,7 +61,7 @@ fn the_page_says_in_a_browser_what_flow_calibrate_says() {
         return;
     }
     let space = Space::new();
-    space.write("w.toml", CAMPAIGN);
+    space.write("w.toml", campaign);
     space.run(&["surfaces"]);
     page(&space, &[]);
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/calibrator_check.py");

@@ -207,3 +207,103 @@ fn a_stone_is_not_turned_inside_out_by_its_unit() {
         assert!(told(&output).contains("no length that a stone could be measured in"), "{unit}: {}", told(&output));
     }
 }
+
+/// A process that leaves its group, its session, its folder and its environment is ended with its run all the same.
+#[test]
+fn nothing_that_a_program_starts_outlives_its_run() {
+    let hides =
+        "(cd / && exec env -i setsid sh -c 'echo $$ > \"$0\"; exec sleep 600' \"$OLDPWD/../pid\") & sleep 0.2; echo 1";
+    let space = Space::new();
+    let pid = space.path("pid").display().to_string();
+    let script = hides.replace("\"$OLDPWD/../pid\"", &format!("'{pid}'"));
+    space.write("run.sh", &script);
+    space.write(
+        "w.toml",
+        "[workflow]\nseed = 1\n[response]\ny = {}\n[stage.c]\nkind = \"command\"\nrun = [\"sh\", \"run.sh\"]\n\
+         files = { \"run.sh\" = \"run.sh\" }\nread.y = { file = \"stdout\", pattern = '(\\d+)' }\n",
+    );
+    space.run(&[]);
+    let number = std::fs::read_to_string(space.path("pid")).expect("the process has begun");
+    let program = std::fs::read(format!("/proc/{}/cmdline", number.trim())).unwrap_or_default();
+    assert!(!program.starts_with(b"sleep\0600"), "{number} is alive");
+}
+
+#[test]
+fn a_program_that_cannot_be_started_says_what_helps() {
+    let long = format!("run = [\"echo\", \"{}\"]", "x".repeat(200_000));
+    let read = "read.y = { file = \"stdout\", pattern = '(.*)' }";
+    for (run, words) in [
+        (long.as_str(), "give long texts in a file"),
+        ("run = [\"/tmp\"]", "is it a program, and may you run it?"),
+        ("run = [\"no-such-program\"]", "is it installed and on the PATH?"),
+    ] {
+        let output = program(&format!("{run}\n{read}")).flow(&["run", "w.toml"]);
+        assert!(told(&output).contains(words), "{words}: {}", told(&output));
+    }
+}
+
+#[test]
+fn outputs_do_not_replace_what_is_not_theirs() {
+    let space = Space::new();
+    let campaign = include_str!("campaign.toml");
+    space.write("w.toml", &format!("{campaign}\n[stage.rows]\nkind = \"data\"\nfile = \"rows.runs.csv\"\n"));
+    space.write("rows.runs.csv", "a,y\n1,2\n");
+    space.write("notes.txt", "mine");
+    space.run(&[]);
+    let before = std::fs::read(space.path("w.toml")).expect("the workflow");
+    for (command, words) in [
+        ("report w.toml -o w.toml", "the workflow reads this file"),
+        ("calibrate w.toml --page w.toml", "the workflow reads this file"),
+        ("export w.toml rows --folder .", "the workflow reads this file"),
+        ("report w.toml -o notes.txt", "is no page"),
+    ] {
+        let output = space.flow(&command.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{command}: {}", told(&output));
+        assert!(told(&output).contains(words), "{command}: {}", told(&output));
+    }
+    assert_eq!(std::fs::read(space.path("w.toml")).expect("the workflow"), before);
+    assert_eq!(std::fs::read(space.path("rows.runs.csv")).expect("the table"), b"a,y\n1,2\n");
+    assert_eq!(std::fs::read(space.path("notes.txt")).expect("the notes"), b"mine");
+    // A page takes the place of a page.
+    space.stdout(&["report", "w.toml"]);
+    space.stdout(&["report", "w.toml"]);
+}
+
+/// Names of files and texts of workflows may hold what moves the cursor or renames the window.
+#[test]
+fn messages_do_not_steer_the_terminal() {
+    let space = Space::new();
+    let name = "w\u{1b}]0;x\u{7}.toml";
+    space.write(name, "[workflow]\nsed = 1\ntitle = \"a\u{202e}b\"\n");
+    let args = ["check", name];
+    for colour in ["never", "always"] {
+        let said = space.flow(&[&args[..], &["--color", colour]].concat()).stderr;
+        let said = String::from_utf8(said).expect("text");
+        assert!(
+            said.contains("seed") && !said.contains("\u{1b}]") && !said.contains(['\u{7}', '\u{202e}']),
+            "{said:?}"
+        );
+    }
+    let output = space.flow(&["check", "\u{1b}[2Jnone.toml"]);
+    assert!(!told(&output).contains('\u{1b}'), "{}", told(&output));
+    space.write("w.toml", include_str!("campaign.toml"));
+    let output = space.flow(&["show", "w.toml", "ta\u{1b}[2Jble"]);
+    assert!(!told(&output).contains('\u{1b}'), "{}", told(&output));
+}
+
+/// The kernel's log calls itself a plain, empty file, and has its reader wait for the next line.
+#[test]
+fn a_file_of_the_system_that_waits_is_refused() {
+    let space = data("a,y\n1,2\n", ANOVA);
+    std::fs::remove_file(space.path("d.csv")).expect("removing");
+    std::os::unix::fs::symlink("/proc/kmsg", space.path("d.csv")).expect("a link");
+    assert!(!space.flow(&["run", "w.toml", "d"]).status.success());
+}
+
+#[test]
+fn a_table_of_more_columns_than_anybody_reads_is_refused() {
+    let heads: Vec<String> = (0..40_000).map(|column| format!("c{column}")).collect();
+    let space = data(&format!("{}\n", heads.join(",")), ANOVA);
+    let said = told(&space.flow(&["check", "w.toml"]));
+    assert!(said.contains("the first line has 40000 cells; at most 32768 columns are read"), "{said}");
+}

@@ -28,6 +28,7 @@ mod share;
 mod space;
 mod stop;
 mod trust;
+mod unread;
 mod validity;
 mod verdicts;
 mod vocabulary;

@@ -165,7 +165,7 @@ fn names_are_those_of_the_shipped_workflow(arguments: &[&str]) {
 }
 
 /// Pages for people who look at the repository, by their path in it.
-const PAGES: [&str; 23] = [
+const PAGES: [&str; 24] = [
     "README.md",
     "CHANGELOG.md",
     "workflows/annealing/README.md",
@@ -184,6 +184,7 @@ const PAGES: [&str; 23] = [
     "workflows/guide/messages.md",
     "workflows/c30/README.md",
     "workflows/engines/README.md",
+    "workflows/rcc/README.md",
     "workflows/stones/README.md",
     "store/README.md",
     "src/dem/tests/engine/VALIDATION.md",

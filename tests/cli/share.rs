@@ -65,3 +65,18 @@ fn a_pulled_campaign_is_read_without_a_run_and_audited() {
     assert_eq!(audit.status.code(), Some(1));
     assert!(told(&audit).contains("rows[1]: computed again, and DIFFERENT"), "{}", told(&audit));
 }
+
+#[test]
+fn other_targets_are_answered_from_a_pulled_campaign_as_from_the_own_one() {
+    let space = Space::new();
+    space.write("w.toml", include_str!("campaign.toml"));
+    space.run(&["surfaces", "--store", "ours"]);
+    space.stdout(&["store", "push", "remote", "--unsigned", "--store", "ours"]);
+    space.stdout(&["store", "pull", "remote", "--unsigned", "--store", "theirs"]);
+    let planned = space.stdout(&["plan", "w.toml", "surfaces", "--json", "--store", "theirs"]);
+    let planned: serde_json::Value = serde_json::from_str(&planned).expect("a JSON document");
+    let stages = planned["stages"].as_array().expect("a list");
+    assert!(!stages.is_empty() && stages.iter().all(|stage| stage["state"] == "done"), "{planned}");
+    let answer = |store| space.stdout(&["calibrate", "w.toml", "--json", "--target", "y=18.5 MPa", "--store", store]);
+    assert_eq!(answer("theirs"), answer("ours"));
+}

@@ -261,3 +261,70 @@ fn copy(from: &std::path::Path, to: &std::path::Path) {
         }
     }
 }
+
+/// A folder of the store that cannot be read is not an empty one: nothing that a workflow needs is removed, no command says
+/// that results are missing, and each says what is wrong.
+#[test]
+fn a_store_that_cannot_be_read_is_not_taken_for_an_empty_one() {
+    for broken in ["journal", "objects/FIRST"] {
+        let space = Space::new();
+        space.write("w.toml", include_str!("campaign.toml"));
+        space.run(&[]);
+        let objects = space.objects();
+        let first = objects[0].parent().and_then(|folder| folder.file_name()).expect("a folder").to_owned();
+        let broken = space.path("store").join(broken.replace("FIRST", first.to_str().expect("a name")));
+        std::fs::remove_dir_all(&broken).expect("removing a folder");
+        std::fs::write(&broken, "a file").expect("writing a file");
+        let left = space.objects();
+        for command in ["gc w.toml --yes", "gc w.toml", "verify"] {
+            let words: Vec<&str> = std::iter::once("store").chain(command.split(' ')).collect();
+            let output = space.flow(&words);
+            assert!(!output.status.success(), "{command}: {}", told(&output));
+            assert!(told(&output).contains("it is a link or a file where flow makes a folder"), "{}", told(&output));
+        }
+        assert_eq!(space.objects(), left, "{}", broken.display());
+        for command in ["show w.toml table", "show w.toml range"] {
+            let output = space.flow(&command.split(' ').collect::<Vec<_>>());
+            assert!(!told(&output).contains("has no result yet"), "{command}: {}", told(&output));
+        }
+        std::fs::remove_file(&broken).expect("removing a file");
+        space.run(&[]);
+        assert!(space.stdout(&["store", "verify"]).contains("are sound"));
+    }
+}
+
+/// While a data file is away, what rests on it is needed all the same.
+#[test]
+fn nothing_is_collected_while_a_file_of_the_workflow_is_away() {
+    let space = Space::new();
+    space.write(
+        "w.toml",
+        "[workflow]\nseed = 1\n[factor]\na = { levels = [1, 2] }\n[response]\ny = {}\n[stage.d]\nkind = \"data\"\n\
+         file = \"d.csv\"\n[stage.s]\nkind = \"range\"\ntable = \"d\"\nfactors = [\"a\"]\n",
+    );
+    space.write("d.csv", "a,y\n1,2\n2,3\n1,4\n2,6\n");
+    space.run(&[]);
+    let objects = space.objects();
+    std::fs::rename(space.path("d.csv"), space.path("away.csv")).expect("moving a file");
+    let output = space.flow(&["store", "gc", "w.toml", "--yes"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    assert!(told(&output).contains("d.csv") && told(&output).contains("nothing was removed"), "{}", told(&output));
+    assert_eq!(space.objects(), objects);
+    std::fs::rename(space.path("away.csv"), space.path("d.csv")).expect("moving a file");
+    space.stdout(&["store", "gc", "w.toml", "--yes"]);
+    assert_eq!(space.objects(), objects);
+}
+
+/// A result that was found again without its record has no time: not 1970.
+#[test]
+fn what_is_not_known_of_a_result_is_said_to_be_unknown() {
+    let space = Space::new();
+    space.write("w.toml", include_str!("campaign.toml"));
+    space.run(&[]);
+    std::fs::remove_dir_all(space.path("store/journal")).expect("removing the journal");
+    let shown = told(&space.flow(&["show", "w.toml", "table"]));
+    assert!(shown.contains("its record was lost") && !shown.contains("1970"), "{shown}");
+    space.stdout(&["report", "w.toml"]);
+    let page = std::fs::read_to_string(space.path("report.html")).expect("the page");
+    assert!(!page.contains("1970-"), "the page dates a result");
+}

@@ -85,11 +85,11 @@ fn rows_that_break_a_rule_are_refused_by_name_or_left_out() {
 fn a_factor_that_sets_what_is_not_there_or_cannot_be_is_told_before_the_run() {
     for (set, message) in [
         ("factor.R.sets='specimen.mean_radiu'", "unknown field `mean_radiu`"),
-        ("factor.R.levels=[3, -4]", "mean_radius is -0.004"),
+        ("factor.R.levels=[3, -4]", "mean_radius is -4 mm"),
         ("factor.R.unit='MPa'", "`MPa` is not a unit of length"),
         ("factor.R.sets='plan.runs'", "makes no specimen and runs no test"),
         ("factor.R.sets='sample.mean_radius'", "no material and no stage has `sample.mean_radius`"),
-        ("factor.sigma_c.levels=[0, 10]", "sets `rock.sigma_c` to 0; it must be above 0"),
+        ("factor.sigma_c.levels=[0, 10]", "sets `rock.sigma_c` to 0 MPa; it must be above 0"),
         ("factor.sigma_c.unit='mm'", "factor `sigma_c` is in mm, and `rock.sigma_c`, which it sets, is not"),
         ("factor.sigma_c.sets=['rock.sigma_c', 'rock.sigmac']", "no material and no stage has `rock.sigmac`"),
         ("stage.plan.factors=['sigma_c', 'R']", "needs `s`, which is not set"),

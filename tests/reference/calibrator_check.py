@@ -93,6 +93,9 @@ def form(page, model):
     knob = page.locator(".knob").first
     field, slide = knob.locator(".value"), knob.locator(".slide")
     parameter = model["parameters"][0]
+    shown = page.evaluate("() => [...document.querySelectorAll('.knob')].map((k) => [k.querySelector('.value').valueAsNumber, k.querySelector('.hold input').checked])")
+    wanted = [own["held"] for own in model["parameters"]]
+    check(all(number == number for number, _ in shown) and [held for _, held in shown] == wanted, f"every parameter has a number, and is held as the workflow says: {shown}")
     value = lambda: float(field.input_value())
     field.fill(str(parameter["high"] * 10))
     field.press("Tab")

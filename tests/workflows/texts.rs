@@ -117,27 +117,31 @@ fn table(text: &str) {
     assert_eq!(again.columns, table.columns, "{written:?}");
 }
 
-/// A reader under test: its name, the texts to mutate, and what reads them.
-type Target = (&'static str, Vec<&'static str>, fn(&str));
-
-#[test]
-fn texts() {
+/// Reads the texts of a corpus, and as many mutated ones as were asked for.
+fn fuzz(name: &str, corpus: &[&str], read: fn(&str)) {
     let number = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u64>().unwrap());
-    let lines = |text: &'static str| text.lines().collect::<Vec<&str>>();
-    let targets: [Target; 3] = [
-        ("unit", lines(include_str!("corpus/units.txt")), unit),
-        ("formula", lines(include_str!("corpus/formulas.txt")), formula),
-        ("table", include_str!("corpus/tables.txt").split("=====\n").collect(), table),
-    ];
-    for (name, corpus, read) in &targets {
-        corpus.iter().for_each(|text| read(text));
-        let numbers =
-            number("FLOW_FUZZ_ONLY").map_or(0..number("FLOW_FUZZ").unwrap_or(IN_EVERY_TEST_RUN), |n| n..n + 1);
-        for number in numbers {
-            let text = mutated(corpus, &mut Stream::new(number, name, 0));
-            if catch_unwind(AssertUnwindSafe(|| read(&text))).is_err() {
-                panic!("{name}, input {number}: {text:?}; see it alone with FLOW_FUZZ_ONLY={number}");
-            }
+    let only = number("FLOW_FUZZ_ONLY");
+    let numbers = only.map_or(0..number("FLOW_FUZZ").unwrap_or(IN_EVERY_TEST_RUN), |only| only..only + 1);
+    corpus.iter().for_each(|text| read(text));
+    for number in numbers {
+        let text = mutated(corpus, &mut Stream::new(number, name, 0));
+        if catch_unwind(AssertUnwindSafe(|| read(&text))).is_err() {
+            panic!("{name}, input {number}: {text:?}; see it alone with FLOW_FUZZ_ONLY={number}");
         }
     }
+}
+
+#[test]
+fn units() {
+    fuzz("unit", &include_str!("corpus/units.txt").lines().collect::<Vec<_>>(), unit);
+}
+
+#[test]
+fn formulas() {
+    fuzz("formula", &include_str!("corpus/formulas.txt").lines().collect::<Vec<_>>(), formula);
+}
+
+#[test]
+fn tables() {
+    fuzz("table", &include_str!("corpus/tables.txt").split("=====\n").collect::<Vec<_>>(), table);
 }

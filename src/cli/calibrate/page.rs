@@ -3,6 +3,7 @@
 use super::Asked;
 use crate::cli::Exit;
 use crate::cli::common::{Campaign, system};
+use crate::cli::files::Files;
 use crate::cli::output;
 use crate::cli::store::bytes;
 use crate::report::{calibrator_page, gather};
@@ -12,7 +13,7 @@ use std::path::Path;
 pub(super) fn write(campaign: &Campaign, asked: &Asked, file: &Path) -> Result<Exit, Exit> {
     let text = std::fs::read_to_string(&campaign.workflow).map_err(|e| system(&e))?;
     let own = crate::report::Asked { text, sets: campaign.sets.clone(), store: String::new() };
-    let paper = gather(&asked.workflow, own, &asked.store).map_err(|e| system(&e))?;
+    let paper = gather(&asked.workflow, own, &asked.store).map_err(|e| system(&*e))?;
     let page = calibrator_page(&paper, &asked.stage).map_err(|e| {
         err!("error: {}: {}", asked.stage, e.message);
         Exit::Failed
@@ -29,10 +30,7 @@ pub(super) fn write(campaign: &Campaign, asked: &Asked, file: &Path) -> Result<E
         output::write(&page);
         return Ok(Exit::Done);
     }
-    output::replace(file, page.as_bytes()).map_err(|e| {
-        err!("error: {}: {e}", file.display());
-        Exit::System
-    })?;
+    Files::of(&asked.workflow).put(file, page.as_bytes())?;
     if !campaign.common.quiet {
         out!("{}  {}", file.display(), bytes(page.len() as u64));
     }

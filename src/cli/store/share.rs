@@ -190,7 +190,7 @@ impl Audit {
         let workflow = campaign.load(&[])?;
         let store = campaign.open()?;
         let stop = interruption(None);
-        let report = decide(&workflow, &store, &[], false);
+        let report = decide(&workflow, &store, &[], false).map_err(|e| system(&e))?;
         let mut exit = Exit::Done;
         let audited = audit(&report, &store, self.sample, cores(), &stop);
         let audited = audited.map_err(|why| system(&std::io::Error::other(why)))?;

@@ -34,7 +34,7 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// No such particle, or a number that is not finite.
     pub fn set_motion(&mut self, particle: usize, velocity: Vector<S>, spin: Spin<S>) -> Result<(), Faults> {
-        let p = self.admit(particle, ("velocity", velocity), ("spin", spin))?;
+        let p = self.admit(particle, ("velocity", velocity, "m/s"), ("spin", spin, "rad/s"))?;
         match self.clumps.get_mut(self.bodies[p] as usize) {
             Some(clump) => {
                 clump.set_motion(velocity, spin);
@@ -97,7 +97,7 @@ impl<S: Space> Engine<S> {
     /// # Errors
     /// No such particle, or a number that is not finite.
     pub fn apply(&mut self, particle: usize, force: Vector<S>, moment: Spin<S>) -> Result<(), Faults> {
-        let p = self.admit(particle, ("force", force), ("moment", moment))?;
+        let p = self.admit(particle, ("force", force, "N"), ("moment", moment, "N*m"))?;
         let body = self.clumps.get(self.bodies[p] as usize).map_or(p, |clump| clump.pebbles.start);
         self.applied.insert(body, (force, moment));
         self.set_inverse_masses();

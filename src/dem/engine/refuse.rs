@@ -5,6 +5,7 @@ use super::validate::{FINITE, POSITIVE, cell_edge, check_wall, motion_faults, ok
 use crate::boundary::{Motion, Wall};
 use crate::error::{Fault, Faults};
 use crate::space::{Space, Spin, Tuple, Vector};
+use math::text::Amount;
 
 impl<S: Space> Engine<S> {
     /// A particle that there is, by the engine's index of it.
@@ -23,17 +24,17 @@ impl<S: Space> Engine<S> {
         }
     }
 
-    /// The engine's index of a particle that is given a vector and a spin (or moment), both named.
+    /// The engine's index of a particle that is given a vector and a spin (or moment), both with name and unit.
     pub(super) fn admit(
         &self,
         particle: usize,
-        (vector_name, vector): (&'static str, Vector<S>),
-        (spin_name, spin): (&'static str, Spin<S>),
+        (vector_name, vector, unit): (&'static str, Vector<S>, &'static str),
+        (spin_name, spin, spin_unit): (&'static str, Spin<S>, &'static str),
     ) -> Result<usize, Faults> {
         let p = self.known(particle).map_err(|fault| Faults(vec![fault]))?;
-        let numbers = (0..S::DIMENSION).map(|k| (vector_name, vector.at(k)));
-        let turns = (0..S::Spin::<f64>::LENGTH).map(|k| (spin_name, spin.at(k)));
-        let bad = numbers.chain(turns).filter(|(_, value)| !value.is_finite());
+        let numbers = (0..S::DIMENSION).map(|k| (vector_name, Amount(vector.at(k), unit)));
+        let turns = (0..S::Spin::<f64>::LENGTH).map(|k| (spin_name, Amount(spin.at(k), spin_unit)));
+        let bad = numbers.chain(turns).filter(|(_, value)| !value.0.is_finite());
         let fault = |(quantity, value)| Fault::Particle { particle, quantity, value, wanted: FINITE };
         ok(bad.map(fault).collect())?;
         Ok(p)
@@ -53,13 +54,18 @@ impl<S: Space> Engine<S> {
             let p = self.single(particle, "cannot be scaled: the mass of its clump would not follow")?;
             let fault = |quantity, value| Err(Fault::Particle { particle, quantity, value, wanted: POSITIVE });
             if !positive(factor) {
-                return fault("factor of its radius", factor);
+                return fault("factor of its radius", Amount::number(factor));
             }
             radii[p] *= factor;
             let growth = S::volume(radii[p]) / S::volume(self.radii[p]);
             let (mass, whole) = (self.masses[p] * growth, radii[p] / self.radii[p]);
             let inertia = self.inertias[p] * growth * whole * whole;
-            match [("radius", radii[p]), ("mass", mass), ("inertia", inertia)].into_iter().find(|x| !positive(x.1)) {
+            let scaled = [
+                ("radius", Amount(radii[p], "m")),
+                ("mass", Amount(mass, "kg")),
+                ("inertia", Amount(inertia, "kg*m^2")),
+            ];
+            match scaled.into_iter().find(|(_, value)| !positive(value.0)) {
                 Some((quantity, value)) => fault(quantity, value),
                 None => Ok(p),
             }
@@ -100,7 +106,8 @@ impl<S: Space> Engine<S> {
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
         let wanted = "a number up to the largest radius";
         let good = gap.is_finite() && gap <= largest;
-        ok((!good).then_some(Fault::Setting { quantity: "installation gap", value: gap, wanted }).into_iter().collect())
+        let (quantity, value) = ("installation gap", Amount(gap, "m"));
+        ok((!good).then_some(Fault::Setting { quantity, value, wanted }).into_iter().collect())
     }
 }
 

@@ -19,6 +19,7 @@
 //! Source: Su, Li, Hu, Yang 2021, Materials 14, 1627, doi:10.3390/ma14071627; Walraven, Reinhardt 1981, Heron 26(1A).
 
 use math::elementary::pow;
+use math::text::Amount;
 use serde::{Deserialize, Serialize};
 
 /// Area fraction of a plane section that is taken by aggregate below a size.
@@ -53,24 +54,24 @@ pub enum Gradation {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GradationError {
     /// A number outside its range.
-    #[error("gradation: {name} is {found}; it must be {expected}")]
+    #[error("gradation: {name} is {found:#}; it must be {expected}")]
     Value {
         /// Which number.
         name: &'static str,
         /// What was given.
-        found: f64,
+        found: Amount,
         /// What it must be.
         expected: &'static str,
     },
     /// Class bounds or table sizes that do not increase.
-    #[error("gradation: {name}: {next} follows {previous}; sizes must increase")]
+    #[error("gradation: {name}: {next:#} follows {previous:#}; sizes must increase")]
     Order {
         /// Which list.
         name: &'static str,
         /// The earlier number.
-        previous: f64,
+        previous: Amount,
         /// The number that should be larger.
-        next: f64,
+        next: Amount,
     },
     /// Lists of unequal or too small length.
     #[error("gradation: {sizes} sizes but {passing} passing fractions; give at least one of each, equally many")]
@@ -114,26 +115,26 @@ impl Gradation {
         };
         match self {
             Self::Walraven { content, max_size } => {
-                need((0.0..=1.0).contains(content), "content", *content, "between 0 and 1");
-                need(*max_size > 0.0, "max_size", *max_size, "a positive length");
+                need((0.0..=1.0).contains(content), "content", Amount::number(*content), "between 0 and 1");
+                need(*max_size > 0.0, "max_size", Amount(*max_size, "m"), "a positive length");
             }
             Self::Fuller { content, max_size, exponent } => {
-                need((0.0..=1.0).contains(content), "content", *content, "between 0 and 1");
-                need(*max_size > 0.0, "max_size", *max_size, "a positive length");
-                need(*exponent > 0.0, "exponent", *exponent, "positive");
+                need((0.0..=1.0).contains(content), "content", Amount::number(*content), "between 0 and 1");
+                need(*max_size > 0.0, "max_size", Amount(*max_size, "m"), "a positive length");
+                need(*exponent > 0.0, "exponent", Amount::number(*exponent), "positive");
             }
             Self::Table { sizes, passing } => {
                 if sizes.len() != passing.len() || sizes.is_empty() {
                     return vec![GradationError::Length { sizes: sizes.len(), passing: passing.len() }];
                 }
-                need(sizes[0] > 0.0, "first size", sizes[0], "a positive length");
+                need(sizes[0] > 0.0, "first size", Amount(sizes[0], "m"), "a positive length");
                 for &p in passing {
-                    need((0.0..=1.0).contains(&p), "passing fraction", p, "between 0 and 1");
+                    need((0.0..=1.0).contains(&p), "passing fraction", Amount::number(p), "between 0 and 1");
                 }
                 faults.extend(not_increasing("table sizes", sizes));
                 for pair in passing.windows(2).filter(|pair| pair[0] > pair[1]) {
                     let (name, found, expected) =
-                        ("passing fraction", pair[1], "at least the fraction of the size below");
+                        ("passing fraction", Amount::number(pair[1]), "at least the fraction of the size below");
                     faults.push(GradationError::Value { name, found, expected });
                 }
             }
@@ -161,12 +162,13 @@ impl Gradation {
         }
         faults.extend(not_increasing("class bounds", bounds));
         if !(area > 0.0) {
-            faults.push(GradationError::Value { name: "section area", found: area, expected: "positive" });
+            let found = Amount(area, "m^2");
+            faults.push(GradationError::Value { name: "section area", found, expected: "positive" });
         }
         if let Some(&first) = bounds.first().filter(|&&first| !(first > 0.0)) {
             faults.push(GradationError::Value {
                 name: "first class bound",
-                found: first,
+                found: Amount(first, "m"),
                 expected: "a positive length",
             });
         }
@@ -203,7 +205,10 @@ fn interpolate(sizes: &[f64], passing: &[f64], size: f64) -> f64 {
 
 fn not_increasing(name: &'static str, list: &[f64]) -> Vec<GradationError> {
     let bad = |pair: &&[f64]| !(pair[0] < pair[1]);
-    let fault = |pair: &[f64]| GradationError::Order { name, previous: pair[0], next: pair[1] };
+    let fault = |pair: &[f64]| {
+        let [previous, next] = [pair[0], pair[1]].map(|size| Amount(size, "m"));
+        GradationError::Order { name, previous, next }
+    };
     list.windows(2).filter(bad).map(fault).collect()
 }
 

@@ -23,6 +23,7 @@ use super::stones::{Stone, StoneFault, Stones, Template};
 use crate::particle::Group;
 use crate::{D3, Watch};
 use math::random::Stream;
+use math::text::Amount;
 use serde::{Deserialize, Serialize};
 
 /// Stones in mortar.
@@ -68,12 +69,17 @@ impl Mix {
         let mut need = |ok: bool, name, found, expected| {
             faults.extend((!ok).then_some(StoneFault::Value { name, found, expected }));
         };
-        need(self.coarsen >= 1.0 && self.coarsen <= 20.0, "coarsen", self.coarsen, "from 1 to 20");
+        need(self.coarsen >= 1.0 && self.coarsen <= 20.0, "coarsen", Amount::number(self.coarsen), "from 1 to 20");
         let density = self.bulk_density.unwrap_or(1.0);
-        need(density > 0.0 && density.is_finite(), "bulk density", density, "positive");
-        need(self.balls != Some(0), "number of mortar balls", 0.0, "at least 1");
+        need(density > 0.0 && density.is_finite(), "bulk density", Amount(density, "kg/m^3"), "positive");
+        need(self.balls != Some(0), "number of mortar balls", Amount::number(0.0), "at least 1");
         let porosity = matches!(recipe.packing, Packing::Porosity { .. });
-        need(porosity, "packing", f64::NAN, "to a `porosity`, that of the mortar in the room between the stones");
+        need(
+            porosity,
+            "packing",
+            Amount::number(f64::NAN),
+            "to a `porosity`, that of the mortar in the room between the stones",
+        );
         faults
     }
 

@@ -29,8 +29,8 @@ use super::relax::Until;
 use super::sizes::{GivesWay, Sizes};
 use crate::Watch;
 use crate::space::{D2, Space, Tuple, Vector};
-use crate::words::{Number, Quantity};
 use math::random::Stream;
+use math::text::{Amount, Number};
 use serde::{Deserialize, Serialize};
 
 /// How a packing is made.
@@ -86,12 +86,12 @@ pub struct Packed<S: Space = D2> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PackingError {
     /// A number outside its range.
-    #[error("packing: {name} is {found}; it must be {expected}")]
+    #[error("packing: {name} is {found:#}; it must be {expected}")]
     Value {
         /// Which number.
         name: &'static str,
         /// What was given.
-        found: f64,
+        found: Amount,
         /// What it must be.
         expected: &'static str,
     },
@@ -106,7 +106,7 @@ pub enum PackingError {
     /// Too few balls.
     #[error(
         "packing: a mean radius of {} gives {count} balls in the specimen; at least 30 are needed, reduce it",
-        Quantity(*.mean_radius, "m")
+        Amount(*.mean_radius, "m")
     )]
     Few {
         /// Mean radius asked for (m).
@@ -118,7 +118,7 @@ pub enum PackingError {
     #[error(
         "packing: a mean radius of {} gives {count:.2e} balls in the specimen, which would take about {} GB of memory and \
          {} h to pack; at most {MOST_BALLS:e} are packed, enlarge the radius",
-        Quantity(*.mean_radius, "m"), Number(*.gigabytes), Number(*.hours)
+        Amount(*.mean_radius, "m"), Number(*.gigabytes), Number(*.hours)
     )]
     Many {
         /// Mean radius asked for (m).
@@ -134,7 +134,7 @@ pub enum PackingError {
     #[error(
         "packing: the largest ball has a diameter of {} and the specimen is {} across; at most half of that fits, \
          reduce the radius or the ratio of radii",
-        Quantity(*.diameter, "m"), Quantity(*.narrowest, "m")
+        Amount(*.diameter, "m"), Amount(*.narrowest, "m")
     )]
     Large {
         /// Largest diameter (m).
@@ -197,7 +197,7 @@ pub enum PackingError {
     /// The stress was not reached.
     #[error(
         "packing: the stress is {} after {scalings} scalings of the radii, not {}; widen the tolerance",
-        Quantity(*.reached, "Pa"), Quantity(*.target, "Pa")
+        Amount(*.reached, "Pa"), Amount(*.target, "Pa")
     )]
     Unsettled {
         /// Stress asked for (Pa).

@@ -23,8 +23,8 @@ use super::stones::StoneFault;
 use crate::Watch;
 use crate::particle::Group;
 use crate::space::{D2, Space, Vector, flat};
-use crate::words::Quantity;
 use math::random::Stream;
+use math::text::Amount;
 use serde::{Deserialize, Serialize};
 
 /// Aggregate of a plane specimen.
@@ -101,12 +101,12 @@ pub enum SpecimenError {
     #[error(transparent)]
     Groups(#[from] GroupError),
     /// A number outside its range.
-    #[error("specimen: {name} is {found}; it must be {expected}")]
+    #[error("specimen: {name} is {found:#}; it must be {expected}")]
     Value {
         /// Which number.
         name: &'static str,
         /// What was given.
-        found: f64,
+        found: Amount,
         /// What it must be.
         expected: &'static str,
     },
@@ -130,7 +130,7 @@ pub enum SpecimenError {
     /// Aggregate larger than the specimen.
     #[error(
         "aggregate: particles of {} with {} to the walls do not fit into a specimen {} across",
-        Quantity(*.size, "m"), Quantity(*.gap, "m"), Quantity(*.narrowest, "m")
+        Amount(*.size, "m"), Amount(*.gap, "m"), Amount(*.narrowest, "m")
     )]
     LargeAggregate {
         /// Largest diameter (m).
@@ -177,7 +177,8 @@ impl Recipe {
         };
         let mut faults: Vec<SpecimenError> = packing.into_iter().map(Into::into).collect();
         if !(self.density > 0.0) {
-            faults.push(SpecimenError::Value { name: "density", found: self.density, expected: "positive" });
+            let found = Amount(self.density, "kg/m^3");
+            faults.push(SpecimenError::Value { name: "density", found, expected: "positive" });
         }
         let aggregate = self.aggregate.as_ref();
         let name = aggregate.map(|aggregate| aggregate.group.as_str());
@@ -249,10 +250,11 @@ impl Aggregate {
             }
         };
         let placement = &self.placement;
-        need(self.density > 0.0, "aggregate density", self.density, "positive");
-        need(placement.gap >= 0.0, "aggregate gap", placement.gap, "a length of at least 0");
-        need(placement.wall_gap >= 0.0, "aggregate wall gap", placement.wall_gap, "a length of at least 0");
-        need(placement.attempts > 0, "attempts", 0.0, "at least 1");
+        need(self.density > 0.0, "aggregate density", Amount(self.density, "kg/m^3"), "positive");
+        need(placement.gap >= 0.0, "aggregate gap", Amount(placement.gap, "m"), "a length of at least 0");
+        let wall_gap = Amount(placement.wall_gap, "m");
+        need(placement.wall_gap >= 0.0, "aggregate wall gap", wall_gap, "a length of at least 0");
+        need(placement.attempts > 0, "attempts", Amount::number(0.0), "at least 1");
         faults.extend(self.polygons.faults().into_iter().map(SpecimenError::from));
         match self.size_classes(region) {
             Err(bad) => faults.extend(bad),

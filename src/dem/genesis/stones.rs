@@ -19,6 +19,7 @@ use super::region::Region;
 use crate::D3;
 use math::elementary::{cbrt, sin_cos};
 use math::random::Stream;
+use math::text::Amount;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -129,12 +130,12 @@ pub struct Stone {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StoneFault {
     /// A number outside its range.
-    #[error("stones: {name} is {found}; it must be {expected}")]
+    #[error("stones: {name} is {found:#}; it must be {expected}")]
     Value {
         /// Which number.
         name: &'static str,
         /// What was given.
-        found: f64,
+        found: Amount,
         /// What it must be.
         expected: &'static str,
     },
@@ -212,24 +213,28 @@ impl Stones {
         let mut need = |ok: bool, name, found, expected| {
             faults.extend((!ok).then_some(StoneFault::Value { name, found, expected }));
         };
-        need(self.density > 0.0 && self.density.is_finite(), "density", self.density, "positive");
-        need(self.gap >= 0.0 && self.gap.is_finite(), "gap", self.gap, "a length of at least 0");
-        need(self.wall_gap >= 0.0 && self.wall_gap.is_finite(), "wall gap", self.wall_gap, "a length of at least 0");
-        need(self.attempts > 0, "attempts", 0.0, "at least 1");
-        need(!self.classes.is_empty(), "number of classes", 0.0, "at least 1");
+        let density = Amount(self.density, "kg/m^3");
+        need(self.density > 0.0 && self.density.is_finite(), "density", density, "positive");
+        need(self.gap >= 0.0 && self.gap.is_finite(), "gap", Amount(self.gap, "m"), "a length of at least 0");
+        let wall_gap = Amount(self.wall_gap, "m");
+        need(self.wall_gap >= 0.0 && self.wall_gap.is_finite(), "wall gap", wall_gap, "a length of at least 0");
+        need(self.attempts > 0, "attempts", Amount::number(0.0), "at least 1");
+        need(!self.classes.is_empty(), "number of classes", Amount::number(0.0), "at least 1");
         for class in &self.classes {
-            need(class.from > 0.0, "lower bound of a class", class.from, "a size above 0");
+            need(class.from > 0.0, "lower bound of a class", Amount(class.from, "m"), "a size above 0");
             need(
                 class.to >= class.from && class.to.is_finite(),
                 "upper bound of a class",
-                class.to,
+                Amount(class.to, "m"),
                 "at least the lower one",
             );
             match class.number {
                 HowMany::Count(_) => {}
-                HowMany::Mass(mass) => need(mass >= 0.0 && mass.is_finite(), "mass of a class", mass, "at least 0"),
+                HowMany::Mass(mass) => {
+                    need(mass >= 0.0 && mass.is_finite(), "mass of a class", Amount(mass, "kg"), "at least 0");
+                }
                 HowMany::Share(share) => {
-                    need((0.0..1.0).contains(&share), "share of a class", share, "from 0 to below 1")
+                    need((0.0..1.0).contains(&share), "share of a class", Amount::number(share), "from 0 to below 1")
                 }
             }
         }

@@ -28,7 +28,7 @@ use super::record::{TestRecord, Watcher};
 use super::rig::{mount, set_velocities};
 use super::settings::{Loading, Notch, TestError};
 use crate::space::Tuple;
-use crate::{Clump, Engine, Fault, Faults, Other, Particle, Space, Vector};
+use crate::{Amount, Clump, Engine, Fault, Faults, Other, Particle, Space, Vector};
 
 /// Radius of a roller over the height of the beam.
 const ROLLER: f64 = 0.1;
@@ -53,7 +53,8 @@ pub(super) fn run<S: Space>(
     let span = span(test, width);
     if !(span > height && span < width) {
         let wanted = "more than the height of the beam and less than its length";
-        return Err(Faults(vec![Fault::Setting { quantity: "span", value: span, wanted }]).into());
+        let value = Amount(span, "m");
+        return Err(Faults(vec![Fault::Setting { quantity: "span", value, wanted }]).into());
     }
     let beam = Beam { span, height, notch: test.particulars.notch };
     let (cut, remaining) = beam.cut(piece);

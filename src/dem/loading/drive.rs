@@ -13,8 +13,8 @@ use super::pace::Governor;
 use super::settings::{Rule, Schedule};
 use super::snapshot::{Ladder, Snapshot, State};
 use crate::measure::{Energy, energy, links};
-use crate::words::{Number, Quantity};
 use crate::{Engine, Failure, Space, Watch};
+use math::text::{Amount, Number};
 
 /// Why a test has no complete result.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -22,7 +22,7 @@ pub enum TestFailure {
     /// Nothing broke it.
     #[error(
         "no peak up to a strain of {}: the largest stress is {}; raise strain_limit, or check the strengths of the bonds",
-        Number(*.strain_limit), Quantity(*.stress, "Pa")
+        Number(*.strain_limit), Amount(*.stress, "Pa")
     )]
     NoPeak {
         /// Strain limit.
@@ -33,7 +33,7 @@ pub enum TestFailure {
     /// The bound on steps was reached.
     #[error(
         "no end within max_steps = {steps}: the strain is {} and the largest stress {}; load faster or raise max_steps",
-        Number(*.strain), Quantity(*.stress, "Pa")
+        Number(*.strain), Amount(*.stress, "Pa")
     )]
     OutOfSteps {
         /// Bound on steps.
@@ -46,7 +46,7 @@ pub enum TestFailure {
     /// The side walls did not come to their stress.
     #[error(
         "the confining stress of {} was not reached within {steps} steps: it is off by {} of it, the unbalanced ratio {}; check the packing or lower the stress",
-        Quantity(*.wanted, "Pa"), Number(*.off), Number(*.ratio)
+        Amount(*.wanted, "Pa"), Number(*.off), Number(*.ratio)
     )]
     Confinement {
         /// Confining stress asked for (Pa).

@@ -12,6 +12,7 @@ use super::fissure::Fissures;
 use crate::parameter::{Law, Parameter};
 use crate::{Bond, BondStiffness, ContactBond, ContactTable, Convention, Dashpot, Distribution, Group, Interaction};
 use crate::{Division, FlatJoint, Linear, NormalForce, ParallelBond, Scatter, Shares, ShearBreak, Space, Stiffness};
+use math::text::Amount;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -122,7 +123,7 @@ pub enum MaterialFault {
         found: f64,
     },
     /// Outside its range.
-    #[error("`{}` of contact `{contact}` is {found}; it must be {}", .parameter.key(), .parameter.declaration().range.words())]
+    #[error("`{}` of contact `{contact}` is {:#}; it must be {}", .parameter.key(), Amount(*.found, .parameter.declaration().quantity.unit()), .parameter.declaration().range.words())]
     Outside {
         /// The contact's name.
         contact: String,

@@ -5,8 +5,8 @@ use super::pace::Pace;
 use super::piece::Outline;
 use super::rig::{Machine, Platens, Scales};
 use super::speed::{Speed, Threshold};
-use crate::words::Number;
 use crate::{Fault, Faults};
+use math::text::{Amount, Number};
 use serde::{Deserialize, Serialize};
 
 /// Settings of a loading test.
@@ -204,54 +204,58 @@ impl Loading {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let share = |x: f64| x > 0.0 && x <= 1.0;
         let above = "a number above 0";
-        let [speed, sample, seating, limit] =
-            [self.speed.value(), rule.sample_strain.value(), rule.seating.value(), rule.strain_limit.value()];
-        let steps = rule.max_steps as f64;
+        let [speed, sample, limit] = [self.speed.given(), rule.sample_strain.given(""), rule.strain_limit.given("")];
+        let (seating, lasting, steps) = (rule.seating.given("Pa"), rule.lasting, rule.max_steps as f64);
+        let stop = Amount::number(rule.stop_fraction);
         let rules = [
-            ("speed of the test", speed, positive(speed), above),
-            ("strain between samples", sample, positive(sample), above),
-            ("share of the peak at the end", rule.stop_fraction, share(rule.stop_fraction), "in (0, 1]"),
-            ("lasting", rule.lasting, (0.0..=1.0).contains(&rule.lasting), "a share of the peak strain, 0 to 1"),
-            ("seating stress", seating, seating >= 0.0 && seating.is_finite(), "0 or more"),
-            ("strain limit", limit, positive(limit), above),
-            ("largest number of steps", steps, steps >= 1.0, "1 or more"),
+            ("speed of the test", speed, positive(speed.0), above),
+            ("strain between samples", sample, positive(sample.0), above),
+            ("share of the peak at the end", stop, share(stop.0), "in (0, 1]"),
+            ("lasting", Amount::number(lasting), (0.0..=1.0).contains(&lasting), "a share of the peak strain, 0 to 1"),
+            ("seating stress", seating, seating.0 >= 0.0 && seating.0.is_finite(), "0 or more"),
+            ("strain limit", limit, positive(limit.0), above),
+            ("largest number of steps", Amount::number(steps), steps >= 1.0, "1 or more"),
         ];
-        let snapshots = rule.snapshots.iter().map(|&x| ("share of the peak of a snapshot", x, share(x), "in (0, 1]"));
+        let snapshot = |&x: &f64| ("share of the peak of a snapshot", Amount::number(x), share(x), "in (0, 1]");
+        let snapshots = rule.snapshots.iter().map(snapshot);
         let own = self.particular_faults();
         let bad = rules.into_iter().chain(snapshots).chain(own).filter(|rule| !rule.2);
         bad.map(|(quantity, value, _, wanted)| Fault::Setting { quantity, value, wanted }).collect()
     }
 
-    fn particular_faults(&self) -> Vec<(&'static str, f64, bool, &'static str)> {
+    fn particular_faults(&self) -> Vec<(&'static str, Amount, bool, &'static str)> {
         let Particulars { jaw_angle, confinement, span, notch } = self.particulars;
         let confined = matches!(self.kind, TestKind::Biaxial | TestKind::Triaxial);
         let (disc, beam) = (self.kind == TestKind::Brazilian, self.kind == TestKind::Bending);
         let mut rules = Vec::new();
         if let Some(angle) = jaw_angle {
-            rules.push(("jaw angle", angle, disc, "none: this test has no jaws"));
-            rules.push(("jaw angle", angle, angle > 0.0 && angle <= 0.8, "above 0 and at most 0.8 rad (45°)"));
+            let found = Amount(angle, "rad");
+            rules.push(("jaw angle", found, disc, "none: this test has no jaws"));
+            rules.push(("jaw angle", found, angle > 0.0 && angle <= 0.8, "above 0 and at most 0.8 rad (45°)"));
         }
         if let Some(stress) = confinement {
-            rules.push(("confining stress", stress, confined, "none: this test has no confinement"));
-            rules.push(("confining stress", stress, stress > 0.0 && stress.is_finite(), "a stress above 0"));
+            let found = Amount(stress, "Pa");
+            rules.push(("confining stress", found, confined, "none: this test has no confinement"));
+            rules.push(("confining stress", found, stress > 0.0 && stress.is_finite(), "a stress above 0"));
         } else if confined {
-            rules.push(("confining stress", f64::NAN, false, "a stress above 0: the test needs it"));
+            rules.push(("confining stress", Amount(f64::NAN, "Pa"), false, "a stress above 0: the test needs it"));
         }
         if let Some(span) = span {
-            rules.push(("span", span, beam, "none: this test has no supports"));
-            rules.push(("span", span, span > 0.0 && span.is_finite(), "a length above 0"));
+            let found = Amount(span, "m");
+            rules.push(("span", found, beam, "none: this test has no supports"));
+            rules.push(("span", found, span > 0.0 && span.is_finite(), "a length above 0"));
         }
         if let Some(Notch { depth, width }) = notch {
-            rules.push(("notch depth", depth, beam, "none: this test has no notch"));
+            rules.push(("notch depth", Amount::number(depth), beam, "none: this test has no notch"));
             rules.push((
                 "notch depth",
-                depth,
+                Amount::number(depth),
                 depth > 0.0 && depth < 0.9,
                 "a share of the height, above 0 and below 0.9",
             ));
             rules.push((
                 "notch width",
-                width,
+                Amount::number(width),
                 width > 0.0 && width < 0.5,
                 "a share of the height, above 0 and below 0.5",
             ));
@@ -287,7 +291,7 @@ impl Loading {
         let samples = schedule.strain_limit / schedule.sample_strain;
         if !(samples <= MOST_SAMPLES) {
             let (quantity, wanted) = ("samples up to the strain limit", "at most 1e6: sample more coarsely");
-            return Err(Faults(vec![Fault::Setting { quantity, value: samples, wanted }]).into());
+            return Err(Faults(vec![Fault::Setting { quantity, value: Amount::number(samples), wanted }]).into());
         }
         Ok(schedule)
     }

@@ -12,6 +12,7 @@
 //! design are equally quasi-static. Above about 60 a compressive strength follows the speed by less than its scatter.
 
 use super::rig::Scales;
+use math::text::Amount;
 use serde::{Deserialize, Serialize};
 
 /// How fast a test is driven.
@@ -45,10 +46,12 @@ impl Speed {
         }
     }
 
-    /// The number that was given.
-    pub fn value(&self) -> f64 {
+    /// The number that was given, with its unit.
+    pub fn given(&self) -> Amount {
         match *self {
-            Self::Each(x) | Self::StrainRate(x) | Self::Transits(x) => x,
+            Self::Each(speed) => Amount(speed, "m/s"),
+            Self::StrainRate(rate) => Amount(rate, "1/s"),
+            Self::Transits(transits) => Amount::number(transits),
         }
     }
 }
@@ -72,10 +75,11 @@ impl Threshold {
         }
     }
 
-    /// The number that was given.
-    pub fn value(&self) -> f64 {
+    /// The number that was given, with its unit: of a strain none, of a stress Pa.
+    pub fn given(&self, unit: &'static str) -> Amount {
         match *self {
-            Self::Absolute(x) | Self::Share(x) => x,
+            Self::Absolute(x) => Amount(x, unit),
+            Self::Share(x) => Amount::number(x),
         }
     }
 }

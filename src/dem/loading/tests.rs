@@ -201,7 +201,7 @@ fn settings_of_a_test_that_cannot_end_are_named() {
     assert_eq!(
         text,
         [
-            "speed of the test is 0, wanted a number above 0",
+            "speed of the test is 0 m/s, wanted a number above 0",
             "strain between samples is NaN, wanted a number above 0",
             "share of the peak at the end is 1.5, wanted in (0, 1]",
             "strain limit is -1, wanted a number above 0",

@@ -75,7 +75,10 @@ pub(super) fn find(factors: usize, runs: Option<usize>, resolution: Option<usize
         Fault::NoConstruction {
             design: "fractional factorial".into(),
             found: format!("none is listed for {factors} factors and {asked}"),
-            remedy: format!("listed are: {}; or give `generators`", sizes.join(", ")),
+            remedy: match sizes.is_empty() {
+                true => "give `generators`, or fewer factors".to_owned(),
+                false => format!("listed are: {}; or give `generators`", sizes.join(", ")),
+            },
         }
     })
 }

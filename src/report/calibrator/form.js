@@ -48,7 +48,7 @@ const Calibrator = (() => {
         if (aim) state.tolerances[response] = aim.tolerance;
         fitMode(row);
       });
-      parameters.forEach((parameter, i) => { if (set.held[parameter.name] !== undefined) { state.point[i] = set.held[parameter.name]; state.held[i] = true; } });
+      parameters.forEach((parameter, i) => { if (Object.hasOwn(set.held, parameter.name)) { state.point[i] = set.held[parameter.name]; state.held[i] = true; } });
     };
     const fitMode = (row) => { row.querySelector(".high").hidden = row.querySelector(".mode").value !== "between"; };
 

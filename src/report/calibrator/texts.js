@@ -58,7 +58,7 @@ const Texts = (() => {
                    "; SI units. For contacts with the model linearpbond, after `contact method bond`; the groups are those of the contacts."];
     for (const material of model.materials) {
       for (const entry of material.entries) {
-        const values = { ...entry.values };
+        const values = Object.assign(Object.create(null), entry.values); // any name may be a key
         let unknown = false;
         model.parameters.forEach((parameter, i) => {
           for (const path of parameter.sets) if (path.startsWith(entry.name + ".")) {

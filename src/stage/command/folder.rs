@@ -3,8 +3,11 @@
 use super::leftover::{self, Record};
 use super::{Params, template};
 use crate::stage::{Failure, Job, StageError};
-use rustix::process::{Pid, Signal, kill_process_group};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open};
 use std::fs::File;
+use std::io::ErrorKind;
+use std::os::fd::OwnedFd;
 use std::os::unix::process::CommandExt;
 use std::path::{Component, Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -17,6 +20,9 @@ const LARGEST: u64 = 64 << 20;
 /// Most bytes that a program may print, so that one that prints without end does not fill the disk.
 const MOST_PRINTED: u64 = 1 << 30;
 
+/// Longest time between two looks at the clock, the stop and what the program has printed.
+const LONGEST_PAUSE: Duration = Duration::from_millis(50);
+
 /// Longest part of a path between two slashes, bytes.
 const LONGEST_NAME: usize = 255;
 
@@ -24,6 +30,15 @@ const LONGEST_NAME: usize = 255;
 pub(super) fn is_plain(name: &str) -> bool {
     let part = |part: Component| matches!(part, Component::Normal(name) if name.len() <= LONGEST_NAME);
     !name.is_empty() && !name.contains('\0') && Path::new(name).components().all(part)
+}
+
+/// Waits for the end of a program, but at most for this time. Kernels before 5.3 have no descriptor of a process: there
+/// it waits for all of it.
+fn wait_for(end: Option<&OwnedFd>, most: Duration) {
+    let Some(end) = end else { return std::thread::sleep(most) };
+    let most = Timespec { tv_sec: 0, tv_nsec: most.subsec_nanos().into() };
+    // A signal only makes it return earlier.
+    let _ = poll(&mut [PollFd::new(end, PollFlags::IN)], Some(&most));
 }
 
 /// A run's own temporary folder; `stdout` and `stderr` lie beside what the program writes.
@@ -74,29 +89,29 @@ impl Folder {
         command.stdout(output("stdout")?).stderr(output("stderr")?);
         command.env_clear().envs(std::env::var_os("PATH").map(|path| ("PATH", path))).envs(&params.environment);
         command.env(leftover::VARIABLE, self.root.path());
-        let child = command.spawn().map_err(|e| {
-            StageError::new(format!("`{}` cannot be started: {e}", params.run[0]))
-                .hint("is it installed and on the PATH?")
-        })?;
-        let status = self.wait(child, job)?;
+        let child = leftover::start(&mut command).map_err(|e| not_started(&params.run[0], &e))?;
+        let program = child.id();
+        let status = self.wait(child, job);
+        leftover::ended(program);
+        leftover::end_strays(self.root.path());
+        let status = status?;
         Ok(if status.success() { Ok(()) } else { Err(format!("`{}` ended with {status}", params.run.join(" "))) })
     }
 
-    /// Waits until the program ends, the time limit is reached or the run is interrupted; then ends all processes of the run.
+    /// Waits until the program ends, the time limit is reached or the run is interrupted; then ends its process group.
     fn wait(&self, mut child: Child, job: &Job) -> Result<ExitStatus, Failure> {
         let (started, mut pause) = (Instant::now(), Duration::from_micros(200));
         let group = Pid::from_child(&child);
+        let end = pidfd_open(group, PidfdFlags::empty()).ok();
         loop {
             if let Some(status) = child.try_wait().map_err(|e| io("wait for the program", e))? {
                 // Processes that it started and left running are ended too.
                 let _ = kill_process_group(group, Signal::KILL);
-                leftover::end_strays(self.root.path());
                 return Ok(status);
             }
             if let Some(name) = ["stdout", "stderr"].into_iter().find(|name| self.printed(name) > MOST_PRINTED) {
                 let _ = kill_process_group(group, Signal::KILL);
                 let _ = child.wait();
-                leftover::end_strays(self.root.path());
                 let gigabytes = MOST_PRINTED >> 30;
                 return Err(StageError::new(format!(
                     "the program wrote more than {gigabytes} GiB to {name} and was ended"
@@ -108,7 +123,6 @@ impl Folder {
             if late || job.stopped() {
                 let _ = kill_process_group(group, Signal::KILL);
                 let _ = child.wait();
-                leftover::end_strays(self.root.path());
                 return Err(match job.time_limit {
                     Some(limit) if late => {
                         StageError::new(format!("the program ran longer than its limit of {limit} s"))
@@ -118,8 +132,8 @@ impl Folder {
                     Some(_) | None => Failure::Stopped,
                 });
             }
-            std::thread::sleep(pause);
-            pause = (pause * 2).min(Duration::from_millis(20));
+            wait_for(end.as_ref(), pause);
+            pause = (pause * 2).min(LONGEST_PAUSE);
         }
     }
 
@@ -194,6 +208,17 @@ pub(super) fn shown(line: &str) -> String {
         Some((end, _)) => format!("{}…", &plain[..end]),
         None => plain,
     }
+}
+
+/// The failure of a program that cannot be started, with what helps there.
+fn not_started(program: &str, error: &std::io::Error) -> StageError {
+    let hint = match error.kind() {
+        ErrorKind::NotFound => "is it installed and on the PATH?",
+        ErrorKind::PermissionDenied => "is it a program, and may you run it?",
+        ErrorKind::ArgumentListTooLong => "give long texts in a file: `templates`",
+        _ => "the system grants no more processes, files or memory: see `ulimit -a`, and try fewer with `--jobs`",
+    };
+    StageError::new(format!("`{program}` cannot be started: {error}")).hint(hint)
 }
 
 fn io(doing: &str, error: std::io::Error) -> Failure {

@@ -5,16 +5,18 @@
 //! and that is the same for every `TMPDIR`; and its processes are recognised by a variable of their environment,
 //! [`VARIABLE`], or by their working folder. The next campaign on this machine, and `flow store gc`, find the runs whose
 //! campaign has ended, end their processes and remove their folders. A process that clears its environment and leaves the
-//! folder, or that belongs to another user, is not found.
+//! folder, or that belongs to another user, is not found; while its campaign lives it is, for orphans become its children.
 
-use rustix::process::{Pid, Signal, getuid, kill_process};
+use rustix::process::{Pid, Signal, WaitOptions, getpgrp, getpid, getuid, kill_process, set_child_subreaper, waitpid};
 use std::ffi::OsStr;
 use std::fs::{self, DirBuilder};
 use std::io::Write;
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
+use std::process::{Child, Command};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::time::Duration;
 
 /// The variable with the folder of the run, by which its processes are recognised.
@@ -77,6 +79,10 @@ pub fn end_own() {
         {
             Abandoned { record: entry.path(), folder }.clear();
         }
+    }
+    running().clear();
+    for pid in orphans() {
+        let _ = kill_process(pid, Signal::KILL);
     }
 }
 
@@ -161,13 +167,74 @@ fn owner(pid: u32) -> Option<String> {
     Some(format!("{pid} {started}"))
 }
 
+/// The programs that run.
+static RUNNING: Mutex<Vec<u32>> = Mutex::new(Vec::new());
+
+fn running() -> MutexGuard<'static, Vec<u32>> {
+    RUNNING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Starts a program in a process group of its own.
+pub(super) fn start(command: &mut Command) -> std::io::Result<Child> {
+    static ADOPT: Once = Once::new();
+    // Whatever a process does with its group, session, folder and environment: without parent it becomes a child of this one.
+    ADOPT.call_once(|| {
+        let _ = set_child_subreaper(Some(getpid()));
+    });
+    let mut running = running();
+    let child = command.spawn()?;
+    running.push(child.id());
+    Ok(child)
+}
+
+/// Says that a program has ended and was waited for.
+pub(super) fn ended(program: u32) {
+    running().retain(|own| *own != program);
+}
+
+/// Orphans that this process adopted and that no running program can have left; those that have ended are buried.
+fn orphans() -> Vec<Pid> {
+    let running = running();
+    let found = processes().filter(|process| {
+        let (own, group) = (getpid().as_raw_pid(), getpgrp().as_raw_pid());
+        // What this process starts besides programs of runs stays in its group.
+        process.parent == own && process.group != group && !running.contains(&(process.pid.as_raw_pid() as u32))
+    });
+    let (over, alive): (Vec<Process>, Vec<Process>) = found.partition(|process| process.over);
+    for process in over {
+        let _ = waitpid(Some(process.pid), WaitOptions::NOHANG);
+    }
+    if running.is_empty() { alive.into_iter().map(|process| process.pid).collect() } else { Vec::new() }
+}
+
+/// A process as the system lists it.
+struct Process {
+    pid: Pid,
+    parent: i32,
+    group: i32,
+    /// Whether it has ended, and nobody has waited for it.
+    over: bool,
+}
+
+fn processes() -> impl Iterator<Item = Process> {
+    let read = |entry: fs::DirEntry| {
+        let pid = Pid::from_raw(entry.file_name().to_str()?.parse().ok()?)?;
+        let stat = fs::read_to_string(entry.path().join("stat")).ok()?;
+        // The name of the program, in brackets, may hold any character.
+        let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
+        let (state, parent, group) = (fields.next()?, fields.next()?.parse().ok()?, fields.next()?.parse().ok()?);
+        Some(Process { pid, parent, group, over: state == "Z" })
+    };
+    fs::read_dir("/proc").into_iter().flatten().flatten().filter_map(read)
+}
+
 /// Ends every process that a run left, and returns their number.
 pub(super) fn end_strays(folder: &Path) -> usize {
     const ROUNDS: usize = 20;
     let mut ended = 0;
     // Repeated until none is found: a process may start another while it is ended.
     for _ in 0..ROUNDS {
-        let found = strays(folder);
+        let found = [strays(folder), orphans()].concat();
         if found.is_empty() {
             break;
         }

@@ -29,7 +29,7 @@ mod read;
 mod template;
 mod verdict;
 
-use super::beside::Beside;
+use super::beside::{Beside, read};
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
@@ -189,7 +189,9 @@ impl Stage for Command {
             for (name, path) in files {
                 let Some(full) = found.file(&format!("{key}.{name}"), path) else { continue };
                 // A template that is not text is reported when it is filled.
-                let text = (key == "templates").then(|| std::fs::read_to_string(full).ok()).flatten();
+                let text = (key == "templates")
+                    .then(|| read(&full).ok().and_then(|bytes| String::from_utf8(bytes).ok()))
+                    .flatten();
                 if let Some(fault) = text.and_then(|text| template::fault(&text, || self.values(context))) {
                     let complaint = Complaint::new(key, format!("{path}, {}", fault.message));
                     found.faults.push(Complaint { hint: fault.hint, ..complaint });

@@ -116,9 +116,10 @@ pub(super) fn decode(bytes: &[u8], fixed: Option<Encoding>) -> Result<(String, O
     Ok((text.into_owned(), detected))
 }
 
-/// The delimiter under which all lines have the same number of cells, the greatest such number.
+/// The delimiter under which all lines have the same number of cells, the greatest such number; not one under which a quote
+/// swallows all lines, or closes before the end of its cell.
 pub(super) fn delimiter(text: &str) -> Delimiter {
-    let (body, _) = below_comments(text);
+    let (body, _) = below_comments(text.trim_start_matches('\u{feff}'));
     let score = |delimiter: Delimiter| {
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter.byte())
@@ -127,12 +128,37 @@ pub(super) fn delimiter(text: &str) -> Delimiter {
             .from_reader(body.as_bytes());
         let widths: Vec<usize> = reader.records().take(200).flatten().map(|record| record.len()).collect();
         let first = widths.first().copied().unwrap_or(1);
-        let even = first > 1 && widths.iter().all(|w| *w == first);
+        let rows = widths.len() > 1 && quotes_fit(body, delimiter.byte());
+        let even = first > 1 && rows && widths.iter().all(|w| *w == first);
         // where no delimiter gives lines of equal length, the one with most cells in the first line is reported
         (even, first)
     };
     let best = Delimiter::ALL.into_iter().reduce(|a, b| if score(b) > score(a) { b } else { a });
     best.unwrap_or(Delimiter::Comma)
+}
+
+/// Whether every quote that opens a cell has a partner, and the cell ends there.
+fn quotes_fit(text: &str, delimiter: u8) -> bool {
+    let bytes = text.as_bytes();
+    let ends = |byte: &u8| *byte == delimiter || matches!(byte, b'\n' | b'\r');
+    let mut at = 0;
+    while at < bytes.len() {
+        if bytes[at] == b'"' {
+            // the partner: a quote that is not doubled
+            let mut close = at + 1;
+            while bytes.get(close..close + 2) == Some(b"\"\"") || bytes.get(close).is_some_and(|byte| *byte != b'"') {
+                close += if bytes[close] == b'"' { 2 } else { 1 };
+            }
+            let Some(rest) = bytes.get(close + 1..) else { return false };
+            let blanks = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t') && !ends(byte)).count();
+            at = close + 1 + blanks;
+            if bytes.get(at).is_some_and(|byte| !ends(byte)) {
+                return false;
+            }
+        }
+        at += bytes[at..].iter().position(ends).map_or(bytes.len() - at, |end| end + 1);
+    }
+    true
 }
 
 /// The decimal sign that the cells use.

@@ -2,12 +2,14 @@
 
 mod archive;
 mod ods;
+mod xls;
 
 use super::super::StageError;
 use super::super::sheet::Sheet;
 use archive::{Archive, broken};
 use calamine::{Data, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
@@ -41,9 +43,11 @@ fn lines(bytes: &[u8], sheet: Option<&str>) -> Result<Vec<Vec<String>>, StageErr
         let name = chosen(&ods::names(archive)?, sheet)?;
         ods::cells(archive, &name, |row, column, text| cells.take(&name, row, column, text.clone()))?;
     } else {
-        check_dimensions(bytes)?;
         // Old formats are full of counts and offsets, and a damaged file may send their reader beyond its end.
-        let read = std::panic::AssertUnwindSafe(|| read_cells(bytes, sheet, &mut cells));
+        let read = std::panic::AssertUnwindSafe(|| {
+            let judged = if archive.is_some() { Cow::Borrowed(bytes) } else { Cow::Owned(xls::judged(bytes)?) };
+            read_cells(&judged, sheet, &mut cells)
+        });
         std::panic::catch_unwind(read).unwrap_or_else(|_| Err(broken("it is damaged")))?;
     }
     Ok(cells.lines())
@@ -88,26 +92,6 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<()
             for (i, j, cell) in range.used_cells() {
                 cells.take(&name, row + i as u32, column + j as u32, text(cell))?;
             }
-        }
-    }
-    Ok(())
-}
-
-/// The size that a sheet of an old workbook (xls) announces: room is made for so many cells before one is read.
-///
-/// The record `Dimensions` (MS-XLS 2.4.90): type 0x0200, length 14, first and last row, first and last column.
-fn check_dimensions(bytes: &[u8]) -> Result<(), StageError> {
-    if bytes.starts_with(b"PK") {
-        return Ok(());
-    }
-    let long = |at: &[u8]| u32::from_le_bytes([at[0], at[1], at[2], at[3]]);
-    let short = |at: &[u8]| u32::from(u16::from_le_bytes([at[0], at[1]]));
-    for record in bytes.windows(18).filter(|record| record.starts_with(&[0, 2, 14, 0])) {
-        let rows = u64::from(long(&record[8..]).saturating_sub(long(&record[4..])));
-        let columns = u64::from(short(&record[14..]).saturating_sub(short(&record[12..])));
-        // Such a sheet has at most 65,536 rows and 256 columns.
-        if rows > 1 << 16 || columns > 1 << 8 {
-            return Err(broken(format!("it says that a sheet has {rows} rows and {columns} columns")));
         }
     }
     Ok(())

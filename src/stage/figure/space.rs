@@ -67,7 +67,7 @@ pub(super) fn cracks(run: &Run, sources: &Sources) -> Result<Solid, StageError> 
     Ok(Solid { cracks, modes, fissures: rims(run, &solid), ..solid })
 }
 
-/// The fissures of a run in space; those that cut through reach across the whole frame.
+/// The fissures of a run in space that reach its specimen; those that cut through reach across the whole frame.
 fn rims(run: &Run, frame: &Solid) -> Vec<Rim> {
     let Some(fissures) = &run.fissures else { return Vec::new() };
     let across = [0, 1, 2].map(|k| frame.high[k] - frame.low[k]);
@@ -78,7 +78,7 @@ fn rims(run: &Run, frame: &Solid) -> Vec<Rim> {
         normal: vector(&fissures.normal, row).map(|part| part / MM),
         radius: if fissures.size[row].is_finite() { 0.5 * fissures.size[row] * MM } else { reach },
     };
-    (0..fissures.size.len()).map(rim).collect()
+    (0..fissures.size.len()).filter(|&row| fissures.inside[row] > 0.0).map(rim).collect()
 }
 
 /// Stones with their clumps, the longest side to the right.

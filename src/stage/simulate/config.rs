@@ -14,6 +14,7 @@ use dem::loading::rig::Machine;
 use dem::loading::settings::{Loading, Notch, Rule};
 use dem::parameter::Parameter;
 use dem::{Convention, Masses};
+use math::text::Amount;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -131,8 +132,10 @@ impl BondConfig {
         let outside =
             self.bonding().values.into_iter().filter(|(parameter, value)| !parameter.declaration().range.holds(*value));
         let fault = |(parameter, value): (Parameter, f64)| {
-            let (key, range) = (parameter.key(), parameter.declaration().range);
-            Complaint::new(&format!("bond.{key}"), format!("`{key}` is {value}; it must be {}", range.words()))
+            let (key, declared) = (parameter.key(), parameter.declaration());
+            let found = Amount(value, declared.quantity.unit());
+            let message = format!("`{key}` is {found:#}; it must be {}", declared.range.words());
+            Complaint::new(&format!("bond.{key}"), message)
         };
         let mut faults: Vec<Complaint> = outside.map(fault).collect();
         if !(0.0..=1.0).contains(&self.gap) {
@@ -199,7 +202,7 @@ impl Simulate {
         point: &Point,
     ) -> Result<Material, StageError> {
         let values = rows::apply(material, point, context)?;
-        let bonding = self.bonding();
+        let bonding = self.bonding(context.seed);
         material.contacts(&values, self.need(context, &bonding)).map_err(|faults| {
             let hint = faults.iter().find_map(|fault| fault.hint.clone());
             let words: Vec<String> = faults.into_iter().map(|fault| fault.message).collect();
@@ -220,9 +223,10 @@ impl Simulate {
         material::given(input.stage, &*known.load(input)?, self.set.unwrap_or(1), groups, known.context)
     }
 
-    /// The settings of the stage for all bonds.
-    fn bonding(&self) -> Bonding {
-        Bonding { fissures: self.fissures.iter().map(FissureConfig::made).collect(), ..self.bond.bonding() }
+    /// The settings of the stage for all bonds, in a campaign of this seed.
+    fn bonding(&self, seed: u64) -> Bonding {
+        let fissures = self.fissures.iter().map(|set| set.made(seed)).collect();
+        Bonding { fissures, ..self.bond.bonding() }
     }
 
     fn need<'a>(&'a self, context: &'a Context, bonding: &'a Bonding) -> Need<'a> {
@@ -259,7 +263,7 @@ impl Simulate {
                 complaint
             }
         }));
-        let bonding = self.bonding();
+        let bonding = self.bonding(context.seed);
         // Without the specimen there is another fault, reported elsewhere.
         if unresolved.is_empty() && context.sketches.get(&self.specimen).is_some_and(|sketch| !sketch.groups.is_empty())
         {

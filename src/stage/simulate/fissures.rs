@@ -10,6 +10,7 @@ use super::traces;
 use crate::unit::{Angle, Intensity, Length, Pressure, Stiffness};
 use dem::genesis::network::Network;
 use dem::loading::fissure::{Fissure, Fissures};
+use math::text::Amount;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -78,8 +79,9 @@ pub struct NetworkConfig {
 const DENSEST: f64 = 1e8;
 
 impl NetworkConfig {
-    fn made(&self) -> Network {
+    fn made(&self, seed: u64) -> Network {
         Network {
+            seed,
             intensity: self.intensity.get(),
             exponent: self.exponent,
             sizes: self.sizes.map(Length::get),
@@ -89,25 +91,35 @@ impl NetworkConfig {
     }
 
     fn check(&self, check: &mut dyn FnMut(bool, &str, String)) {
-        let Network { intensity, exponent, sizes: [low, high], concentration, .. } = self.made();
-        let densest = intensity / low;
+        let Network { intensity, exponent, sizes: [low, high], concentration, .. } = self.made(0);
+        let (densest, per_length) = (intensity / low, Amount(intensity, "1/m"));
         let rules = [
-            (intensity > 0.0, "intensity", intensity, "above 0"),
-            (low > 0.0 && high >= low, "sizes", low, "a smallest size above 0 and a largest one not below it"),
-            (exponent.is_finite() && exponent.abs() <= 10.0, "exponent", exponent, "a number from -10 to 10"),
-            ((0.0..=1e4).contains(&concentration), "concentration", concentration, "0 to 10000"),
-            (densest <= DENSEST, "intensity", intensity, "lower for sizes that small"),
+            (intensity > 0.0, "intensity", per_length, "above 0"),
+            (
+                low > 0.0 && high >= low,
+                "sizes",
+                Amount(low, "m"),
+                "a smallest size above 0 and a largest one not below it",
+            ),
+            (
+                exponent.is_finite() && exponent.abs() <= 10.0,
+                "exponent",
+                Amount::number(exponent),
+                "a number from -10 to 10",
+            ),
+            ((0.0..=1e4).contains(&concentration), "concentration", Amount::number(concentration), "0 to 10000"),
+            (densest <= DENSEST, "intensity", per_length, "lower for sizes that small"),
         ];
         for (good, key, found, wanted) in rules {
-            let message = format!("`{key}` of the network is {found}; it must be {wanted}");
+            let message = format!("`{key}` of the network is {found:#}; it must be {wanted}");
             check(good, &format!("network.{key}"), message);
         }
     }
 }
 
 impl FissureConfig {
-    /// The fissures in the types of the loading tests, without those of the file.
-    pub(super) fn made(&self) -> Fissures {
+    /// The fissures in the types of the loading tests, without those of the file; networks follow from the campaign's `seed`.
+    pub(super) fn made(&self, seed: u64) -> Fissures {
         let centre = |one: &JointConfig, k: usize| one.centre.as_ref().and_then(|x| x.get(k)).map_or(0.0, |x| x.get());
         let fissure = |one: &JointConfig| Fissure {
             centre: std::array::from_fn(|k| centre(one, k)),
@@ -120,7 +132,7 @@ impl FissureConfig {
             self.tensile_strength.zip(self.cohesion).map(|(tension, cohesion)| [tension, cohesion].map(Pressure::get));
         Fissures {
             list: self.list.iter().map(fissure).collect(),
-            network: self.network.as_ref().map(NetworkConfig::made),
+            network: self.network.as_ref().map(|network| network.made(seed)),
             stiffness: self.kn.zip(self.ks).map(|(kn, ks)| [kn.get(), ks.get()]),
             friction: self.friction,
             dilation: self.dilation.map_or(0.0, Angle::get),
@@ -142,9 +154,9 @@ impl FissureConfig {
         check(self.file.as_deref() != Some(""), "file", "the name of the file is empty".to_owned());
         self.check_law(&mut check);
         for one in &self.list {
-            let length = one.length.map_or(1.0, Length::get);
-            let positive = length > 0.0 && length.is_finite();
-            check(positive, "list", format!("`length` of a fissure is {length} m; it must be above 0"));
+            let length = Amount(one.length.map_or(1.0, Length::get), "m");
+            let positive = length.0 > 0.0 && length.0.is_finite();
+            check(positive, "list", format!("`length` of a fissure is {length:#}; it must be above 0"));
             let count = one.centre.as_ref().map_or(2, Vec::len);
             let words = format!("`centre` of a fissure has {count} coordinates; it must have 2, in space 3");
             check((2..=3).contains(&count), "list", words);
@@ -170,17 +182,18 @@ impl FissureConfig {
         check(friction >= 0.0, "friction", format!("`friction` is {friction}; it must be 0 or more"));
         let angles = [("dilation", self.dilation), ("friction_angle", self.friction_angle)];
         for (key, angle) in angles.into_iter().filter_map(|(key, angle)| Some((key, angle?.get()))) {
-            check(acute(angle), key, format!("`{key}` is {angle} rad; it must be 0 to below 90°"));
+            check(acute(angle), key, format!("`{key}` is {:#}; it must be 0 to below 90°", Amount(angle, "rad")));
         }
         let pressures = [("tensile_strength", self.tensile_strength), ("cohesion", self.cohesion)];
         for (key, value) in pressures.into_iter().filter_map(|(key, value)| Some((key, value?.get()))) {
-            check(positive(value), key, format!("`{key}` is {value} Pa; it must be above 0"));
+            check(positive(value), key, format!("`{key}` is {:#}; it must be above 0", Amount(value, "Pa")));
         }
-        if let Some(kn) = self.kn {
-            check(positive(kn.get()), "kn", format!("`kn` is {} Pa/m; it must be above 0", kn.get()));
+        let per_area = |stiffness: Stiffness| Amount(stiffness.get(), "Pa/m");
+        if let Some(kn) = self.kn.map(per_area) {
+            check(positive(kn.0), "kn", format!("`kn` is {kn:#}; it must be above 0"));
         }
-        if let Some(ks) = self.ks {
-            check(ks.get() >= 0.0, "ks", format!("`ks` is {} Pa/m; it must be 0 or more", ks.get()));
+        if let Some(ks) = self.ks.map(per_area) {
+            check(ks.0 >= 0.0, "ks", format!("`ks` is {ks:#}; it must be 0 or more"));
         }
         check(self.kn.is_some() == self.ks.is_some(), "kn", "`kn` and `ks` go together".to_owned());
         let bonded = self.tensile_strength.is_some();

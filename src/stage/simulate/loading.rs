@@ -6,6 +6,7 @@ use dem::loading::kind::TestKind;
 use dem::loading::rig::{Machine, Platens};
 use dem::loading::settings::{Loading, Particulars, Rule};
 use dem::loading::speed::{Speed, Threshold};
+use math::text::Amount;
 
 /// Largest platen speed; no test is quasi-static above it (m/s).
 const FASTEST: f64 = 1.0;
@@ -47,25 +48,26 @@ impl Simulate {
         let share = |x: f64| x > 0.0 && x < 1.0;
         let positive = |x: f64| x > 0.0 && x.is_finite();
         let (speed, speed_wanted) = self.speed_rule();
-        let seating = self.seating_stress.map_or(1.0, |stress| stress.get());
+        let seating = Amount(self.seating_stress.map_or(1.0, |stress| stress.get()), "Pa");
         let (limit, sample) = (self.strain_limit.unwrap_or(0.5), self.sample_strain.unwrap_or(1e-6));
-        let (lasting, modulus) = (self.lasting.unwrap_or(0.0), self.platen_modulus.map_or(1.0, |m| m.get()));
-        let steps = self.max_steps as f64;
+        let (lasting, steps) = (self.lasting.unwrap_or(0.0), self.max_steps as f64);
+        let modulus = Amount(self.platen_modulus.map_or(1.0, |m| m.get()), "Pa");
+        let number = Amount::number;
         let rules = [
-            (speed, "platen_speed", self.platen_speed.speed.value(), speed_wanted),
-            (self.platen_friction >= 0.0, "platen_friction", self.platen_friction, "at least 0"),
-            (positive(modulus), "platen_modulus", modulus, "a positive modulus"),
-            (share(self.stop_fraction), "stop_fraction", self.stop_fraction, "between 0 and 1"),
-            ((0.0..=1.0).contains(&lasting), "lasting", lasting, "a share of the strain at the peak, 0 to 1"),
-            (share(limit), "strain_limit", limit, "a strain between 0 and 1"),
-            (share(sample), "sample_strain", sample, "a strain between 0 and 1"),
-            (positive(seating), "seating_stress", seating, "positive"),
-            ((0.0..1.0).contains(&self.damping), "damping", self.damping, "at least 0 and below 1"),
-            ((1..=MOST_STEPS).contains(&self.max_steps), "max_steps", steps, "between 1 and 1e9"),
+            (speed, "platen_speed", self.platen_speed.speed.given(), speed_wanted),
+            (self.platen_friction >= 0.0, "platen_friction", number(self.platen_friction), "at least 0"),
+            (positive(modulus.0), "platen_modulus", modulus, "a positive modulus"),
+            (share(self.stop_fraction), "stop_fraction", number(self.stop_fraction), "between 0 and 1"),
+            ((0.0..=1.0).contains(&lasting), "lasting", number(lasting), "a share of the strain at the peak, 0 to 1"),
+            (share(limit), "strain_limit", number(limit), "a strain between 0 and 1"),
+            (share(sample), "sample_strain", number(sample), "a strain between 0 and 1"),
+            (positive(seating.0), "seating_stress", seating, "positive"),
+            ((0.0..1.0).contains(&self.damping), "damping", number(self.damping), "at least 0 and below 1"),
+            ((1..=MOST_STEPS).contains(&self.max_steps), "max_steps", number(steps), "between 1 and 1e9"),
         ];
         let bad = rules.into_iter().filter(|rule| !rule.0);
         let mut faults: Vec<Complaint> = bad
-            .map(|(_, key, found, wanted)| Complaint::new(key, format!("`{key}` is {found}; it must be {wanted}")))
+            .map(|(_, key, found, wanted)| Complaint::new(key, format!("`{key}` is {found:#}; it must be {wanted}")))
             .collect();
         for found in self.snapshots.iter().filter(|&&found| !(found > 0.0 && found <= 1.0)) {
             faults.push(Complaint::new("snapshots", format!("{found} is no share of the peak; give 0 to 1")));
@@ -115,12 +117,16 @@ impl Simulate {
         need(
             !(angle > 0.0 && angle <= 0.8),
             "jaw_angle",
-            format!("`jaw_angle` is {angle} rad; it must be above 0 and at most 45 deg"),
+            format!("`jaw_angle` is {:#}; it must be above 0 and at most 45 deg", Amount(angle, "rad")),
         );
         let stress = self.confinement.map_or(1.0, |stress| stress.get());
-        need(!(stress > 0.0), "confinement", format!("`confinement` is {stress} Pa; it must be positive"));
+        need(
+            !(stress > 0.0),
+            "confinement",
+            format!("`confinement` is {:#}; it must be positive", Amount(stress, "Pa")),
+        );
         let span = self.span.map_or(1.0, |span| span.get());
-        need(!(span > 0.0), "span", format!("`span` is {span} m; it must be positive"));
+        need(!(span > 0.0), "span", format!("`span` is {:#}; it must be positive", Amount(span, "m")));
         if let Some(notch) = self.notch {
             let depth = notch.depth > 0.0 && notch.depth < 0.9;
             need(

@@ -5,6 +5,7 @@ use super::super::region::Region;
 use super::super::sizes::{GivesWay, Size, SizeLaw, Sizes};
 use super::{MOST_BALLS, Packing, PackingError};
 use crate::space::Space;
+use math::text::Amount;
 
 /// Fewest balls that make a packing.
 const FEWEST_BALLS: f64 = 30.0;
@@ -16,7 +17,13 @@ impl Packing {
     pub fn faults<S: Space>(&self, region: &Region) -> Vec<PackingError> {
         let mut faults = Vec::new();
         let narrowest = region.narrowest();
-        need(&mut faults, narrowest > 0.0 && narrowest.is_finite(), "specimen extent", narrowest, "a positive length");
+        need(
+            &mut faults,
+            narrowest > 0.0 && narrowest.is_finite(),
+            "specimen extent",
+            Amount(narrowest, "m"),
+            "a positive length",
+        );
         match self {
             Self::Porosity { sizes, porosity, floaters } => {
                 porosity_faults::<S>("porosity", *porosity, &mut faults);
@@ -28,7 +35,7 @@ impl Packing {
                 size_faults(sizes, &mut faults);
             }
             Self::Lattice { lattice, radius } => {
-                need(&mut faults, *radius > 0.0, "radius", *radius, "a positive length");
+                need(&mut faults, *radius > 0.0, "radius", Amount(*radius, "m"), "a positive length");
                 if lattice.dimension() != region.dimension() {
                     let (wanted, found) = (lattice.dimension(), region.dimension());
                     faults.push(PackingError::Dimension { lattice: *lattice, wanted, found });
@@ -81,41 +88,44 @@ impl Packing {
     }
 }
 
-fn need(faults: &mut Vec<PackingError>, ok: bool, name: &'static str, found: f64, expected: &'static str) {
+fn need(faults: &mut Vec<PackingError>, ok: bool, name: &'static str, found: Amount, expected: &'static str) {
     if !ok {
         faults.push(PackingError::Value { name, found, expected });
     }
 }
 
 fn share_fault(name: &'static str, found: f64, faults: &mut Vec<PackingError>) {
-    need(faults, (0.0..=1.0).contains(&found), name, found, "a share between 0 and 1");
+    need(faults, (0.0..=1.0).contains(&found), name, Amount::number(found), "a share between 0 and 1");
 }
 
 fn porosity_faults<S: Space>(name: &'static str, porosity: f64, faults: &mut Vec<PackingError>) {
     let (most, expected) = if S::DIMENSION == 2 { (0.3, "between 0 and 0.3") } else { (0.6, "between 0 and 0.6") };
-    need(faults, porosity > 0.0 && porosity < most, name, porosity, expected);
+    need(faults, porosity > 0.0 && porosity < most, name, Amount::number(porosity), expected);
 }
 
 fn target_faults<S: Space>(target: &StressTarget, faults: &mut Vec<PackingError>) {
     porosity_faults::<S>("cloud_porosity", target.cloud_porosity, faults);
     share_fault("floater_share", target.floater_share, faults);
-    need(faults, target.stress > 0.0, "stress", target.stress, "a positive stress");
-    need(faults, target.modulus > 0.0, "modulus", target.modulus, "a positive stress");
+    need(faults, target.stress > 0.0, "stress", Amount(target.stress, "Pa"), "a positive stress");
+    need(faults, target.modulus > 0.0, "modulus", Amount(target.modulus, "Pa"), "a positive stress");
     if target.stress > 0.0 && target.modulus > 0.0 {
         let relative = target.relative();
         let expected = "between 1e-7 and 0.1; 1e-5 to 1e-3 is usual";
-        need(faults, (1e-7..=0.1).contains(&relative), "stress over modulus", relative, expected);
+        need(faults, (1e-7..=0.1).contains(&relative), "stress over modulus", Amount::number(relative), expected);
     }
     let tolerance = target.tolerance;
-    need(faults, (1e-4..0.5).contains(&tolerance), "tolerance", tolerance, "between 0.0001 and 0.5");
+    need(faults, (1e-4..0.5).contains(&tolerance), "tolerance", Amount::number(tolerance), "between 0.0001 and 0.5");
     let equilibrium = target.equilibrium;
-    need(faults, (1e-6..=0.1).contains(&equilibrium), "equilibrium", equilibrium, "between 1e-6 and 0.1");
+    let found = Amount::number(equilibrium);
+    need(faults, (1e-6..=0.1).contains(&equilibrium), "equilibrium", found, "between 1e-6 and 0.1");
 }
 
 fn size_faults(sizes: &Sizes, faults: &mut Vec<PackingError>) {
     match sizes.size {
-        Size::Mean(mean) => need(faults, mean > 0.0, "mean_radius", mean, "a positive length"),
-        Size::Smallest(smallest) => need(faults, smallest > 0.0, "smallest_radius", smallest, "a positive length"),
+        Size::Mean(mean) => need(faults, mean > 0.0, "mean_radius", Amount(mean, "m"), "a positive length"),
+        Size::Smallest(smallest) => {
+            need(faults, smallest > 0.0, "smallest_radius", Amount(smallest, "m"), "a positive length");
+        }
         Size::Stated => {}
     }
     let ratio_fault = |ratio: f64, faults: &mut Vec<PackingError>| {
@@ -123,7 +133,7 @@ fn size_faults(sizes: &Sizes, faults: &mut Vec<PackingError>) {
             faults,
             (1.0..=WIDEST).contains(&ratio),
             "radius ratio",
-            ratio,
+            Amount::number(ratio),
             "between 1 and 20 (largest over smallest)",
         );
     };
@@ -132,12 +142,13 @@ fn size_faults(sizes: &Sizes, faults: &mut Vec<PackingError>) {
         SizeLaw::Uniform { ratio } => ratio_fault(*ratio, faults),
         SizeLaw::UniformVolume { ratio } => {
             ratio_fault(*ratio, faults);
-            need(faults, *ratio > 1.0, "radius ratio", *ratio, "above 1, or `sizes = \"uniform\"`");
+            need(faults, *ratio > 1.0, "radius ratio", Amount::number(*ratio), "above 1, or `sizes = \"uniform\"`");
         }
         SizeLaw::LogNormal { ratio, deviation } => {
             ratio_fault(*ratio, faults);
-            need(faults, *ratio > 1.0, "radius ratio", *ratio, "above 1: it cuts the law");
-            need(faults, *deviation > 0.0 && *deviation <= 2.0, "size_deviation", *deviation, "above 0 and at most 2");
+            need(faults, *ratio > 1.0, "radius ratio", Amount::number(*ratio), "above 1: it cuts the law");
+            let found = Amount::number(*deviation);
+            need(faults, *deviation > 0.0 && *deviation <= 2.0, "size_deviation", found, "above 0 and at most 2");
         }
         SizeLaw::Sieve { diameters, passing } => {
             let rises = |values: &[f64]| values.windows(2).all(|pair| pair[0] <= pair[1]);
