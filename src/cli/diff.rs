@@ -104,8 +104,8 @@ impl Diff {
     fn recorded(&self, number: &str, store: &Store) -> Result<Sides, Exit> {
         let known = store.campaigns().map_err(|e| system(&e))?;
         let found = match number.parse() {
-            Ok(number) => store.campaign(number).map_err(|e| system(&e))?,
-            Err(_) => None,
+            Ok(number) if known.contains(&number) => store.campaign(number).map_err(|e| system(&e))?,
+            Ok(_) | Err(_) => None,
         };
         let Some(campaign) = found else {
             let known: Vec<String> = known.iter().map(|n| format!("#{n}")).collect();

@@ -97,7 +97,7 @@ impl Figure for Snapshots {
             let until = self.cracks.partition_point(|(strain, _)| *strain <= state.strain);
             scene.items.extend(self.opened(&drawn, 0..until, Some(i)));
             let count = format!("{} {}", thousands(until), if until == 1 { "crack" } else { "cracks" });
-            let at = [x, place.top + height + 1.2 * size];
+            let at = [x, drawn.clip.bottom + 1.2 * size];
             scene.text(Line::new(&count, 0.9 * size), at, Anchor::Middle, 0.0, SOFT);
             if i == 0 {
                 let foot = bottom(&scene, size);

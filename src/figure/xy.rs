@@ -129,7 +129,7 @@ impl Xy {
         for (i, cloud) in self.clouds.iter().enumerate().filter(|(_, c)| !c.name.is_empty() || !c.note.is_empty()) {
             let lined = cloud.line.is_some() || self.joined;
             let swatch = match lined {
-                true => Swatch::Line(marks::line(i, n, 0.4), Some(marks::marker(i))),
+                true => Swatch::Line(marks::line(i, n, 0.4), (!cloud.x.is_empty()).then(|| marks::marker(i))),
                 false => Swatch::Point(marks::marker(i), marks::color(i, n)),
             };
             let both = [cloud.name.as_str(), cloud.note.as_str()].into_iter().filter(|t| !t.is_empty());

@@ -1,12 +1,12 @@
 //! The section of a stage: what it is, what it cost, its tables and figures, and those that show it.
 
 use super::calibrator::calibrator;
-use super::compared;
 use super::figure::{Glyphs, figure, missing};
 use super::paper::{Paper, Part, State, capital};
 use super::table::Sheet;
 use super::time::{duration, moment};
 use super::warning::warnings;
+use super::{compared, symbol};
 use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::stage::calibrate::parameters_in_words;
 use crate::stage::figure::Figure as Picture;
@@ -33,7 +33,7 @@ pub(super) fn section(paper: &Paper, index: usize, members: &[usize], glyphs: &m
                 State::Missing | State::Broken(_) => (missing(paper, part)),
             }
             @if !found.is_empty() {
-                ul.warnings aria-label="Warnings" { @for warning in &found { li { (warning) } } }
+                ul.warnings aria-label="Warnings" { @for warning in &found { li { (symbol::typeset(&paper.context, warning)) } } }
             }
             (own(paper, index, members))
             (interactive(paper, part))
@@ -109,7 +109,7 @@ fn own(paper: &Paper, index: usize, members: &[usize]) -> Markup {
     let closed: Vec<_> = rest.iter().filter(|(name, _)| !is_open(name)).collect();
     html! {
         @for (name, table) in rest.iter().filter(|(name, _)| is_open(name)) { (sheet(name, table)) }
-        @for line in parameters_in_words(artifact) { p.note { "Parameters " (line) } }
+        @for line in parameters_in_words(artifact) { p.note { "Parameters " (symbol::typeset(&paper.context, &line)) } }
         @if !closed.is_empty() {
             details.more {
                 summary { "More of its numbers" span.soft { " " (names(&closed)) } }

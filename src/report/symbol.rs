@@ -100,17 +100,18 @@ pub(super) fn term(context: &Context, term: &str) -> Option<Markup> {
 /// Symbols that are words of their own, and stay as they are among words.
 const WORDS: [&str; 3] = ["a", "A", "I"];
 
-/// The symbols of a workflow as they stand in plain words, such as `σ_u`, with their markup; longer ones first. A symbol
-/// that is the same in both is left out.
+/// The symbols of a workflow as they stand in plain words, such as `σ_u`, and the names that have one, with their markup;
+/// longer ones first. A symbol that is the same in both is left out.
 pub(super) fn known(context: &Context) -> Vec<(String, Markup)> {
-    let factors = context.factors.values().map(|factor| &factor.symbol);
-    let symbols = factors.chain(context.responses.values().map(|response| &response.symbol));
-    let pair = |symbol: &String| {
+    let factors = context.factors.iter().map(|(name, factor)| (name, &factor.symbol));
+    let symbols = factors.chain(context.responses.iter().map(|(name, response)| (name, &response.symbol)));
+    let pairs = symbols.filter(|(_, symbol)| !symbol.is_empty()).flat_map(|(name, symbol)| {
         let markup = format!("${symbol}$");
-        (Line::new(&markup, 1.0).plain, label(&markup))
-    };
-    let mut found: Vec<(String, Markup)> = symbols.filter(|symbol| !symbol.is_empty()).map(pair).collect();
-    found.retain(|(plain, set)| !plain.is_empty() && *plain != set.0 && !WORDS.contains(&plain.as_str()));
+        let set = label(&markup);
+        [Line::new(&markup, 1.0).plain, name.clone()].map(|plain| (plain, html! { span.sign { (set) } }))
+    });
+    let mut found: Vec<(String, Markup)> =
+        pairs.filter(|(plain, _)| !plain.is_empty() && !WORDS.contains(&plain.as_str())).collect();
     found.sort_by(|a, b| b.0.len().cmp(&a.0.len()).then_with(|| a.0.cmp(&b.0)));
     found.dedup_by(|a, b| a.0 == b.0);
     found
@@ -171,7 +172,7 @@ mod tests {
         assert_eq!(set("E = 3 GPa"), "<i>E</i> = 3 GPa");
         // The longer symbol, and not the one that it holds.
         let plain = Line::new(r"$(\bar\sigma_c)_j$", 1.0).plain;
-        assert!(set(&plain).ends_with("<sub>j</sub>") && set("").is_empty(), "{plain}: {}", set(&plain));
+        assert!(set(&plain).ends_with("<sub>j</sub></span>") && set("").is_empty(), "{plain}: {}", set(&plain));
     }
 
     #[test]

@@ -65,3 +65,30 @@ fn where_the_end_of_the_terminal_is_ignored_it_ends_nothing() {
     assert!(output.status.success(), "{}", told(&output));
     space.run(&[]).expect(&[]);
 }
+
+/// A surrogate over 1,500 runs takes minutes, and looks at nothing meanwhile.
+#[test]
+fn a_fit_that_takes_minutes_ends_when_it_is_told() {
+    let space = Space::new();
+    space.write(
+        "w.toml",
+        "[workflow]\nseed = 1\n[factor]\na = { sets = 'm.a', range = [1, 3] }\nb = { sets = 'm.b', range = [10, 30] }\n\
+         [response]\ny = { unit = 'MPa' }\n[material.base]\nm = { a = 1, b = 10 }\n[stage.lhs]\nkind = 'design'\n\
+         method = 'latin-hypercube'\nruns = 1500\nfactors = ['a', 'b']\n[stage.sim]\nkind = 'formula'\ndesign = 'lhs'\n\
+         material = 'base'\nresponses.y = { value = '3*a + b*b/100', unit = 'MPa', scatter = 0.01 }\n[stage.found]\n\
+         kind = 'calibrate'\nsimulator = 'sim'\nmethod = 'surrogate'\nlearn_from = ['sim']\nfactors = ['a', 'b']\n\
+         evaluations = 200\ntargets = [{ y = '9 MPa' }]\n",
+    );
+    space.run(&["sim"]);
+    let mut run = space.start(&["run", "w.toml", "--jobs", "1"]);
+    std::thread::sleep(Duration::from_secs(3));
+    assert!(run.try_wait().expect("a child").is_none(), "the run ended before the interrupt");
+    kill_process(Pid::from_child(&run), Signal::INT).expect("sending a signal");
+    let ended = (0..3000).any(|_| {
+        std::thread::sleep(Duration::from_millis(10));
+        run.try_wait().expect("a child").is_some()
+    });
+    let _ = run.kill();
+    let output = run.wait_with_output().expect("the end of the run");
+    assert!(ended && output.status.code() == Some(130), "{}", told(&output));
+}

@@ -29,6 +29,8 @@ pub struct Network {
     pub mean: [f64; 2],
     /// κ.
     pub concentration: f64,
+    /// Seed of the campaign; each piece mixes its own into it.
+    pub seed: u64,
 }
 
 /// One drawn fracture.
@@ -165,7 +167,8 @@ mod tests {
     use super::*;
 
     fn network() -> Network {
-        Network { intensity: 60.0, exponent: 2.5, sizes: [4e-3, 20e-3], mean: [0.7, 0.4], concentration: 12.0 }
+        let (sizes, mean) = ([4e-3, 20e-3], [0.7, 0.4]);
+        Network { intensity: 60.0, exponent: 2.5, sizes, mean, concentration: 12.0, seed: 0 }
     }
 
     const BOX: [f64; 3] = [0.05, 0.1, 0.04];

@@ -70,7 +70,8 @@ pub struct Placed {
     pub size: f64,
 }
 
-/// All fissures of a piece of this outline: those of the lists, and the networks as the stream "network" of `seed` draws them.
+/// All fissures of a piece of this outline: those of the lists, and the networks, each from its seed and the `seed` of the
+/// piece.
 pub fn placed(sets: &[Fissures], outline: &Outline, dimension: usize, seed: u64) -> Vec<Placed> {
     let mut all = Vec::new();
     for (set, fissures) in sets.iter().enumerate() {
@@ -82,7 +83,8 @@ pub fn placed(sets: &[Fissures], outline: &Outline, dimension: usize, seed: u64)
         };
         all.extend(fissures.list.iter().map(listed));
         let Some(network) = &fissures.network else { continue };
-        let drawn = network.draw(outline.extents(), dimension, &mut Stream::new(seed, "network", set as u64));
+        let own = Stream::new(network.seed, "network", seed).bits();
+        let drawn = network.draw(outline.extents(), dimension, &mut Stream::new(own, "fractures", set as u64));
         all.extend(drawn.into_iter().map(|Drawn { centre, normal, size }| Placed { set, centre, normal, size }));
     }
     all
@@ -248,13 +250,21 @@ mod tests {
     #[test]
     fn sets_are_laid_in_their_order_and_drawn_from_streams_of_their_own() {
         let network =
-            Network { intensity: 4.0, exponent: 2.0, sizes: [1.0, 3.0], mean: [0.5, 0.0], concentration: 5.0 };
-        let drawn = Fissures { list: vec![], network: Some(network), ..set(0.0, None) };
+            Network { intensity: 4.0, exponent: 2.0, sizes: [1.0, 3.0], mean: [0.5, 0.0], concentration: 5.0, seed: 1 };
+        let drawn = Fissures { list: vec![], network: Some(network.clone()), ..set(0.0, None) };
         let block = Outline::Block { width: 20.0, height: 20.0, depth: 1.0 };
         let all = placed(&[drawn.clone(), set(0.2, None), drawn], &block, 2, 7);
         assert!(all.windows(2).all(|pair| pair[0].set <= pair[1].set));
         let of = |set: usize| all.iter().filter(|one| one.set == set).map(|one| one.centre).collect::<Vec<_>>();
         assert_eq!(of(1).len(), 1);
         assert!(of(0).len() > 100 && of(2).len() > 100 && of(0)[0] != of(2)[0]);
+        // Another piece has another network, and so has another campaign.
+        let first = |network: Network, piece: u64| {
+            let sets = [Fissures { list: vec![], network: Some(network), ..set(0.0, None) }];
+            placed(&sets, &block, 2, piece)[0].centre
+        };
+        let other = Network { seed: 2, ..network.clone() };
+        assert_eq!(first(network.clone(), 7), of(0)[0]);
+        assert!(first(network.clone(), 8) != of(0)[0] && first(other, 7) != of(0)[0]);
     }
 }

@@ -35,6 +35,9 @@ pub(super) fn column(
     Ok(table.texts_column(name, "", words.collect()))
 }
 
+/// Signs in the place of a unit that say that there is none, as in `w/c [-]`.
+const DIMENSIONLESS: [&str; 3] = ["-", "–", "—"];
+
 /// `UCS [MPa]`, `UCS (MPa)`, `UCS/MPa` or `UCS`. A bracket or stroke that holds no unit, as in `kn/ks`, is part of the name.
 fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
     if let Some((name, unit)) = head.split_once('[') {
@@ -43,6 +46,9 @@ fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
             StageError::new(format!("column `{head}`: the unit must stand alone in brackets at the end"))
                 .hint("write for example `Ec [GPa]`")
         })?;
+        if DIMENSIONLESS.contains(&unit) {
+            return Ok((name.trim(), ""));
+        }
         Unit::parse(unit).map_err(|e| StageError::new(format!("column `{head}`: {e}")))?;
         return Ok((name.trim(), unit));
     }
@@ -51,6 +57,9 @@ fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
     // the first slash: a unit may hold another, as in `v / m/s`
     let stroke = head.split_once('/').filter(|(_, unit)| is_plain_unit(bare(unit.trim())));
     let both = [round, stroke].into_iter().flatten().map(|(name, unit)| (name.trim(), unit.trim()));
+    if let Some((name, _)) = round.filter(|(_, unit)| DIMENSIONLESS.contains(&unit.trim())) {
+        return Ok((name.trim(), ""));
+    }
     let found = both.into_iter().find(|(name, unit)| !name.is_empty() && known(bare(unit)));
     Ok(found.map_or((head, ""), |(name, unit)| (name, bare(unit))))
 }
@@ -163,6 +172,7 @@ mod tests {
         assert_eq!(read("R/t"), ("R/t", ""));
         assert_eq!(read("strength (mean)"), ("strength (mean)", ""));
         assert_eq!(read("nu"), ("nu", ""));
+        assert_eq!([read("w/c [-]"), read("w/c (–)")], [("w/c", ""); 2]);
     }
 
     #[test]

@@ -202,7 +202,7 @@ impl Simulate {
         point: &Point,
     ) -> Result<Material, StageError> {
         let values = rows::apply(material, point, context)?;
-        let bonding = self.bonding();
+        let bonding = self.bonding(context.seed);
         material.contacts(&values, self.need(context, &bonding)).map_err(|faults| {
             let hint = faults.iter().find_map(|fault| fault.hint.clone());
             let words: Vec<String> = faults.into_iter().map(|fault| fault.message).collect();
@@ -223,9 +223,10 @@ impl Simulate {
         material::given(input.stage, &*known.load(input)?, self.set.unwrap_or(1), groups, known.context)
     }
 
-    /// The settings of the stage for all bonds.
-    fn bonding(&self) -> Bonding {
-        Bonding { fissures: self.fissures.iter().map(FissureConfig::made).collect(), ..self.bond.bonding() }
+    /// The settings of the stage for all bonds, in a campaign of this seed.
+    fn bonding(&self, seed: u64) -> Bonding {
+        let fissures = self.fissures.iter().map(|set| set.made(seed)).collect();
+        Bonding { fissures, ..self.bond.bonding() }
     }
 
     fn need<'a>(&'a self, context: &'a Context, bonding: &'a Bonding) -> Need<'a> {
@@ -262,7 +263,7 @@ impl Simulate {
                 complaint
             }
         }));
-        let bonding = self.bonding();
+        let bonding = self.bonding(context.seed);
         // Without the specimen there is another fault, reported elsewhere.
         if unresolved.is_empty() && context.sketches.get(&self.specimen).is_some_and(|sketch| !sketch.groups.is_empty())
         {

@@ -79,8 +79,9 @@ pub struct NetworkConfig {
 const DENSEST: f64 = 1e8;
 
 impl NetworkConfig {
-    fn made(&self) -> Network {
+    fn made(&self, seed: u64) -> Network {
         Network {
+            seed,
             intensity: self.intensity.get(),
             exponent: self.exponent,
             sizes: self.sizes.map(Length::get),
@@ -90,7 +91,7 @@ impl NetworkConfig {
     }
 
     fn check(&self, check: &mut dyn FnMut(bool, &str, String)) {
-        let Network { intensity, exponent, sizes: [low, high], concentration, .. } = self.made();
+        let Network { intensity, exponent, sizes: [low, high], concentration, .. } = self.made(0);
         let (densest, per_length) = (intensity / low, Amount(intensity, "1/m"));
         let rules = [
             (intensity > 0.0, "intensity", per_length, "above 0"),
@@ -117,8 +118,8 @@ impl NetworkConfig {
 }
 
 impl FissureConfig {
-    /// The fissures in the types of the loading tests, without those of the file.
-    pub(super) fn made(&self) -> Fissures {
+    /// The fissures in the types of the loading tests, without those of the file; networks follow from the campaign's `seed`.
+    pub(super) fn made(&self, seed: u64) -> Fissures {
         let centre = |one: &JointConfig, k: usize| one.centre.as_ref().and_then(|x| x.get(k)).map_or(0.0, |x| x.get());
         let fissure = |one: &JointConfig| Fissure {
             centre: std::array::from_fn(|k| centre(one, k)),
@@ -131,7 +132,7 @@ impl FissureConfig {
             self.tensile_strength.zip(self.cohesion).map(|(tension, cohesion)| [tension, cohesion].map(Pressure::get));
         Fissures {
             list: self.list.iter().map(fissure).collect(),
-            network: self.network.as_ref().map(NetworkConfig::made),
+            network: self.network.as_ref().map(|network| network.made(seed)),
             stiffness: self.kn.zip(self.ks).map(|(kn, ks)| [kn.get(), ks.get()]),
             friction: self.friction,
             dilation: self.dilation.map_or(0.0, Angle::get),
