@@ -37,7 +37,8 @@ const ORDER: &[(&str, &[&str])] = &[
 const KEEPERS: &[(&str, &[&str])] = &[
     ("dem", &["stage", "export", "run", "cli"]),
     ("design", &["stage"]),
-    ("stats", &["stage"]),
+    // A report judges what was published beside what was computed.
+    ("stats", &["stage", "report"]),
     ("optim", &["stage"]),
     ("shape", &["stage", "export"]),
     ("figure", &["stage", "report", "cli"]),

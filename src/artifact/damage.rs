@@ -75,7 +75,7 @@ mod tests {
         let one = |until: f64| run(2).damaged(until).unwrap();
         assert_eq!(one(0.5e-4), []);
         let first = Damaged { bodies: [4, 7], cracks: 1, share: 0.25, area: 0.5e-3, width: 2e-3, row: 0 };
-        assert_eq!(one(1.5e-4), [first.clone()]);
+        assert_eq!(one(1.5e-4), std::slice::from_ref(&first));
         let whole = Damaged { bodies: [1, 2], cracks: 1, share: 1.0, area: 2e-3, width: 2e-3, row: 1 };
         assert_eq!(one(1.0), [whole, Damaged { cracks: 2, share: 0.5, area: 1e-3, row: 2, ..first }]);
     }

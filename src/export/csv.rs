@@ -6,8 +6,16 @@ use math::text::typed;
 /// A table as CSV, with units in the first line and all digits.
 pub fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
-    let mut out = csv::WriterBuilder::new().comment(Some(b'#')).from_writer(Vec::new());
-    let written = out.write_record(table.columns.iter().map(head)).and_then(|()| {
+    let heads: Vec<String> = table.columns.iter().map(head).collect();
+    // A reader that looks for the delimiter must not take one inside a text for it.
+    let like_delimiters = |cell: &String| cell.contains([';', '\t', '|']);
+    let quotes = if heads.iter().chain(columns.iter().flatten()).any(like_delimiters) {
+        csv::QuoteStyle::NonNumeric
+    } else {
+        csv::QuoteStyle::Necessary
+    };
+    let mut out = csv::WriterBuilder::new().comment(Some(b'#')).quote_style(quotes).from_writer(Vec::new());
+    let written = out.write_record(&heads).and_then(|()| {
         (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))
     });
     match (written, out.into_inner()) {

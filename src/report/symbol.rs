@@ -167,9 +167,11 @@ mod tests {
         let bar = "<i><span class=\"bar\">σ</span></i><sub>c</sub>";
         assert_eq!(
             set("σ\u{304}_c over E_c, <Even E_cx>"),
-            format!("{bar} over <i>E</i><sub>c</sub>, &lt;Even E_cx&gt;")
+            format!(
+                "<span class=\"sign\">{bar}</span> over <span class=\"sign\"><i>E</i><sub>c</sub></span>, &lt;Even E_cx&gt;"
+            )
         );
-        assert_eq!(set("E = 3 GPa"), "<i>E</i> = 3 GPa");
+        assert_eq!(set("E = 3 GPa"), "<span class=\"sign\"><i>E</i></span> = 3 GPa");
         // The longer symbol, and not the one that it holds.
         let plain = Line::new(r"$(\bar\sigma_c)_j$", 1.0).plain;
         assert!(set(&plain).ends_with("<sub>j</sub></span>") && set("").is_empty(), "{plain}: {}", set(&plain));

@@ -135,9 +135,13 @@ pub fn decide(workflow: &Workflow, store: &Store, targets: &[String], memos: boo
         cluster: None,
     };
     let report = run(workflow, store, &settings, &Silent, &AtomicBool::new(false));
-    match report.broken {
-        Some(why) => Err(Unreadable(why)),
-        None => Ok(report),
+    // A result that nobody can see is not one that is missing.
+    let all = report.stages.iter().all(|stage| matches!(stage.status, StageStatus::Done(_)));
+    let seen = if all { Ok(()) } else { store.check_folders() };
+    match (&report.broken, seen) {
+        (Some(why), _) => Err(Unreadable(why.clone())),
+        (None, Err(error)) => Err(Unreadable(error.to_string())),
+        (None, Ok(())) => Ok(report),
     }
 }
 

@@ -180,7 +180,7 @@ data 3
 design 3
 effort 1
 envelope 1
-figure 15
+figure 16
 fit 4
 formula 2
 gather 2

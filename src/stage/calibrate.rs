@@ -50,14 +50,14 @@ mod tests;
 mod twin;
 mod words;
 
-pub use config::{Calibrate, MethodName, Unmet};
+pub use config::{Calibrate, First, MethodName, Unmet};
 pub use constraint::Constraint;
 pub use curve::{Curve, Weights};
 pub use goal::{Goal, GoalTable, Wanted};
 pub use instrument::{Instrument, Parameter, Surface, instrument};
 pub(super) use read::Judgement;
 pub use slope::Slope;
-pub use start::First;
+
 pub use words::parameters_in_words;
 
 use super::forecast::{Ahead, Forecast, TaskForecast};

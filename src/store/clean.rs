@@ -110,7 +110,10 @@ impl Store {
     }
 
     fn sweep_alone(&self, reachable: &HashSet<Key>, really: bool, grace: bool) -> Result<Swept, StoreError> {
-        object::check_shards(&self.disk)?;
+        for (name, shard) in object::open_shards(&self.disk)? {
+            let listed = shard.list(|_, _| {});
+            listed.map_err(|error| self.disk.fail("list", &self.disk.root.join(&name), error))?;
+        }
         let mut swept = Swept::default();
         let mut doomed: Vec<(String, String)> = Vec::new();
         // Names hold the first bytes of a key: an object goes only if no reachable key begins like that.

@@ -47,9 +47,13 @@ impl Store {
         let id = ObjectId { content: artifact.content_hash(), key: Key::of(&task_text) };
         let image = hdf5::encode(&artifact, task_text).map_err(StoreError::Unstorable)?;
         let durable = timing.seconds >= object::SYNC_FROM;
-        let seal = write(&self.disk, &id, &image, durable, claim)?;
+        // In a store that is only read the result lives as long as this process.
+        let stores = !self.disk.read_only;
+        let seal = if stores { write(&self.disk, &id, &image, durable, claim)? } else { Seal::of(&image) };
         let record = self.marked(&id, seal, timing, Arc::clone(&self.origin));
-        locked(&self.segments).append(&self.disk, &record, durable)?;
+        if stores {
+            locked(&self.segments).append(&self.disk, &record, durable)?;
+        }
         if let Some(index) = self.index.get() {
             locked(index).add(&record);
             self.settle(&record)?;

@@ -157,22 +157,18 @@ pub(super) fn list(disk: &Disk, mut visit: impl FnMut(&Folder, &str, &str, u64))
     Ok(())
 }
 
-/// Whether every folder of objects can be listed: what cannot be seen is not gone.
+/// The folders of objects, each opened, by their names: what cannot be seen is not gone.
 ///
 /// # Errors
-/// One that cannot, or that is no folder.
-pub(super) fn check_shards(disk: &Disk) -> Result<(), StoreError> {
-    let Some(objects) = disk.find_folder("objects")? else { return Ok(()) };
+/// One that cannot be opened, or that is no folder.
+pub(super) fn open_shards(disk: &Disk) -> Result<Vec<(String, Folder)>, StoreError> {
+    let Some(objects) = disk.find_folder("objects")? else { return Ok(Vec::new()) };
     let mut names = Vec::new();
     let listed = objects.list(|name, _| names.extend(is_shard(name).then(|| format!("objects/{name}"))));
     listed.map_err(|error| disk.fail("list", &disk.root.join("objects"), error))?;
     names.sort_unstable();
-    for name in names {
-        if let Some(shard) = disk.find_folder(&name)? {
-            shard.list(|_, _| {}).map_err(|error| disk.fail("list", &disk.root.join(&name), error))?;
-        }
-    }
-    Ok(())
+    let open = |name: String| Ok(disk.find_folder(&name)?.map(|folder| (name, folder)));
+    names.into_iter().filter_map(|name| open(name).transpose()).collect()
 }
 
 /// The folder of objects, and the names of the folders inside it.

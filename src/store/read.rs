@@ -74,6 +74,14 @@ impl Store {
         self.has_all(&[*object])
     }
 
+    /// Whether every folder of objects can be opened.
+    ///
+    /// # Errors
+    /// One cannot, or is none.
+    pub fn check_folders(&self) -> Result<(), StoreError> {
+        object::open_shards(&self.disk).map(drop)
+    }
+
     /// The artifact with this content; it is fetched from the attached remote when only that has it.
     ///
     /// # Errors

@@ -225,7 +225,7 @@ fn nothing_that_a_program_starts_outlives_its_run() {
     space.run(&[]);
     let number = std::fs::read_to_string(space.path("pid")).expect("the process has begun");
     let program = std::fs::read(format!("/proc/{}/cmdline", number.trim())).unwrap_or_default();
-    assert!(!program.starts_with(b"sleep\0600"), "{number} is alive");
+    assert!(!program.starts_with(b"sleep\x00600"), "{number} is alive");
 }
 
 #[test]

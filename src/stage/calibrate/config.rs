@@ -5,7 +5,6 @@ use super::curve::Curve;
 use super::goal::Goal;
 use super::params::{FactorParam, Params};
 use super::slope::Slope;
-use super::start::First;
 use crate::artifact::Artifact;
 use crate::stage::figure::Names;
 use crate::stage::invalid::Invalid;
@@ -19,6 +18,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// The first value of a factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum First {
+    /// A number in the unit of the factor.
+    Number(f64),
+    /// A formula of the targets, in the units of the responses: its value is in the unit of the factor.
+    Formula(String),
+}
 
 /// Settings of a `calibrate` stage.
 #[derive(Debug, Default, Serialize, Deserialize, JsonSchema)]

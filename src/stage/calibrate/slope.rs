@@ -112,19 +112,23 @@ impl Slope {
         })?;
         let column = self.column.as_deref().unwrap_or("slope");
         let slopes = numbers(table, column)?;
-        let axes: Vec<(Vec<f64>, f64)> = held
-            .iter()
-            .filter(|(name, _)| table.column(name).is_some())
-            .map(|(name, &at)| Ok((numbers(table, name)?, at)))
-            .collect::<Result<_, StageError>>()?;
+        let by: Vec<&String> = held.keys().filter(|name| table.column(name).is_some()).collect();
+        let axis = |name: &&String| Ok((numbers(table, name)?, held[*name]));
+        let axes: Vec<(Vec<f64>, f64)> = by.iter().map(axis).collect::<Result<_, StageError>>()?;
         if axes.is_empty() && slopes.len() != 1 {
             let held: Vec<&str> = held.keys().map(String::as_str).collect();
             let hint = format!("the columns are {}; held are {}", columns(table), held.join(", "));
             return Err(StageError::new(format!("table `{name}` holds slopes by no held factor")).hint(hint));
         }
-        on_grid(&axes, &slopes).ok_or_else(|| {
-            let message = format!("the slopes of table `{name}` are no full grid around the held values");
-            StageError::new(message).hint("give every combination of the held factors one slope")
+        on_grid(&axes, &slopes).map_err(|corner| {
+            let named = |(name, at): (&&String, &f64)| format!("{name} {at}");
+            let at = |values: &[f64]| by.iter().zip(values).map(named).collect::<Vec<_>>().join(", ");
+            let wanted: Vec<f64> = axes.iter().map(|(_, at)| *at).collect();
+            let message = format!("table `{name}` has not one slope at {}, next to {}", at(&corner), at(&wanted));
+            StageError::new(message).hint(
+                "every combination of levels around the held values needs one; runs that are not valid and were left out \
+                 leave gaps: `invalid = \"keep\"` in the stage of the slopes, or levels that stay valid",
+            )
         })
     }
 }
@@ -141,9 +145,10 @@ fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, StageError> {
 }
 
 /// Interpolates at a point among rows that hold a full grid of their coordinates: each axis is the coordinate of every row
-/// and that of the point. `None` where a corner of the point's cell has no row, or several rows that differ.
-fn on_grid(axes: &[(Vec<f64>, f64)], values: &[f64]) -> Option<f64> {
-    let cells: Vec<(f64, f64, f64)> = axes.iter().map(|(rows, at)| cell(rows, *at)).collect::<Option<_>>()?;
+/// and that of the point. The error is a corner of the point's cell that has no row, or several rows that differ.
+fn on_grid(axes: &[(Vec<f64>, f64)], values: &[f64]) -> Result<f64, Vec<f64>> {
+    let cells: Option<Vec<_>> = axes.iter().map(|(rows, at)| cell(rows, *at)).collect();
+    let cells = cells.ok_or_else(|| axes.iter().map(|(_, at)| *at).collect::<Vec<_>>())?;
     let mut sum = 0.0;
     for corner in 0..1_usize << cells.len() {
         let upper = |k: usize| corner >> k & 1 == 1;
@@ -155,13 +160,12 @@ fn on_grid(axes: &[(Vec<f64>, f64)], values: &[f64]) -> Option<f64> {
         let at = |k: usize| if upper(k) { cells[k].1 } else { cells[k].0 };
         let stands = |row: &usize| axes.iter().enumerate().all(|(k, (rows, _))| rows[*row] == at(k));
         let mut found = (0..values.len()).filter(stands).map(|row| values[row]).filter(|value| value.is_finite());
-        let value = found.next()?;
-        if found.any(|other| other != value) {
-            return None;
+        match found.next() {
+            Some(value) if !found.any(|other| other != value) => sum += weight * value,
+            Some(_) | None => return Err((0..cells.len()).map(at).collect()),
         }
-        sum += weight * value;
     }
-    Some(sum)
+    Ok(sum)
 }
 
 /// The neighbouring grid coordinates of a value, and its fraction between them.
@@ -186,10 +190,14 @@ mod tests {
     }
 
     fn at(r_min: f64, ratio: f64) -> Result<Option<f64>, StageError> {
+        first(&sweep(), r_min, ratio)
+    }
+
+    fn first(sweep: &Artifact, r_min: f64, ratio: f64) -> Result<Option<f64>, StageError> {
         let target = serde_json::json!({ "response": "s", "unit": "MPa", "low": 9.0, "high": 9.0, "weight": 1.0 });
         let held = [("R_min".to_owned(), r_min), ("ratio".to_owned(), ratio)].into();
         let targets = vec![serde_json::from_value(target).unwrap()];
-        Slope::default().first(Some(&sweep()), &SetParam { targets, held, start: None, seed: None }, "s")
+        Slope::default().first(Some(sweep), &SetParam { targets, held, start: None, seed: None }, "s")
     }
 
     /// Bilinear within the grid, clamped outside it.
@@ -205,6 +213,18 @@ mod tests {
             let first = at(r_min, ratio).unwrap().unwrap();
             assert!((first - 9.0 / slope).abs() < 1e-9, "{r_min}, {ratio}: {first}");
         }
+    }
+
+    #[test]
+    fn a_gap_in_the_grid_is_named_where_a_held_value_needs_it() {
+        let gap = Table::default()
+            .reals_column("R_min", "mm", "", vec![0.1, 0.1, 0.2, 0.2])
+            .reals_column("ratio", "", "", vec![1.0, 2.0, 1.0, 2.0])
+            .reals_column("slope", "", "", vec![0.6, 0.8, 0.7, f64::NAN]);
+        let sweep = Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(gap)));
+        assert!(first(&sweep, 0.1, 1.5).is_ok(), "no corner of it is missing");
+        let error = first(&sweep, 0.15, 1.5).unwrap_err().message;
+        assert_eq!(error, "table `runs` has not one slope at R_min 0.2, ratio 2, next to R_min 0.15, ratio 1.5");
     }
 
     #[test]

@@ -1,21 +1,9 @@
 //! The first point of a search, from numbers and from formulas of the targets.
 
-use super::config::Calibrate;
+use super::config::{Calibrate, First};
 use super::params::{TargetParam, middle};
 use crate::expression::{Expression, Measure};
 use crate::stage::Context;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-/// The first value of a factor.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum First {
-    /// A number in the unit of the factor.
-    Number(f64),
-    /// A formula of the targets, in the units of the responses: its value is in the unit of the factor.
-    Formula(String),
-}
 
 /// A formula that gives no first value: the factor, and why.
 #[derive(Debug, PartialEq)]

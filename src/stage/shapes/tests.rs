@@ -90,6 +90,6 @@ fn what_is_wrong_is_said_before_anything_runs() {
 fn every_fault_of_the_table_is_said_at_once() {
     let odd = SECTIONS.replace("egg,20", "egg,5").replace("slab,15,24,10", "slab,15,24,0");
     let Err(Failure::Failed(error)) = made("sections = 's.csv'", &[("sections", odd.as_bytes())]) else { panic!() };
-    assert!(error.message.contains("shape `egg`: section 3 is at 5e-3, not beyond"), "{error}");
+    assert!(error.message.contains("shape `egg`: section 3 is at 5 mm, not beyond"), "{error}");
     assert!(error.message.contains("shape `slab`: section 2 has a thickness of"), "{error}");
 }

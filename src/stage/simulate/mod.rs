@@ -94,7 +94,7 @@ impl Stage for Simulate {
             PackingChoice::Shared if self.varies_specimen(ahead.context) => TaskForecast::AtMost(rows),
             PackingChoice::Shared => TaskForecast::Exactly(design.replicates - 1),
         };
-        let found = Forecast { per_run: 2, ..Forecast::of_design(ahead, &specimens) };
+        let found = Forecast { per_run: 2, ..Forecast::of_design(ahead, specimens) };
         let PlatenSpeed { speed, pace } = self.platen_speed;
         let bulk = (ahead.behind)("specimen").first().and_then(|specimen| specimen.bulk);
         let one = |bulk: Bulk| (bulk.test(speed, pace, self.masses), bulk.packing());

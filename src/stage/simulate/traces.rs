@@ -77,7 +77,7 @@ fn numbers(table: &Table, name: &str, known: &str) -> Result<Vec<f64>, StageErro
 mod tests {
     use super::*;
     use math::elementary::{cos, sin};
-    use std::f64::consts::{FRAC_PI_4, SQRT_2};
+    use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, SQRT_2};
 
     fn near(a: f64, b: f64) -> bool {
         (a - b).abs() < 1e-12
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn middles_and_ends_say_the_same() {
         let middles = b"x [mm],y [mm],dip [deg],length [cm]\n5,-2,45,2\n0,1,0,1\n";
-        let half = 10.0 * FRAC_PI_4.cos();
+        let half = 10.0 * FRAC_1_SQRT_2;
         let ends = format!(
             "x1 [mm],y1 [mm],x2 [mm],y2 [mm]\n{},{},{},{}\n5,1,-5,1\n",
             5.0 - half,

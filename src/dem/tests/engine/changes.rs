@@ -35,13 +35,13 @@ const CALLS: &[(Call, &str)] = &[
     (|e| e.set_motion(36, [0.0; 2], [0.0]), "particle 36 does not exist: there are 36, counted from 0"),
     (
         |e| e.set_motion(3, [NAN, INF], [0.0]),
-        "particle 3: velocity is NaN, wanted a finite number; particle 3: velocity is inf, wanted a finite number",
+        "particle 3: velocity is NaN m/s, wanted a finite number; particle 3: velocity is inf m/s, wanted a finite number",
     ),
-    (|e| e.set_motion(3, [0.0; 2], [-INF]), "particle 3: spin is -inf, wanted a finite number"),
-    (|e| e.set_motion(pebble(e), [0.0; 2], [NAN]), "spin is NaN, wanted a finite number"),
+    (|e| e.set_motion(3, [0.0; 2], [-INF]), "particle 3: spin is -inf rad/s, wanted a finite number"),
+    (|e| e.set_motion(pebble(e), [0.0; 2], [NAN]), "spin is NaN rad/s, wanted a finite number"),
     (|e| e.apply(usize::MAX, [0.0; 2], [0.0]), "does not exist: there are 36, counted from 0"),
-    (|e| e.apply(0, [0.0, INF], [0.0]), "particle 0: force is inf, wanted a finite number"),
-    (|e| e.apply(0, [0.0; 2], [NAN]), "particle 0: moment is NaN, wanted a finite number"),
+    (|e| e.apply(0, [0.0, INF], [0.0]), "particle 0: force is inf N, wanted a finite number"),
+    (|e| e.apply(0, [0.0; 2], [NAN]), "particle 0: moment is NaN N*m, wanted a finite number"),
     (
         |e| e.fix(&[0, 40, 1, 36], true, true),
         "particle 40 does not exist: there are 36, counted from 0; particle 36 does not",
@@ -53,23 +53,23 @@ const CALLS: &[(Call, &str)] = &[
         "particle 1: factor of its radius is 0, wanted a number above 0; particle 2: factor of its radius is -1, wanted a number above 0; particle 3: factor of its radius is NaN,",
     ),
     (|e| e.scale_radii(&[(0, INF)]), "particle 0: factor of its radius is inf, wanted a number above 0"),
-    (|e| e.scale_radii(&[(0, 1e300)]), "particle 0: mass is inf, wanted a number above 0"),
-    (|e| e.scale_radii(&[(0, 1e-200), (0, 1e-200)]), "particle 0: radius is 0, wanted a number above 0"),
+    (|e| e.scale_radii(&[(0, 1e300)]), "particle 0: mass is inf kg, wanted a number above 0"),
+    (|e| e.scale_radii(&[(0, 1e-200), (0, 1e-200)]), "particle 0: radius is 0 m, wanted a number above 0"),
     (|e| e.scale_radii(&[(pebble(e), 1.1)]), "cannot be scaled: the mass of its clump would not follow"),
-    (|e| e.install_bonds(NAN, 1).map(drop), "installation gap is NaN, wanted a number up to the largest radius"),
-    (|e| e.install_bonds(INF, 1).map(drop), "installation gap is inf,"),
-    (|e| e.install_bonds(-INF, 1).map(drop), "installation gap is -inf,"),
-    (|e| e.install_bonds(0.5, 1).map(drop), "installation gap is 0.5, wanted a number up to the largest radius"),
+    (|e| e.install_bonds(NAN, 1).map(drop), "installation gap is NaN m, wanted a number up to the largest radius"),
+    (|e| e.install_bonds(INF, 1).map(drop), "installation gap is inf m,"),
+    (|e| e.install_bonds(-INF, 1).map(drop), "installation gap is -inf m,"),
+    (|e| e.install_bonds(0.5, 1).map(drop), "installation gap is 500 mm, wanted a number up to the largest radius"),
     (|e| e.move_wall(2, Motion::Velocity([0.0; 2])), "wall 2 does not exist: there are 2, counted from 0"),
-    (|e| e.move_wall(1, Motion::Velocity([NAN, 0.0])), "wall 1: velocity is NaN, wanted a finite number"),
+    (|e| e.move_wall(1, Motion::Velocity([NAN, 0.0])), "wall 1: velocity is NaN m/s, wanted a finite number"),
     (
         |e| e.move_wall(1, servo(INF, 0.0, 2.0, -1.0)),
-        "wall 1: servo pressure is inf, wanted a finite number; wall 1: servo area is 0, wanted a number above 0; wall 1: servo relaxation is 2, wanted in (0, 1]; wall 1: servo speed limit is -1, wanted a number above 0",
+        "wall 1: servo pressure is inf Pa, wanted a finite number; wall 1: servo area is 0 m^2, wanted a number above 0; wall 1: servo relaxation is 2, wanted in (0, 1]; wall 1: servo speed limit is -1 m/s, wanted a number above 0",
     ),
     (|e| e.remove_wall(2), "wall 2 does not exist: there are 2, counted from 0"),
     (
         |e| e.add_wall(&wall([NAN, 0.0], [0.0, 0.0], Motion::Velocity([0.0; 2]))).map(drop),
-        "wall 2: point is NaN, wanted a finite number; wall 2: length of the normal is 0, wanted a number above 0",
+        "wall 2: point is NaN m, wanted a finite number; wall 2: length of the normal is 0, wanted a number above 0",
     ),
     (
         |e| e.add_wall(&wall([0.0, 1e-3], [0.0, 1.0], Motion::Velocity([0.0; 2]))).map(drop),
@@ -95,14 +95,18 @@ fn a_refused_change_says_why_and_changes_nothing() {
     let mut expected = moving();
     let before = state(&expected);
     expected.advance(60).unwrap();
+    let mut wrong = String::new();
     for (call, message) in CALLS {
         let mut engine = moving();
         let text = call(&mut engine).unwrap_err().to_string();
-        assert!(text.contains(message), "{message}: {text}");
+        if !text.contains(message) {
+            wrong += &format!("\n{message}: {text}");
+        }
         assert_eq!(state(&engine), before, "{message}");
         engine.advance(60).unwrap();
         assert_eq!(state(&engine), state(&expected), "{message}");
     }
+    assert!(wrong.is_empty(), "{wrong}");
 }
 
 #[test]
@@ -124,7 +128,7 @@ fn a_cell_refuses_radii_that_would_meet_twice() {
     let settings = Settings { cell: Some(cell), ..Settings::default() };
     let mut engine = Engine::new(&model::<D2>(balls, vec![], law, settings)).unwrap();
     let text = engine.scale_radii(&[(1, 1.3)]).unwrap_err().to_string();
-    assert!(text.contains("edge of the cell is 1.5, wanted at least six times the largest radius"), "{text}");
+    assert!(text.contains("edge of the cell is 1.5 m, wanted at least six times the largest radius"), "{text}");
     assert_eq!(engine.radius(1), 0.2);
     let text = engine.strain_cell([[NAN; 3]; 3]).unwrap_err().to_string();
     assert!(text.contains("rate of the cell is NaN"), "{text}");

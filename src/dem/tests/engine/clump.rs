@@ -115,7 +115,7 @@ fn a_clump_of_nothing_sound_is_refused() {
     balls[1].radius = f64::NAN;
     let text = Clump::of(&balls, &[0, 1, 7], -1.0).unwrap_err().to_string();
     let expected = "clump 0: pebble 1 has a radius or position that is none; clump 0: pebble 7 does not exist; \
-        clump 0: density is -1, wanted a number above 0";
+        clump 0: density is -1 kg/m^3, wanted a number above 0";
     assert_eq!(text, expected);
     let text = Clump::of(&balls, &[], 1.0).unwrap_err().to_string();
     assert_eq!(text, "clump 0: number of pebbles is 0, wanted at least 1");

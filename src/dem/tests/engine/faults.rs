@@ -27,13 +27,13 @@ fn every_fault_is_named() {
     });
     let text: Vec<String> = found.iter().map(ToString::to_string).collect();
     let expected = [
-        "clump 0: mass is inf, wanted a number above 0",
-        "particle 3: radius is -1, wanted a number above 0",
-        "particle 5: mass is 0, wanted a number above 0",
-        "particle 7: position is NaN, wanted a finite number",
+        "clump 0: mass is inf kg, wanted a number above 0",
+        "particle 3: radius is -1 m, wanted a number above 0",
+        "particle 5: mass is 0 kg, wanted a number above 0",
+        "particle 7: position is NaN m, wanted a finite number",
         "wall 1: length of the normal is 0, wanted a number above 0",
         "safety factor of the time step is 2, wanted in (0, 1]",
-        "time step is 0, wanted a number above 0",
+        "time step is 0 s, wanted a number above 0",
     ];
     assert_eq!(text, expected);
 }
@@ -50,8 +50,8 @@ fn bad_laws_and_missing_ones_are_named() {
     assert_eq!(
         text,
         [
-            "contact of groups 0 and 0: bond modulus is -1, wanted a number above 0",
-            "contact of groups 0 and 0: tensile strength is 0, wanted a number above 0",
+            "contact of groups 0 and 0: bond modulus is -1 Pa, wanted a number above 0",
+            "contact of groups 0 and 0: tensile strength is 0 Pa, wanted a number above 0",
         ]
     );
     let found = faults(|m| m.contacts = ContactTable::new().with(GRAIN, GRAIN, bonded()));
@@ -73,25 +73,25 @@ fn overlapping_starts_and_double_pebbles_are_named() {
 fn each_bad_number_is_named_alone() {
     type Change = fn(&mut Model<D2>);
     let cases: &[(Change, &str)] = &[
-        (|m| m.particles[2].radius = 0.0, "particle 2: radius is 0,"),
-        (|m| m.particles[2].radius = f64::NAN, "particle 2: radius is NaN,"),
-        (|m| m.particles[2].mass = -1.0, "particle 2: mass is -1,"),
-        (|m| m.particles[2].inertia = 0.0, "particle 2: inertia is 0,"),
-        (|m| m.particles[2].velocity[0] = f64::INFINITY, "particle 2: velocity is inf,"),
-        (|m| m.particles[2].spin[0] = f64::NAN, "particle 2: spin is NaN,"),
-        (|m| m.clumps[0].inertia = [[0.0; 3]; 3], "clump 0: inertia is 0,"),
+        (|m| m.particles[2].radius = 0.0, "particle 2: radius is 0 m,"),
+        (|m| m.particles[2].radius = f64::NAN, "particle 2: radius is NaN m,"),
+        (|m| m.particles[2].mass = -1.0, "particle 2: mass is -1 kg,"),
+        (|m| m.particles[2].inertia = 0.0, "particle 2: inertia is 0 kg*m^2,"),
+        (|m| m.particles[2].velocity[0] = f64::INFINITY, "particle 2: velocity is inf m/s,"),
+        (|m| m.particles[2].spin[0] = f64::NAN, "particle 2: spin is NaN rad/s,"),
+        (|m| m.clumps[0].inertia = [[0.0; 3]; 3], "clump 0: inertia is 0 kg*m^2,"),
         (|m| m.clumps[0].pebbles.clear(), "clump 0: number of pebbles is 0,"),
         (|m| m.clumps[0].centre[0] = f64::NAN, "clump 0: position, velocity or spin is NaN,"),
-        (|m| m.walls[0].point[1] = f64::NAN, "wall 0: point is NaN,"),
-        (|m| m.walls[0].motion = Motion::Velocity([f64::NAN, 0.0]), "wall 0: velocity is NaN,"),
+        (|m| m.walls[0].point[1] = f64::NAN, "wall 0: point is NaN m,"),
+        (|m| m.walls[0].motion = Motion::Velocity([f64::NAN, 0.0]), "wall 0: velocity is NaN m/s,"),
         (|m| m.settings.damping = 1.0, "damping is 1,"),
         (|m| m.settings.damping = f64::NAN, "damping is NaN,"),
-        (|m| m.settings.gravity[1] = f64::NAN, "gravity is NaN,"),
+        (|m| m.settings.gravity[1] = f64::NAN, "gravity is NaN m/s^2,"),
         (|m| m.settings.safety = 0.0, "safety factor of the time step is 0,"),
-        (|m| m.settings.fixed_step = Some(-1e-6), "time step is -0.000001,"),
-        (|m| m.settings.bounds = Some([[0.0, f64::NAN], [1.0, 1.0]]), "lower bound is NaN,"),
-        (|m| m.settings.bounds = Some([[0.0, 2.0], [1.0, 1.0]]), "lower bound is 2, wanted a number below the upper"),
-        (|m| m.settings.bounds = Some([[0.0, 0.0], [1.0, f64::NAN]]), "upper bound is NaN,"),
+        (|m| m.settings.fixed_step = Some(-1e-6), "time step is -1 µs,"),
+        (|m| m.settings.bounds = Some([[0.0, f64::NAN], [1.0, 1.0]]), "lower bound is NaN m,"),
+        (|m| m.settings.bounds = Some([[0.0, 2.0], [1.0, 1.0]]), "lower bound is 2 m, wanted a number below the upper"),
+        (|m| m.settings.bounds = Some([[0.0, 0.0], [1.0, f64::NAN]]), "upper bound is NaN m,"),
         (|m| m.settings.overlap_limit = f64::NAN, "overlap limit is NaN,"),
         (|m| m.walls[0].point[1] += 1e-3, "particle 0 starts with an overlap of 2.0"),
         (
@@ -99,26 +99,29 @@ fn each_bad_number_is_named_alone() {
                 m.walls[1].motion =
                     Motion::Servo(Servo { pressure: 1.0, area: -1.0, relaxation: 0.5, speed_limit: 1.0 })
             },
-            "wall 1: servo area is -1,",
+            "wall 1: servo area is -1 m^2,",
         ),
         (|m| m.particles.clear(), "clump 0: pebble"),
-        (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::direct(0.0, 1.0, 0.5))), "groups 0 and 0: kn is 0,"),
-        (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::direct(1.0, -1.0, 0.5))), "groups 0 and 0: ks is -1,"),
-        (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::modulus(-1.0, 1.0, 0.5))), "groups 0 and 0: modulus is -1,"),
+        (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::direct(0.0, 1.0, 0.5))), "groups 0 and 0: kn is 0 N/m,"),
+        (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::direct(1.0, -1.0, 0.5))), "groups 0 and 0: ks is -1 N/m,"),
+        (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::modulus(-1.0, 1.0, 0.5))), "groups 0 and 0: modulus is -1 Pa,"),
         (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::modulus(1.0, 0.0, 0.5))), "groups 0 and 0: kn/ks is 0,"),
         (|m| m.contacts.set(GRAIN, GRAIN, with(Linear::modulus(1.0, 1.0, -0.5))), "groups 0 and 0: friction is -0.5,"),
-        (|m| m.contacts.set(GRAIN, STONE, point(-1.0, 1.0)), "groups 0 and 1: tensile strength is -1,"),
-        (|m| m.contacts.set(GRAIN, STONE, point(1.0, f64::NAN)), "groups 0 and 1: shear strength is NaN,"),
+        (|m| m.contacts.set(GRAIN, STONE, point(-1.0, 1.0)), "groups 0 and 1: tensile strength is -1 Pa,"),
+        (|m| m.contacts.set(GRAIN, STONE, point(1.0, f64::NAN)), "groups 0 and 1: shear strength is NaN Pa,"),
         (|m| m.contacts = ContactTable::new().with(GRAIN, GRAIN, bonded()), "groups 0 and 2 can meet"),
         (|m| m.settings.cell = Some(cell(0.1, 0.0)), "number of walls in a periodic cell is 2,"),
-        (|m| m.settings.cell = Some(cell(1e-3, 0.0)), "edge of the cell is 0.001,"),
-        (|m| m.settings.cell = Some(cell(0.1, f64::NAN)), "rate of the cell is NaN,"),
+        (|m| m.settings.cell = Some(cell(1e-3, 0.0)), "edge of the cell is 1 mm,"),
+        (|m| m.settings.cell = Some(cell(0.1, f64::NAN)), "rate of the cell is NaN 1/s,"),
     ];
+    let mut wrong = String::new();
     for (change, expected) in cases {
-        let found = faults(change);
-        let named = found.iter().any(|fault| fault.to_string().contains(expected));
-        assert!(named, "{expected}: {found:?}");
+        let found: Vec<String> = faults(change).iter().map(ToString::to_string).collect();
+        if !found.iter().any(|fault| fault.contains(expected)) {
+            wrong += &format!("\n{expected} {found:?}");
+        }
     }
+    assert!(wrong.is_empty(), "{wrong}");
 }
 
 fn with(linear: Linear) -> Interaction {
