@@ -7,13 +7,9 @@ use math::text::typed;
 pub fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
     let heads: Vec<String> = table.columns.iter().map(head).collect();
-    // A reader that looks for the delimiter must not take one inside a text for it.
-    let like_delimiters = |cell: &String| cell.contains([';', '\t', '|']);
-    let quotes = if heads.iter().chain(columns.iter().flatten()).any(like_delimiters) {
-        csv::QuoteStyle::NonNumeric
-    } else {
-        csv::QuoteStyle::Necessary
-    };
+    // A reader that looks for the delimiter must not take one inside a head for it; where the head has none, it is none.
+    let like_delimiter = |head: &String| head.contains([';', '\t', '|']);
+    let quotes = if heads.iter().any(like_delimiter) { csv::QuoteStyle::Always } else { csv::QuoteStyle::Necessary };
     let mut out = csv::WriterBuilder::new().comment(Some(b'#')).quote_style(quotes).from_writer(Vec::new());
     let written = out.write_record(&heads).and_then(|()| {
         (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))

@@ -8,7 +8,7 @@
 //! * `Four` and `Eight` are reachable only through [`dispatch`], which asks the processor first; so no instruction is run
 //!   that the machine lacks.
 //! * Lane memory access goes through references to whole rows ([`Quad`], [`Row`]): in bounds and aligned by their types.
-//! * [`exchange`]: between two meetings every thread reads one buffer and writes its own range of the other, and the
+//! * `exchange`: between two meetings every thread reads one buffer and writes its own range of the other, and the
 //!   ranges are disjoint; a thread passes a meeting only after all have come, with no borrow left (`meet` takes `&mut`).
 #![allow(unsafe_code)]
 
