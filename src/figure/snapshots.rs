@@ -12,7 +12,7 @@ use super::legend::{self, Entry, Swatch};
 use super::palette::{self, INK, Marker, SOFT, VERMILION};
 use super::panel::{Panel, draw_marker};
 use super::scene::{Anchor, Item, Path, Point, Rect, Scene, Stroke};
-use super::specimen::{Frame, Outline, group_color, thousands};
+use super::specimen::{Frame, Specimen, group_color, thousands};
 use super::text::Line;
 use super::{Figure, Style};
 use math::elementary::sin_cos;
@@ -31,20 +31,8 @@ pub struct State {
 /// A test in the plane; lengths in mm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshots {
-    /// Shape of the specimen.
-    pub outline: Outline,
-    /// Lower left corner of the domain.
-    pub low: Point,
-    /// Upper right corner.
-    pub high: Point,
-    /// Centre of each disc before loading.
-    pub centres: Vec<Point>,
-    /// Radius of each disc.
-    pub radii: Vec<f64>,
-    /// Group of each disc, an index into `groups`.
-    pub group: Vec<usize>,
-    /// Names of the groups.
-    pub groups: Vec<String>,
+    /// The specimen before loading; outlines of the aggregate are not drawn.
+    pub specimen: Specimen,
     /// States in the order of time.
     pub states: Vec<State>,
     /// Names of the modes of cracks.
@@ -78,7 +66,8 @@ impl Figure for Snapshots {
         let n = self.states.len().max(1);
         let columns = n.min(if style.width > 130.0 { 4 } else { 2 });
         let width = (style.width - 1.6 + BETWEEN) / columns as f64 - BETWEEN;
-        let height = width * (self.high[1] - self.low[1]) / (self.high[0] - self.low[0]);
+        let height =
+            width * (self.specimen.high[1] - self.specimen.low[1]) / (self.specimen.high[0] - self.specimen.low[0]);
         let entries = self.entries();
         let top = 1.0 + legend::height(&entries, style.width - 1.6, style);
         let row = height + 3.2 * size;
@@ -109,8 +98,11 @@ impl Figure for Snapshots {
     }
 
     fn data(&self) -> Vec<Column> {
-        let all =
-            || self.states.iter().flat_map(|s| s.centres.iter().zip(&self.centres).map(move |(c, from)| (s, c, from)));
+        let all = || {
+            self.states
+                .iter()
+                .flat_map(|s| s.centres.iter().zip(&self.specimen.centres).map(move |(c, from)| (s, c, from)))
+        };
         let each =
             |pick: &dyn Fn(&Point, &Point) -> f64| all().map(|(_, now, from)| pick(now, from)).collect::<Vec<f64>>();
         let disc = self.states.iter().flat_map(|state| (1..=state.centres.len()).map(|i| i as i64));
@@ -131,7 +123,8 @@ impl Figure for Snapshots {
             return Vec::new();
         }
         let width = 0.5 * (style.width - 1.6) - BETWEEN;
-        let height = width * (self.high[1] - self.low[1]) / (self.high[0] - self.low[0]);
+        let height =
+            width * (self.specimen.high[1] - self.specimen.low[1]) / (self.specimen.high[0] - self.specimen.low[0]);
         let entries = self.entries();
         let top = 1.0 + legend::height(&entries, style.width - 1.6, style);
         // Below the curve stand three lines with its numbers.
@@ -189,7 +182,7 @@ impl Snapshots {
         let mode = |(i, name): (usize, &String)| {
             Entry::new(name.clone(), Swatch::Line(Stroke::new(palette::mode(i), 0.5), None))
         };
-        self.groups.iter().enumerate().map(group).chain(self.modes.iter().enumerate().map(mode)).collect()
+        self.specimen.groups.iter().enumerate().map(group).chain(self.modes.iter().enumerate().map(mode)).collect()
     }
 
     /// The round number, one at least, by which displacements are multiplied: 98 of 100 discs of the last state stay within
@@ -197,10 +190,10 @@ impl Snapshots {
     fn magnification(&self) -> f64 {
         let Some(last) = self.states.last() else { return 1.0 };
         let moved = |(now, from): (&Point, &Point)| (now[0] - from[0]).abs().max((now[1] - from[1]).abs());
-        let mut moved: Vec<f64> = last.centres.iter().zip(&self.centres).map(moved).collect();
+        let mut moved: Vec<f64> = last.centres.iter().zip(&self.specimen.centres).map(moved).collect();
         moved.sort_by(f64::total_cmp);
         let most = moved.get(moved.len() * 98 / 100).copied().unwrap_or(0.0);
-        let room = SHOWN * (self.high[1] - self.low[1]);
+        let room = SHOWN * (self.specimen.high[1] - self.specimen.low[1]);
         let steps = [1000.0, 500.0, 200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0];
         steps.into_iter().find(|by| most > 0.0 && by * most <= room).unwrap_or(1.0)
     }
@@ -209,15 +202,15 @@ impl Snapshots {
     fn nearest(&self) -> Vec<usize> {
         let apart = |a: &Point, b: &Point| (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
         let nearest = |(_, crack): &(f64, Crack)| {
-            let distance = |i: &usize| apart(&self.centres[*i], &crack.at);
-            (0..self.centres.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+            let distance = |i: &usize| apart(&self.specimen.centres[*i], &crack.at);
+            (0..self.specimen.centres.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
         };
         self.cracks.iter().map(nearest).collect()
     }
 
     fn drawn(&self, place: Rect, magnified: f64, nearest: Vec<usize>) -> Drawn {
-        let margin = AROUND * (self.high[0] - self.low[0]);
-        let (low, high) = (self.low.map(|v| v - margin), self.high.map(|v| v + margin));
+        let margin = AROUND * (self.specimen.high[0] - self.specimen.low[0]);
+        let (low, high) = (self.specimen.low.map(|v| v - margin), self.specimen.high.map(|v| v + margin));
         let frame = Frame::fit(low, high, place);
         Drawn { frame, clip: frame.area, magnified, nearest }
     }
@@ -227,18 +220,21 @@ impl Snapshots {
         let Some(now) = state.and_then(|state| self.states[state].centres.get(disc)) else {
             return drawn.frame.place(at);
         };
-        let from = self.centres[disc];
+        let from = self.specimen.centres[disc];
         drawn.frame.place([0, 1].map(|k| at[k] + drawn.magnified * (now[k] - from[k])))
     }
 
     /// All discs in a state, or before loading.
     fn discs(&self, drawn: &Drawn, state: Option<usize>) -> Option<Item> {
         let of = |group: usize| {
-            let members = (0..self.centres.len()).filter(|&i| self.group.get(i).copied().unwrap_or(0) == group);
-            let disc = |i: usize| (self.moved(drawn, self.centres[i], i, state), drawn.frame.length(self.radii[i]));
+            let members =
+                (0..self.specimen.centres.len()).filter(|&i| self.specimen.group.get(i).copied().unwrap_or(0) == group);
+            let disc = |i: usize| {
+                (self.moved(drawn, self.specimen.centres[i], i, state), drawn.frame.length(self.specimen.radii[i]))
+            };
             Item::Discs { discs: members.map(disc).collect(), color: group_color(group) }
         };
-        let items: Vec<Item> = (0..self.groups.len()).map(of).collect();
+        let items: Vec<Item> = (0..self.specimen.groups.len()).map(of).collect();
         (!items.is_empty()).then(|| Item::Group { clip: Some(drawn.clip), facts: Vec::new(), items })
     }
 
@@ -311,18 +307,22 @@ mod tests {
             |by: f64| centres.iter().map(|c: &Point| [c[0], if c[1] > 20.0 { c[1] - by } else { c[1] }]).collect();
         let state = |strain, title: &str, by| State { strain, title: title.into(), centres: down(by) };
         let crack = |mode| Crack { at: [20.0, 29.0], angle: 0.0, length: 2.0, mode };
-        Snapshots {
+        let states = vec![state(2e-4, "half", 0.008), state(1e-3, "end", 0.02)];
+        let specimen = Specimen {
             low: [0.0, 0.0],
             high: [40.0, 40.0],
+            centres,
             radii: vec![10.0; 4],
             group: vec![0, 0, 1, 1],
             groups: vec!["mortar".into(), "aggregate".into()],
-            states: vec![state(2e-4, "half", 0.008), state(1e-3, "end", 0.02)],
+            ..Specimen::default()
+        };
+        Snapshots {
+            specimen,
+            states,
             modes: vec!["tension".into(), "shear".into()],
             cracks: vec![(2e-4, crack(0)), (9e-4, crack(1)), (9e-4, crack(1))],
             curve: vec![[0.0, 0.0], [5e-4, 10.0], [1e-3, 4.0]],
-            centres,
-            ..Snapshots::default()
         }
     }
 

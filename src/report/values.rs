@@ -6,7 +6,7 @@
 //! * `curve`: per curve axial strain in %, stress, lateral strain in %, and counts of cracks by mode, on one index;
 //! * `field`: a response on a regular grid of two factors, thinned; between its nodes the script takes the parabola
 //!   through three of them along each side, which is exact for second-order surfaces;
-//! * `points`: per panel points with their words; the nearest one is told, of `cells` however far it is.
+//! * `points`: per panel points with their words; the nearest one is shown, of `cells` however far it is.
 
 mod own;
 

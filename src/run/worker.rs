@@ -140,7 +140,7 @@ struct Loop<'pool, 'env> {
     begun: usize,
     /// Tasks in a row that others had begun.
     missed: usize,
-    /// So many of them make it look which tasks are begun, so that it does not try a hundred thousand one by one.
+    /// After this many, the worker lists the tasks that are begun instead of trying a hundred thousand one by one.
     patience: usize,
     worked: Worked,
 }

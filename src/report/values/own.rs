@@ -166,7 +166,7 @@ mod tests {
             .reals_column("scatter", "MPa", "", vec![1.5, f64::NAN, f64::NAN, 3.0]);
         let found = cells(&data, &Context::default()).unwrap();
         let panel = &found["panels"][0];
-        // The first row is the upper one; a cell without a value is told, too.
+        // The first row is the upper one; a cell without a value is named as well.
         assert_eq!((&panel["x"], &panel["y"]), (&json!([0.0, 1.0, 0.0, 1.0]), &json!([1.0, 1.0, 0.0, 0.0])));
         assert_eq!(panel["words"][0], "rock = granite, depth = 10.00 m: q = 82.00 MPa ± 1.5");
         assert_eq!(panel["words"][2], "rock = gneiss, depth = 10.00 m: no value");

@@ -86,18 +86,23 @@ pub(super) fn specimen(params: &Params, sources: &Sources) -> Result<Box<dyn Pic
     if stored.centres.ncols() == 3 {
         return Ok(Box::new(space::solid(&stored, params.cut)));
     }
-    let (group, groups) = groups(&stored);
-    let (low, high) = domain(&stored);
-    Ok(Box::new(Specimen {
-        outline: outline(&stored),
+    Ok(Box::new(plane(&stored)))
+}
+
+/// A specimen of the plane, in mm.
+pub(super) fn plane(stored: &StoredSpecimen) -> Specimen {
+    let (group, groups) = groups(stored);
+    let (low, high) = domain(stored);
+    Specimen {
+        outline: outline(stored),
         low,
         high,
         centres: stored.centres.rows().into_iter().map(|c| [c[0] * MM, c[1] * MM]).collect(),
         radii: stored.radii.iter().map(|r| r * MM).collect(),
         group,
         groups,
-        outlines: outlines(&stored),
-    }))
+        outlines: outlines(stored),
+    }
 }
 
 /// The frame of cracks and forces.

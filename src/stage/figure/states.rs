@@ -2,8 +2,8 @@
 
 use super::super::StageError;
 use super::super::specimen::stored;
-use super::parts::{MM, groups};
-use super::run::{crack_list, curve_of, domain, outline, shown};
+use super::parts::MM;
+use super::run::{crack_list, curve_of, plane, shown};
 use super::source::Sources;
 use super::space;
 use crate::artifact::run::Run;
@@ -26,18 +26,10 @@ pub(super) fn snapshots(sources: &Sources) -> Result<Box<dyn Picture>, StageErro
     }
     let (modes, mut cracks) = crack_list(&run)?;
     cracks.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (group, groups) = groups(&specimen);
-    let (low, high) = domain(&specimen);
     let points = curve.axial_strain.iter().copied().zip(shown(&curve.stress, "Pa", "MPa"));
     let known = points.filter(|(strain, stress)| strain.is_finite() && stress.is_finite());
     Ok(Box::new(Snapshots {
-        outline: outline(&specimen),
-        low,
-        high,
-        centres: specimen.centres.rows().into_iter().map(|c| [c[0] * MM, c[1] * MM]).collect(),
-        radii: specimen.radii.iter().map(|r| r * MM).collect(),
-        group,
-        groups,
+        specimen: plane(&specimen),
         states: states(&run, specimen.radii.len())?,
         modes,
         cracks,

@@ -130,9 +130,6 @@ pub(super) fn snapshots() -> Snapshots {
     let state = |title: &str, share: f64| State { strain: 2.4e-3 * share, title: title.into(), centres: moved(share) };
     let stress = |e: f64| if e < 1.5e-3 { 3e4 * e * (1.0 - e / 3.2e-3) } else { 23.9 * (-(e - 1.5e-3) / 1.2e-3).exp() };
     Snapshots {
-        outline: specimen.outline,
-        low: specimen.low,
-        high: specimen.high,
         states: vec![
             state("50 % of the peak", 0.2),
             state("80 % of the peak", 0.4),
@@ -142,10 +139,7 @@ pub(super) fn snapshots() -> Snapshots {
         modes: cracks.modes.clone(),
         cracks: last.cracks.iter().enumerate().map(|(i, c)| (strain(i), *c)).collect(),
         curve: (0..=200).map(|i| [1.2e-5 * f64::from(i), stress(1.2e-5 * f64::from(i))]).collect(),
-        centres: specimen.centres,
-        radii: specimen.radii,
-        group: specimen.group,
-        groups: specimen.groups,
+        specimen,
     }
 }
 
