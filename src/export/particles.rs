@@ -26,7 +26,7 @@ use dem::space::Tuple;
 use dem::{Space, Vector};
 use math::elementary::atan2;
 use ndarray::Array2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -113,7 +113,7 @@ fn material(parameters: &Parameters) -> Result<Material, String> {
         let place = place(&mut root, path).ok_or_else(|| format!("the parameter `{path}` lies below a value"))?;
         *place = value;
     }
-    serde_json::from_value(root).map_err(|e| format!("the run's material cannot be read: {e}"))
+    Material::deserialize(&root).map_err(|e| format!("the run's material cannot be read: {e}"))
 }
 
 /// The place of a path such as `fissures[0].friction` in a tree of tables and lists, which grows towards it.

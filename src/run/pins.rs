@@ -192,7 +192,7 @@ shapes 1
 simulate 4
 specimen 2
 table 7
-verify 3
+verify 4
 ";
 
 /// What the workflow gives, in the form of the pins.

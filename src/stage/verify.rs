@@ -186,8 +186,8 @@ impl Kind for Verify {
     const ABOUT: &'static str = "calibrated parameters on fresh specimens";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::VERIFICATION];
     const CLASS: Class = Class::Calibration;
-    // 3: no deviation without two values. 2: runs that are not valid are left out
-    const WORKS: &'static [Work] = &[Work { name: "verify", version: 3, run: verify }];
+    // 4: runs that are not valid are counted among those of all sets. 3: no deviation without two values. 2: runs that are not valid are left out
+    const WORKS: &'static [Work] = &[Work { name: "verify", version: 4, run: verify }];
 }
 
 /// One target and the values of its runs; NaN where a run failed.
@@ -263,14 +263,16 @@ fn verify(job: &Job) -> Result<Artifact, Failure> {
 fn leave_out(runs: &Table, params: &Params, verified: &mut [Verified]) -> Result<NotValid, StageError> {
     let judged = params.invalid.judge(runs)?;
     let mut list = NotValid::default();
-    for one in verified {
+    let of = |response: &str| verified.iter().filter(|one| one.response == response).count() * params.replicates;
+    let counts: Vec<usize> = verified.iter().map(|one| of(&one.response)).collect();
+    for (one, count) in verified.iter_mut().zip(counts) {
         let first = (one.set as usize - 1) * params.replicates;
         let place = |index: usize| first + index;
         let mut values = vec![f64::NAN; first];
         values.extend(&one.values);
         let mut own = judged.listed(&one.response, &values);
-        // Runs of one set are counted among those of the set.
-        own.runs.fill(params.replicates as i64);
+        // They are counted among the runs of all sets that have this target.
+        own.runs.fill(count as i64);
         list.append(own);
         let kept = |(index, value): (usize, &f64)| if judged.leaves_out(place(index)) { f64::NAN } else { *value };
         one.values = one.values.iter().enumerate().map(kept).collect();
@@ -374,5 +376,33 @@ mod tests {
             let (_, deviation, half, n) = moments(values);
             assert!(deviation.is_nan() && half.is_nan() && n < 2, "{values:?}");
         }
+    }
+
+    #[test]
+    fn runs_that_are_not_valid_are_counted_among_those_of_all_sets() {
+        let texts = |texts: [&str; 4]| texts.map(String::from).to_vec();
+        let runs = Table::default()
+            .reals_column("y", "MPa", "", vec![1.0, 2.0, 3.0, 4.0])
+            .texts_column("failure", "", texts([""; 4]))
+            .texts_column("validity", "", texts(["rotation", "rotation", "", "rotation"]));
+        let params = Params {
+            factors: Vec::new(),
+            replicates: 2,
+            simulators: vec!["runs".into()],
+            from: BTreeMap::new(),
+            invalid: Invalid::LeaveOut,
+        };
+        let verified = |set: i64, values: [f64; 2]| Verified {
+            set,
+            response: "y".into(),
+            unit: "MPa".into(),
+            target: Target::band("y", [2.0, 2.0], 1.0),
+            values: values.to_vec(),
+        };
+        let mut verified = [verified(1, [1.0, 2.0]), verified(2, [3.0, 4.0])];
+        let list = leave_out(&runs, &params, &mut verified).unwrap();
+        assert_eq!(list.grouped_sentences(), ["y: 3 of 4 runs are not valid and were left out: rotation (3)"]);
+        assert!(verified[0].values.iter().all(|value| value.is_nan()));
+        assert_eq!((verified[1].values[0], verified[1].values[1].is_nan()), (3.0, true));
     }
 }

@@ -10,7 +10,7 @@ use crate::stage::fitted::models;
 use crate::stage::{Context, StageError};
 use math::distribution::t_for_coverage;
 use optim::misfit::{Denominator, Form};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use stats::model::Model;
 use std::collections::BTreeMap;
@@ -138,8 +138,7 @@ pub struct Aim {
 /// # Errors
 /// The settings or surfaces cannot be read, or the constraints leave nothing.
 pub fn instrument(settings: &Value, context: &Context, surfaces: &Artifact) -> Result<Option<Instrument>, StageError> {
-    let own: Calibrate =
-        serde_json::from_value(settings.clone()).map_err(|e| StageError::new(format!("the settings: {e}")))?;
+    let own: Calibrate = Calibrate::deserialize(settings).map_err(|e| StageError::new(format!("the settings: {e}")))?;
     if own.surfaces.is_none() || !own.simulators().is_empty() {
         return Ok(None);
     }
