@@ -93,8 +93,6 @@ impl Add for TaskCount {
 struct Node {
     task: Arc<Task>,
     stage: usize,
-    /// Its design row.
-    row: Option<usize>,
     /// The node of each input that is a task, in the order of the task's inputs.
     inputs: Vec<Option<NodeId>>,
     dependents: Vec<NodeId>,
@@ -135,6 +133,7 @@ impl Board {
         if let Some(&node) = self.by_address.get(&Arc::as_ptr(task)) {
             return node;
         }
+        self.expect(task.inputs.iter().filter(|(_, source)| matches!(source, Source::Task(_))).count());
         let inputs: Vec<Option<NodeId>> = task
             .inputs
             .iter()
@@ -150,9 +149,9 @@ impl Board {
             None => {
                 let missing = inputs.iter().flatten().filter(|&&input| !self.is_done(input)).count();
                 let key = text.is_some().then_some(recipe);
-                let (row, dependents, state) = (task.row, Vec::new(), TaskState::Open);
+                let (dependents, state) = (Vec::new(), TaskState::Open);
                 let task = Arc::clone(task);
-                let node = self.add(Node { task, stage, row, inputs, dependents, missing, recipe, key, state });
+                let node = self.add(Node { task, stage, inputs, dependents, missing, recipe, key, state });
                 self.by_recipe.insert(recipe, node);
                 self.written = text.map(|text| (node, text));
                 new.push(node);
@@ -161,6 +160,14 @@ impl Board {
         };
         self.by_address.insert(Arc::as_ptr(task), node);
         node
+    }
+
+    /// Makes room for a fan-out, which would otherwise leave up to half of the room unused.
+    fn expect(&mut self, tasks: usize) {
+        if tasks > self.nodes.len() {
+            self.nodes.reserve_exact(tasks + 1);
+            self.alive.reserve_exact(tasks + 1);
+        }
     }
 
     fn add(&mut self, node: Node) -> NodeId {
@@ -433,7 +440,7 @@ impl Board {
 
     /// The design row of a node.
     pub(super) fn row(&self, node: NodeId) -> Option<usize> {
-        self.nodes[node].row
+        self.nodes[node].task.row
     }
 
     /// The task of a node.

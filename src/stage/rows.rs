@@ -198,17 +198,17 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
 
 /// The summary of every run, loaded or cached, in the order of the rows.
 fn all_responses<'a>(job: &'a Job, cached: Option<&'a (&[i64], RunSummaries)>) -> Result<Vec<Outcome<'a>>, StageError> {
-    let old = cached.into_iter().flat_map(|(indices, summaries)| {
-        let summary = |run: usize| summaries.get(run).ok_or_else(|| StageError::new("a cached run has no summary"));
-        indices.iter().enumerate().map(move |(run, index)| Ok((*index as usize, summary(run)?.responses())))
-    });
-    let mut old = old.collect::<Result<Vec<_>, StageError>>()?.into_iter().peekable();
+    let (indices, summaries) = cached.map_or((&[][..], None), |(indices, summaries)| (*indices, Some(summaries)));
+    let mut old = indices.iter().enumerate().peekable();
     let mut new = job.inputs.iter().filter(|(name, _)| name == RUN);
-    let mut all = Vec::new();
+    let mut all = Vec::with_capacity(indices.len() + job.inputs.len());
     // The first input of a gathering task is the design.
     for index in 1.. {
-        match old.next_if(|(cached, _)| *cached == index) {
-            Some((_, responses)) => all.push(responses),
+        match old.next_if(|(_, cached)| **cached == index) {
+            Some((run, _)) => {
+                let summary = summaries.and_then(|summaries| summaries.get(run));
+                all.push(summary.ok_or_else(|| StageError::new("a cached run has no summary"))?.responses());
+            }
             None => match new.next() {
                 Some((_, run)) => all.push(Run::outcome(run)?),
                 None => break,

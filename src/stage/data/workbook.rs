@@ -2,15 +2,17 @@
 
 mod archive;
 mod ods;
+mod remarks;
 mod xls;
 
 use super::super::StageError;
 use super::super::sheet::Sheet;
+use super::dialect::{self, Decimal, Dialect};
 use archive::{Archive, broken};
-use calamine::{Data, Reader, Sheets, open_workbook_auto_from_rs};
+use calamine::{Data, ExcelDateTime, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
 /// Whether these are the first bytes of a workbook: a zip archive, or the container of old Office files.
@@ -18,39 +20,67 @@ pub(super) fn is_workbook(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1")
 }
 
-/// The cells of a sheet, the first row with the heads; rows without any cell are left out.
-pub(super) fn sheet(bytes: &[u8], sheet: Option<&str>) -> Result<Sheet, StageError> {
-    let mut lines = lines(bytes, sheet)?.into_iter();
-    let heads: Vec<String> = lines.next().unwrap_or_default().iter().map(|head| head.trim().to_owned()).collect();
-    let mut columns = vec![Vec::new(); heads.len()];
+/// A sheet as a table of text.
+pub(super) struct Book {
+    /// The first row with the heads; rows without any cell are left out.
+    pub sheet: Sheet,
+    /// What was detected.
+    pub said: Option<String>,
+    /// Column and row of the cells that are shown in per cent and hold a share.
+    pub shares: Vec<(usize, usize)>,
+}
+
+/// The cells of a sheet.
+pub(super) fn sheet(bytes: &[u8], how: &Dialect) -> Result<Book, StageError> {
+    let mut cells = cells(bytes, how.sheet.as_deref())?;
+    let first = how.first_line.unwrap_or(1) as u32 - 1;
+    cells.rows.retain(|row, _| *row >= first);
+    let detected = cells.settle_decimals(how.decimal)?;
+    let said =
+        detected.then(|| "detected: decimal commas in cells that hold text; the key `decimal` fixes it".to_owned());
+    let mut lines = cells.lines().into_iter();
+    let heads: Vec<String> = lines.next().unwrap_or_default().iter().map(|head| head.text.trim().to_owned()).collect();
+    let (mut columns, mut shares) = (vec![Vec::new(); heads.len()], Vec::new());
     for (row, line) in lines.enumerate() {
         if row == MOST_RUNS {
             return Err(StageError::new(format!("the table has more than {MOST_RUNS} rows")).hint("name a part of it"));
         }
-        for (column, cell) in columns.iter_mut().zip(line) {
-            column.push(cell);
+        for (index, (column, cell)) in columns.iter_mut().zip(line).enumerate() {
+            column.push(cell.text);
+            if cell.is_share {
+                shares.push((index, row));
+            }
         }
     }
-    Ok(Sheet { heads, columns })
+    Ok(Book { sheet: Sheet { heads, columns }, said, shares })
 }
 
-/// The lines of a sheet, all of one length.
-fn lines(bytes: &[u8], sheet: Option<&str>) -> Result<Vec<Vec<String>>, StageError> {
+/// The cells of a sheet.
+fn cells(bytes: &[u8], sheet: Option<&str>) -> Result<Cells, StageError> {
     let mut archive = bytes.starts_with(b"PK").then(|| Archive::open(bytes)).transpose()?;
     let mut cells = Cells::default();
     let open = archive.as_mut().map(ods::is_ods).transpose()?.unwrap_or(false);
     if let Some(archive) = archive.as_mut().filter(|_| open) {
         let name = chosen(&ods::names(archive)?, sheet)?;
-        ods::cells(archive, &name, |row, column, text| cells.take(&name, row, column, text.clone()))?;
+        ods::cells(archive, &name, |row, column, value| cells.take(&name, row, column, value.clone()))?;
     } else {
         // Old formats are full of counts and offsets, and a damaged file may send their reader beyond its end.
         let read = std::panic::AssertUnwindSafe(|| {
             let judged = if archive.is_some() { Cow::Borrowed(bytes) } else { Cow::Owned(xls::judged(bytes)?) };
             read_cells(&judged, sheet, &mut cells)
         });
-        std::panic::catch_unwind(read).unwrap_or_else(|_| Err(broken("it is damaged")))?;
+        let name = std::panic::catch_unwind(read).unwrap_or_else(|_| Err(broken("it is damaged")))?;
+        if let Some(archive) = &mut archive {
+            let remarks = remarks::remarks(archive, &name)?;
+            if let Some((row, _)) = remarks.uncomputed {
+                let message =
+                    format!("sheet `{name}`, row {}: a cell holds a formula that was never computed", row + 1);
+                return Err(StageError::new(message).hint("open the workbook in a spreadsheet program and save it"));
+            }
+            cells.mark(&remarks.shares);
+        }
     }
-    Ok(cells.lines())
+    Ok(cells)
 }
 
 /// The sheet of this name, or the only one.
@@ -65,8 +95,8 @@ fn chosen(names: &[String], sheet: Option<&str>) -> Result<String, StageError> {
     Err(StageError::new(message).hint(format!("`sheet` is one of: {}", names.join(", "))))
 }
 
-/// Reads the cells of a workbook of Excel.
-fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<(), StageError> {
+/// Reads the cells of a workbook of Excel; returns the name of their sheet.
+fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<String, StageError> {
     let mut book = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(broken)?;
     let name = chosen(&book.sheet_names(), sheet)?;
     // Cell by cell where the format allows it: the size of a sheet is the position of its last cell, so one cell far away
@@ -76,25 +106,25 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<()
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
             while let Some(cell) = reader.next_cell().map_err(broken)? {
                 let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
-                cells.take(&name, row, column, text(&value))?;
+                cells.take(&name, row, column, read(&value))?;
             }
         }
         Sheets::Xlsb(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
             while let Some(cell) = reader.next_cell().map_err(broken)? {
                 let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
-                cells.take(&name, row, column, text(&value))?;
+                cells.take(&name, row, column, read(&value))?;
             }
         }
         Sheets::Xls(_) | Sheets::Ods(_) => {
             let range = book.worksheet_range(&name).map_err(broken)?;
             let (row, column) = range.start().unwrap_or_default();
             for (i, j, cell) in range.used_cells() {
-                cells.take(&name, row + i as u32, column + j as u32, text(cell))?;
+                cells.take(&name, row + i as u32, column + j as u32, read(cell))?;
             }
         }
     }
-    Ok(())
+    Ok(name)
 }
 
 /// Most columns of a sheet.
@@ -103,29 +133,84 @@ const MOST_COLUMNS: u32 = 1 << 14;
 /// Most cells of the lines of a sheet, the empty ones between others included.
 const MOST_CELLS: usize = 1 << 24;
 
+/// A cell as it is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Cell {
+    text: String,
+    /// Whether it holds text, not a number, a date or a truth value.
+    is_word: bool,
+    /// Whether it is shown in per cent.
+    is_share: bool,
+}
+
+impl Cell {
+    fn word(text: String) -> Self {
+        Self { text, is_word: true, is_share: false }
+    }
+
+    fn value(text: impl ToString) -> Self {
+        Self { text: text.to_string(), ..Self::default() }
+    }
+}
+
 /// The cells of a sheet that are not empty, by row and column.
 #[derive(Default)]
 struct Cells {
-    rows: BTreeMap<u32, Vec<(u32, String)>>,
+    rows: BTreeMap<u32, Vec<(u32, Cell)>>,
     /// The first column that is used, and the last.
     columns: Option<[u32; 2]>,
 }
 
 impl Cells {
     /// Takes a cell of a sheet, or the error that it holds.
-    fn take(&mut self, sheet: &str, row: u32, column: u32, text: Result<String, String>) -> Result<(), StageError> {
-        self.add(row, column, text.map_err(|error| at(sheet, row as usize + 1, &error))?)
+    fn take(&mut self, sheet: &str, row: u32, column: u32, cell: Result<Cell, String>) -> Result<(), StageError> {
+        self.add(row, column, cell.map_err(|error| at(sheet, row as usize + 1, &error))?)
     }
 
-    fn add(&mut self, row: u32, column: u32, text: String) -> Result<(), StageError> {
-        if text.is_empty() {
+    /// Marks the numbers that are shown in per cent, by row and column.
+    fn mark(&mut self, shares: &BTreeSet<(u32, u32)>) {
+        if shares.is_empty() {
+            return;
+        }
+        for (row, cells) in &mut self.rows {
+            for (column, cell) in cells.iter_mut().filter(|(_, cell)| !cell.is_word) {
+                cell.is_share = shares.contains(&(*row, *column));
+            }
+        }
+    }
+
+    /// Writes numbers that stand as text with decimal commas as numbers are written; returns whether that was detected.
+    ///
+    /// # Errors
+    /// The texts do not tell which sign stands before decimals, or one has another sign than the setting.
+    fn settle_decimals(&mut self, fixed: Option<Decimal>) -> Result<bool, StageError> {
+        let words = self.rows.values().flatten().filter(|(_, cell)| cell.is_word).map(|(_, cell)| cell.text.as_str());
+        let decimal = fixed.map_or_else(|| dialect::decimal(words.clone()), Ok)?;
+        if decimal == Decimal::Point {
+            return Ok(false);
+        }
+        if let Some(other) = words.clone().find(|word| word.contains('.') && dialect::is_number(word)) {
+            let message = format!("`{other}` is a text with a point in a sheet whose texts have decimal commas");
+            return Err(StageError::new(message).hint("turn the texts of the sheet into numbers"));
+        }
+        for (_, cell) in self.rows.values_mut().flatten().filter(|(_, cell)| cell.is_word) {
+            let number = cell.text.replacen(',', ".", 1);
+            if dialect::is_number(&number.replacen('−', "-", 1)) {
+                cell.text = number;
+            }
+        }
+        Ok(fixed.is_none())
+    }
+
+    fn add(&mut self, row: u32, column: u32, cell: Cell) -> Result<(), StageError> {
+        if cell.text.is_empty() {
             return Ok(());
         }
         if column >= MOST_COLUMNS {
             let message = format!("the sheet has a cell in column {}", u64::from(column) + 1);
             return Err(StageError::new(message).hint(format!("at most {MOST_COLUMNS} columns are read")));
         }
-        self.rows.entry(row).or_default().push((column, text));
+        self.rows.entry(row).or_default().push((column, cell));
         let [first, last] = self.columns.unwrap_or([column; 2]);
         let (first, last) = (first.min(column), last.max(column));
         self.columns = Some([first, last]);
@@ -139,12 +224,12 @@ impl Cells {
     }
 
     /// The lines, all of one length, from the first column that is used to the last.
-    fn lines(self) -> Vec<Vec<String>> {
+    fn lines(self) -> Vec<Vec<Cell>> {
         let Some([first, last]) = self.columns else { return Vec::new() };
         let width = (last - first) as usize + 1;
-        let line = |cells: Vec<(u32, String)>| {
-            let mut line = vec![String::new(); width];
-            cells.into_iter().for_each(|(column, text)| line[(column - first) as usize] = text);
+        let line = |cells: Vec<(u32, Cell)>| {
+            let mut line = vec![Cell::default(); width];
+            cells.into_iter().for_each(|(column, cell)| line[(column - first) as usize] = cell);
             line
         };
         self.rows.into_values().map(line).collect()
@@ -156,14 +241,52 @@ fn at(sheet: &str, row: usize, error: &str) -> StageError {
         .hint("mend the formula in the workbook, or empty the cell")
 }
 
-/// A cell as text: numbers with all digits, dates as year-month-day.
-fn text(cell: &Data) -> Result<String, String> {
+/// A cell: numbers with all digits, dates as year-month-day, times as hours, minutes and seconds.
+fn read(cell: &Data) -> Result<Cell, String> {
     Ok(match cell {
-        Data::Empty => String::new(),
-        Data::Float(value) => value.to_string(),
-        Data::Int(value) => value.to_string(),
-        Data::Bool(value) => value.to_string(),
+        Data::Empty => Cell::value(""),
+        Data::Float(value) => Cell::value(value),
+        Data::Int(value) => Cell::value(value),
+        Data::Bool(value) => Cell::value(value),
+        Data::DateTime(moment) => Cell::value(in_words(*moment)),
         Data::Error(error) => return Err(error.to_string()),
-        other => other.to_string().trim().to_owned(),
+        other => Cell::word(other.to_string().trim().to_owned()),
     })
+}
+
+/// A date, a time of day or a duration of Excel, which are all stored as a number of days.
+fn in_words(moment: ExcelDateTime) -> String {
+    let days = moment.as_f64();
+    if moment.is_duration() || days.abs() < 1.0 {
+        return clock(days * 86_400.0);
+    }
+    let (year, month, day, hour, minute, second, _) = moment.to_ymd_hms_milli();
+    let date = format!("{year:04}-{month:02}-{day:02}");
+    match (hour, minute, second) {
+        (0, 0, 0) => date,
+        _ => format!("{date}T{hour:02}:{minute:02}:{second:02}"),
+    }
+}
+
+/// Seconds as `36:05:00`.
+fn clock(seconds: f64) -> String {
+    let sign = if seconds < 0.0 { "-" } else { "" };
+    let all = seconds.abs().round() as u64;
+    format!("{sign}{}:{:02}:{:02}", all / 3600, all / 60 % 60, all % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calamine::ExcelDateTimeType;
+
+    #[test]
+    fn dates_and_times_of_excel_are_no_numbers() {
+        let date = |days| in_words(ExcelDateTime::new(days, ExcelDateTimeType::DateTime, false));
+        // The serial numbers that Excel documents: 1 is 1 January 1900, 45943 is 13 October 2025.
+        assert_eq!([date(45943.0), date(45943.541)], ["2025-10-13", "2025-10-13T12:59:02"]);
+        assert_eq!([date(0.5), date(0.75 + 1.0 / 86_400.0)], ["12:00:00", "18:00:01"]);
+        assert_eq!(in_words(ExcelDateTime::new(1.5, ExcelDateTimeType::TimeDelta, false)), "36:00:00");
+        assert_eq!(clock(-90.0), "-0:01:30");
+    }
 }

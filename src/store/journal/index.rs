@@ -187,6 +187,10 @@ impl Index {
             };
             let filled = rest + count;
             let (whole, torn) = block[..filled].as_chunks::<RECORD>();
+            if self.records.capacity() - self.records.len() < whole.len() {
+                // An eighth at a time: doubling would leave up to half of the room unused.
+                self.records.reserve_exact(whole.len() + self.records.len() / 8);
+            }
             match seen.version {
                 1 => self.records.extend(whole.iter().map(from_version_1)),
                 _ => self.records.extend_from_slice(whole),
