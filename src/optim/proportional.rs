@@ -1,9 +1,13 @@
 //! Calibration of one parameter to which one response is proportional.
 //!
 //! y = K x: from a first value x₁, which a slope known beforehand may give as x₁ = t / K, every further run takes the
-//! slope that the last one showed, xᵢ₊₁ = xᵢ t / yᵢ, with the target t. Where proportionality is exact the second run meets
-//! the target; the scatter of single packings remains. The tensile strength of a disc of contact bonds against
-//! the bond strength is such a response.
+//! mean of the slopes that the runs so far have shown, xᵢ₊₁ = t / mean(yⱼ / xⱼ), with the target t. Where proportionality is
+//! exact the second run meets the target. The tensile strength of a disc of contact bonds against the bond strength is such a
+//! response.
+//!
+//! Packings scatter: of two runs, as published, the better one is the recommended point, and luck decides which that is. With
+//! three runs and more the recommended point is the one at which the mean slope meets the target, with the interval of
+//! that mean.
 //!
 //! A run without the response (it failed, or it is not valid and left out) shows no slope, but a proportional response shows
 //! the same slope everywhere: the search goes on a tenth above the value, then a tenth below, then farther off. Such runs do
@@ -11,7 +15,8 @@
 //!
 //! Source: the two-step calibration of a Brazilian disc, doi:10.1038/s41598-024-61410-x, section 5 (steps b and d, eq. 15).
 
-use super::{Optimiser, Problem, Stop, Trial};
+use super::{Interval, Optimiser, Problem, Recommendation, Stop, Trial};
+use math::distribution::t_for_coverage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,11 +26,14 @@ pub const MOST_MISSES: u32 = 6;
 /// How far off the value the first run after one without the response lies.
 const DETOUR: f64 = 1.1;
 
+/// So many runs say more together than the best of them.
+const AVERAGED: usize = 3;
+
 /// Settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// Runs: the first, and those corrected by the one before.
+    /// Runs: the first, and those corrected by the ones before.
     pub runs: usize,
 }
 
@@ -41,8 +49,8 @@ pub struct Proportional {
     problem: Problem,
     /// The value that is wanted next, natural units.
     next: f64,
-    /// Runs that gave the response.
-    done: usize,
+    /// Slopes of the runs that gave the response.
+    slopes: Vec<f64>,
     /// Runs without the response since the last that gave it.
     misses: u32,
     /// The points of those runs.
@@ -64,7 +72,7 @@ impl Proportional {
             settings: settings.clone(),
             problem: problem.clone(),
             next,
-            done: 0,
+            slopes: vec![],
             misses: 0,
             missed: vec![],
             stopped: None,
@@ -103,16 +111,24 @@ impl Optimiser for Proportional {
         let trial = &trials[0];
         let tried = self.problem.domain.natural(&trial.point)[0];
         let Some(&y) = trial.responses.first() else { return self.go_beside(&trial.point) };
-        let wanted = self.problem.misfit.targets()[0].nearest(y);
-        self.done += 1;
+        let target = &self.problem.misfit.targets()[0];
+        let wanted = target.nearest(y);
+        self.slopes.push(y / tried);
         // A response of the other sign shows no slope, here or elsewhere.
         if !(y * wanted > 0.0) {
             self.stopped = Some(Stop::NoSlope);
             return;
         }
-        (self.next, self.misses) = (tried * wanted / y, 0);
+        self.next = match self.slopes.len() {
+            1 => tried * wanted / y,
+            _ => {
+                let slope = mean(&self.slopes);
+                target.nearest(slope * tried) / slope
+            }
+        };
+        self.misses = 0;
         self.missed.clear();
-        if self.done >= self.settings.runs {
+        if self.slopes.len() >= self.settings.runs {
             self.stopped = Some(Stop::Iterations);
         } else if self.point() == trial.point {
             self.stopped = Some(Stop::Collapsed);
@@ -122,6 +138,26 @@ impl Optimiser for Proportional {
     fn stop(&self) -> Option<Stop> {
         self.stopped
     }
+
+    fn recommended(&self) -> Option<Recommendation> {
+        let runs = self.slopes.len();
+        if runs < AVERAGED || self.stopped == Some(Stop::NoSlope) {
+            return None;
+        }
+        let point = self.problem.domain.repair(&self.problem.domain.unit(&[self.next]));
+        let value = self.problem.domain.natural(&point)[0];
+        let slope = mean(&self.slopes);
+        let squares: Vec<f64> = self.slopes.iter().map(|own| (own - slope) * (own - slope)).collect();
+        let error = (mean(&squares) / (runs - 1) as f64).sqrt();
+        let half = t_for_coverage(0.95, (runs - 1) as f64) * error * value;
+        let expected = slope * value;
+        let response = Interval { mean: expected, low: expected - half, high: expected + half };
+        Some(Recommendation { point, responses: vec![response], misfit: self.problem.misfit.of(&[expected]) })
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 #[cfg(test)]
@@ -186,5 +222,29 @@ mod tests {
         assert_eq!(stop, Stop::NoSlope);
         let below = [60.0, 60.0 / 1.1, 60.0 / 1.21, 60.0 / 1.331];
         assert!(tried.len() == 4 && tried.iter().zip(below).all(|(a, b)| (a - b).abs() < 1e-9), "{tried:?}");
+    }
+
+    /// numpy 2.4.6 and scipy 1.17.1 of the slopes: `k.mean()`, `t.ppf(0.975, 4) * k.std(ddof=1) / 5**0.5`.
+    #[test]
+    fn slopes_that_scatter_are_averaged_and_the_recommended_point_has_their_interval() {
+        let slopes = [0.40, 0.24, 0.30, 0.35, 0.31];
+        let mut tried = Vec::new();
+        let method = Method::Proportional(Settings { runs: 5 });
+        let (stop, state) = minimise(&problem(28.0), &method, &Limits::default(), 1, |x| {
+            tried.push(x[0]);
+            Some(vec![slopes[tried.len() - 1] * x[0]])
+        });
+        assert_eq!((stop, state.evaluations), (Stop::Iterations, 5));
+        for (found, slope) in tried[1..].iter().zip([0.40, 0.32, 0.94 / 3.0, 0.3225]) {
+            assert!((found - 9.08 / slope).abs() < 1e-9, "{tried:?}");
+        }
+        let problem = problem(28.0);
+        let own = state.recommended.expect("a recommendation");
+        let value = problem.domain.natural(&own.point)[0];
+        assert!((value - 9.08 / 0.32).abs() < 1e-9 && own.misfit < 1e-12, "{own:?}");
+        let half = 0.073_980_670_919_812_02 / 0.32 * 9.08;
+        let Interval { mean, low, high } = own.responses[0];
+        assert!((mean - 9.08).abs() < 1e-12, "{mean}");
+        assert!((high - mean - half).abs() < 1e-9 && (mean - low - half).abs() < 1e-9, "{low} {high} {half}");
     }
 }

@@ -174,7 +174,7 @@ strengths de63dd9b98f3
 envelope 18e99f63e7b2
 agreement 3
 anova 4
-calibrate 6
+calibrate 7
 command 2
 data 4
 design 3

@@ -213,6 +213,6 @@ impl Kind for Calibrate {
     const ABOUT: &'static str = "parameters that give wanted responses, on surfaces or by simulations";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SOLUTION];
     const CLASS: Class = Class::Calibration;
-    // 6: beyond its end a curve falls; a run without a peak has the ordinates that its curve reaches. 5: proportional corrections go on after a run without the response
-    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 6, run: solve::solve }];
+    // 7: proportional corrections average the slopes of more than two runs. 6: beyond its end a curve falls; a run without a peak has the ordinates that its curve reaches. 5: proportional corrections go on after a run without the response
+    const WORKS: &'static [Work] = &[Work { name: "calibrate", version: 7, run: solve::solve }];
 }

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Slope {
-    /// Number of runs of a set: the first one, and corrected ones; 2 by default.
+    /// Number of runs of a set: the first one, and corrected ones; 2 by default. With more their slopes are averaged.
     pub runs: Option<usize>,
     /// The slope itself, response over factor in their units.
     pub slope: Option<f64>,
