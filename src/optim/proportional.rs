@@ -27,7 +27,7 @@ pub const MOST_MISSES: u32 = 6;
 const DETOUR: f64 = 1.1;
 
 /// So many runs say more together than the best of them.
-const AVERAGED: usize = 3;
+pub const AVERAGED: usize = 3;
 
 /// Settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -140,19 +140,44 @@ impl Optimiser for Proportional {
     }
 
     fn recommended(&self) -> Option<Recommendation> {
-        let runs = self.slopes.len();
-        if runs < AVERAGED || self.stopped == Some(Stop::NoSlope) {
+        let slopes = Slopes::of(&self.slopes).filter(|_| self.stopped != Some(Stop::NoSlope))?;
+        let point = self.problem.domain.repair(&self.problem.domain.unit(&[self.next]));
+        let response = slopes.expected(self.problem.domain.natural(&point)[0]);
+        Some(Recommendation { point, misfit: self.problem.misfit.of(&[response.mean]), responses: vec![response] })
+    }
+}
+
+/// The mean of the slopes that runs have shown, and their scatter.
+pub struct Slopes {
+    mean: f64,
+    /// Half the 95 % interval of the mean.
+    half: f64,
+    /// Standard deviation of one slope.
+    deviation: f64,
+}
+
+impl Slopes {
+    /// Of so many slopes; `None` for fewer than [`AVERAGED`].
+    pub fn of(slopes: &[f64]) -> Option<Self> {
+        if slopes.len() < AVERAGED {
             return None;
         }
-        let point = self.problem.domain.repair(&self.problem.domain.unit(&[self.next]));
-        let value = self.problem.domain.natural(&point)[0];
-        let slope = mean(&self.slopes);
-        let squares: Vec<f64> = self.slopes.iter().map(|own| (own - slope) * (own - slope)).collect();
-        let error = (mean(&squares) / (runs - 1) as f64).sqrt();
-        let half = t_for_coverage(0.95, (runs - 1) as f64) * error * value;
-        let expected = slope * value;
-        let response = Interval { mean: expected, low: expected - half, high: expected + half };
-        Some(Recommendation { point, responses: vec![response], misfit: self.problem.misfit.of(&[expected]) })
+        let (mean, free) = (mean(slopes), (slopes.len() - 1) as f64);
+        let squares: f64 = slopes.iter().map(|own| (own - mean) * (own - mean)).sum();
+        let deviation = (squares / free).sqrt();
+        let half = t_for_coverage(0.95, free) * deviation / (slopes.len() as f64).sqrt();
+        Some(Self { mean, half, deviation })
+    }
+
+    /// The mean response to a value of the factor.
+    pub fn expected(&self, value: f64) -> Interval {
+        let (mean, half) = (self.mean * value, self.half * value.abs());
+        Interval { mean, low: mean - half, high: mean + half }
+    }
+
+    /// Standard deviation of one response to a value of the factor.
+    pub fn scatter(&self, value: f64) -> f64 {
+        self.deviation * value.abs()
     }
 }
 

@@ -40,6 +40,7 @@ mod outlook;
 mod params;
 mod read;
 mod record;
+mod seen;
 mod sets;
 mod slope;
 mod solve;

@@ -1,17 +1,16 @@
 //! The work `calibrate`: computes the artifact `solution` from parameters, surfaces and finished simulations.
 
 use super::params::{History, Params, Told};
+use super::seen::{Seen, too_few};
 use super::solved::{Effort, Line, Solved};
-use super::twin::{self, Twin, full_limits, full_method};
+use super::twin::{Twin, full_limits, full_method};
 use super::{read, record};
 use crate::artifact::Artifact;
 use crate::stage::{Failure, Job, Progress, StageError};
 use optim::determination::{Outlook, extents};
 use optim::search::{Knowledge, Method, Next, Run, Search, State, replay};
 use optim::solution_set::explore;
-use optim::surrogate::Model;
-use optim::surrogate::models::Models;
-use optim::{Interval, Problem, Recommendation, Stop, Trial};
+use optim::{Interval, Problem, Recommendation, Stop};
 
 pub(super) fn solve(job: &Job) -> Result<Artifact, Failure> {
     let params: Params = job.params()?;
@@ -183,16 +182,16 @@ fn simulated(
     lines.extend(own);
     let State { evaluations, failed, recommended, best } = state;
     let mut recommended = recommended.ok_or_else(|| StageError::new("no run gave responses"))?;
-    let models = models(&method, &problem, &knowledge, runs);
+    let seen = Seen::of(&method, &problem, &knowledge, runs);
     let mut observed = None;
     if !matches!(method, Method::Surrogate(_)) {
         observed = best.map(|best| best.responses);
-        if let Some(models) = &models {
-            recommended = models.at(recommended.point);
+        if let Some(seen) = &seen {
+            recommended = seen.at(recommended.point);
         }
     }
-    let unknown = if models.is_some() { String::new() } else { too_few(&problem, runs) };
-    let expected = match models {
+    let unknown = if seen.is_some() { String::new() } else { too_few(&method, &problem, runs) };
+    let expected = match seen {
         Some(_) => recommended.responses,
         // A single run does not show its scatter.
         None => {
@@ -200,10 +199,10 @@ fn simulated(
         }
     };
     let preference = params.preferred().map(|point| problem.domain.unit(&point));
-    let model = |x: &[f64]| models.as_ref().map(|models| models.expected_at(x));
+    let model = |x: &[f64]| seen.as_ref().map(|seen| seen.expected_at(x));
     let set = explore(&problem, &model, &recommended.point, preference.as_deref(), params.solutions, seed);
-    let scatter = match &models {
-        Some(models) => models.deviations(&recommended.point),
+    let scatter = match &seen {
+        Some(seen) => seen.deviations(&recommended.point),
         None => vec![f64::NAN; expected.len()],
     };
     let failed = failed + coarse.iter().filter(|told| told.responses.is_none()).count();
@@ -227,36 +226,9 @@ fn simulated(
         history,
         effort,
     };
-    let outlook = |x: &[f64]| {
-        let models = models.as_ref()?;
-        Some(models.at(domain.unit(x)).responses)
-    };
+    let outlook = |x: &[f64]| Some(seen.as_ref()?.at(domain.unit(x)).responses);
     solved.determine(&outlook);
     Ok(solved)
-}
-
-/// Number of runs, beyond one for each factor, from which on a model gives intervals.
-const SPARE: usize = 3;
-
-/// Models over all runs of a search, which predict responses and their intervals: the surrogate's own, or such models
-/// over the runs of another method; `None` where there are too few.
-fn models(method: &Method, problem: &Problem, knowledge: &Knowledge, runs: &[Told]) -> Option<Models> {
-    let Method::Surrogate(settings) = method else {
-        let good = runs.iter().filter(|told| told.responses.is_some()).count();
-        return if good < problem.domain.len() + SPARE { None } else { twin::fitted(problem, runs) };
-    };
-    let trial = |run: Run| {
-        let responses = run.responses.unwrap_or_default();
-        Trial { point: problem.domain.unit(&run.point), misfit: f64::NAN, responses }
-    };
-    let all: Vec<Trial> = knowledge.earlier.iter().cloned().chain(runs.iter().map(Told::run)).map(trial).collect();
-    Models::fit(&all, problem, settings.model == Model::GaussianProcess, knowledge.trend.as_ref())
-}
-
-fn too_few(problem: &Problem, runs: &[Told]) -> String {
-    let good = runs.iter().filter(|told| told.responses.is_some()).count();
-    let needed = problem.domain.len() + SPARE;
-    format!("{good} runs gave responses, and an interval needs at least {needed}")
 }
 
 impl Solved {

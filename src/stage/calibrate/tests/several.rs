@@ -146,7 +146,7 @@ fn proportional_corrections_begin_at_the_known_slope_and_hold_the_rest() {
     // Two runs show no scatter, and the result states this.
     assert!(numbers(&artifact, "prediction", "low").iter().all(|low| low.is_nan()));
     assert_eq!(texts(&artifact, "parameters", "known"), ["unknown", "unknown"]);
-    assert!(texts(&artifact, "notes", "note")[0].contains("2 runs gave responses, and an interval needs at least 4"));
+    assert!(texts(&artifact, "notes", "note")[0].contains("2 runs gave responses, and an interval needs at least 3"));
     assert_eq!(stage(text).unmet(&artifact), None);
 }
 
