@@ -176,7 +176,7 @@ agreement 3
 anova 4
 calibrate 6
 command 2
-data 3
+data 4
 design 3
 effort 1
 envelope 1

@@ -11,6 +11,7 @@ mod dialect;
 mod workbook;
 
 use super::beside::Beside;
+use super::columns::{first_word, not_a_level};
 use super::notes::Notes;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -56,6 +57,24 @@ impl Data {
 }
 
 impl Data {
+    /// Words where the workflow declares numbers.
+    fn words(&self, table: &Table, context: &super::Context, found: &mut Beside) {
+        for column in &table.columns {
+            let Some((row, word)) = first_word(&column.values) else { continue };
+            let (file, name) = (&self.file, &column.name);
+            let error = if context.factors.get(name).is_some_and(|factor| factor.names.is_empty()) {
+                not_a_level(name, row, word)
+            } else if context.responses.contains_key(name) {
+                StageError::new(format!("row {}: `{name}` is `{word}`, which is no number", row + 1))
+                    .hint(format!("correct it, or say `missing = [\"{word}\"]` if it stands for no value"))
+            } else {
+                continue;
+            };
+            let complaint = Complaint::new("file", format!("{file}: {}", error.message));
+            found.faults.push(Complaint { hint: error.hint, ..complaint });
+        }
+    }
+
     /// Columns whose numbers cannot be read in the unit that the workflow declares for their name.
     fn units(&self, table: &Table, context: &super::Context, found: &mut Beside) {
         let declared = |name: &str| {
@@ -100,7 +119,11 @@ impl Stage for Data {
                 let complaint = Complaint::new("file", format!("{}: {message}", self.file));
                 found.faults.push(Complaint { hint, ..complaint });
             }
-            Ok((table, _)) => self.units(&table, context, found),
+            Ok((table, _)) => {
+                self.units(&table, context, found);
+                self.words(&table, context, found);
+                found.columns = Some(table.columns.into_iter().map(|column| column.name).collect());
+            }
         }
     }
 
@@ -116,8 +139,8 @@ impl Kind for Data {
     const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    // 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
-    const WORKS: &'static [Work] = &[Work { name: "data", version: 3, run: read }];
+    // 4: dates of Excel are words, and no numbers of days; lines without values, merged cells and formulas without values are refused. 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    const WORKS: &'static [Work] = &[Work { name: "data", version: 4, run: read }];
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
@@ -150,9 +173,10 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
     }
     let how = Cells { decimal, missing: how.missing.as_deref() };
     let mut names = HashSet::new();
-    let add = |table, (head, cells): (&String, _)| cells::column(table, (head, cells), &how, &mut names);
-    let table = sheet.heads.iter().zip(sheet.columns).try_fold(Table::default(), add)?;
-    Ok((table, said))
+    // A table that looks for the name of each new column among all others would cost the square of their number.
+    let column = |(head, cells): (&String, _)| cells::column((head, cells), &how, &mut names);
+    let columns = sheet.heads.iter().zip(sheet.columns).map(column).collect::<Result<_, StageError>>()?;
+    Ok((Table { about: String::new(), columns }, said))
 }
 
 /// The cells of a text file, its decimal sign, and what was detected.

@@ -199,6 +199,23 @@ fn a_cell_far_out_costs_no_memory() {
     assert_eq!(parse(&workbook_of(&below, None)).unwrap().rows(), 2);
 }
 
+/// A program that writes workbooks need not compute formulas; the empty cell was taken for a missing value.
+#[test]
+fn what_only_looks_like_a_value_in_a_workbook_is_refused() {
+    let head = "<row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>y</t></is></c></row>";
+    let line = |cell: &str| format!("{head}<row r=\"2\"><c r=\"A2\">{cell}</c></row>");
+    let computed = parse(&workbook_of(&line("<f>1+2</f><v>3</v>"), None)).unwrap();
+    assert_eq!(computed.columns[0].values, Values::Reals(vec![3.0]));
+    let never = parse(&workbook_of(&line("<f>1+2</f>"), None)).unwrap_err();
+    assert_eq!(never.message, "sheet `a`, row 2: a formula has no value");
+    let row = |cell: &str| format!("{HEAD}<table:table-row>{cell}</table:table-row>");
+    let never = parse(&ods_of(&row(&ods_cell("table:formula=\"of:=1+2\"", "")))).unwrap_err();
+    assert_eq!(never.message, "a formula has no value");
+    let spans = "table:number-rows-spanned=\"2\" office:value-type=\"float\" office:value=\"1\"";
+    let merged = parse(&ods_of(&row(&ods_cell(spans, "<text:p>1</text:p>")))).unwrap_err();
+    assert!(merged.message.starts_with("cells are merged"), "{}", merged.message);
+}
+
 /// A workbook of LibreOffice with one sheet of these rows.
 fn ods_of(rows: &str) -> Vec<u8> {
     let content = format!(

@@ -7,7 +7,7 @@ mod xls;
 use super::super::StageError;
 use super::super::sheet::Sheet;
 use archive::{Archive, broken};
-use calamine::{Data, Reader, Sheets, open_workbook_auto_from_rs};
+use calamine::{Data, Dimensions, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -74,10 +74,15 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<()
     match &mut book {
         Sheets::Xlsx(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
-            while let Some(cell) = reader.next_cell().map_err(broken)? {
-                let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
+            while let Some(cell) = reader.next_cell_with_formula().map_err(broken)? {
+                let ((row, column), value) = (cell.pos, Data::from(cell.value));
+                if value == Data::Empty && cell.formula.is_some() {
+                    return Err(not_computed(&in_row(&name, row)));
+                }
                 cells.take(&name, row, column, text(&value))?;
             }
+            drop(reader);
+            cells.check_merged(&name, &book.merge_cells_by_sheet_name(&name).map_err(broken)?)?;
         }
         Sheets::Xlsb(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
@@ -87,11 +92,16 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<()
             }
         }
         Sheets::Xls(_) | Sheets::Ods(_) => {
+            let merged = match &book {
+                Sheets::Xls(book) => book.merge_cells_by_sheet_name(&name).map_err(broken)?,
+                Sheets::Xlsx(_) | Sheets::Xlsb(_) | Sheets::Ods(_) => Vec::new(),
+            };
             let range = book.worksheet_range(&name).map_err(broken)?;
             let (row, column) = range.start().unwrap_or_default();
             for (i, j, cell) in range.used_cells() {
                 cells.take(&name, row + i as u32, column + j as u32, text(cell))?;
             }
+            cells.check_merged(&name, &merged)?;
         }
     }
     Ok(())
@@ -138,6 +148,17 @@ impl Cells {
         Ok(())
     }
 
+    /// Refuses merged cells, of which only the first holds the value that people see in all of them.
+    fn check_merged(&self, sheet: &str, merged: &[Dimensions]) -> Result<(), StageError> {
+        let filled = |(row, column): (u32, u32)| {
+            self.rows.get(&row).is_some_and(|cells| cells.iter().any(|(own, _)| *own == column))
+        };
+        match merged.iter().find(|cells| cells.start != cells.end && filled(cells.start)) {
+            Some(cells) => Err(is_merged(&in_row(sheet, cells.start.0))),
+            None => Ok(()),
+        }
+    }
+
     /// The lines, all of one length, from the first column that is used to the last.
     fn lines(self) -> Vec<Vec<String>> {
         let Some([first, last]) = self.columns else { return Vec::new() };
@@ -151,19 +172,72 @@ impl Cells {
     }
 }
 
+/// Merged cells; `place` says where, with a colon, if that is known.
+fn is_merged(place: &str) -> StageError {
+    StageError::new(format!("{place}cells are merged, and only the first of them holds the value"))
+        .hint("split them, and write the value into each cell that it is for")
+}
+
+/// A formula that was never computed.
+fn not_computed(place: &str) -> StageError {
+    StageError::new(format!("{place}a formula has no value"))
+        .hint("the program that wrote the workbook did not compute it: open it in a spreadsheet and save it")
+}
+
+fn in_row(sheet: &str, row: u32) -> String {
+    format!("sheet `{sheet}`, row {}: ", u64::from(row) + 1)
+}
+
 fn at(sheet: &str, row: usize, error: &str) -> StageError {
     StageError::new(format!("sheet `{sheet}`, row {row}: a cell holds the error {error}"))
         .hint("mend the formula in the workbook, or empty the cell")
 }
 
-/// A cell as text: numbers with all digits, dates as year-month-day.
+/// A cell as text: numbers with all digits, dates as year-month-day, durations as hours:minutes:seconds.
 fn text(cell: &Data) -> Result<String, String> {
     Ok(match cell {
         Data::Empty => String::new(),
         Data::Float(value) => value.to_string(),
         Data::Int(value) => value.to_string(),
         Data::Bool(value) => value.to_string(),
+        // As a number of days it would be taken for a value: spreadsheets make a date of 1-3.
+        Data::DateTime(time) if time.is_duration() => {
+            let seconds = (time.as_f64() * 86_400.0).round();
+            format!("{:02}:{:02}:{:02}", (seconds / 3600.0).floor(), (seconds / 60.0).floor() % 60.0, seconds % 60.0)
+        }
+        Data::DateTime(time) => match time.to_ymd_hms_milli() {
+            (year, month, day, 0, 0, 0, 0) => format!("{year}-{month:02}-{day:02}"),
+            (year, month, day, hour, minute, second, _) => {
+                format!("{year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}")
+            }
+        },
         Data::Error(error) => return Err(error.to_string()),
         other => other.to_string().trim().to_owned(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calamine::{ExcelDateTime, ExcelDateTimeType};
+
+    /// A spreadsheet makes a date of `1-3`; as a number of days it was taken for a value.
+    #[test]
+    fn dates_and_durations_are_words() {
+        let cell = |value, kind| text(&Data::DateTime(ExcelDateTime::new(value, kind, false))).unwrap();
+        assert_eq!(cell(43831.0, ExcelDateTimeType::DateTime), "2020-01-01");
+        assert_eq!(cell(45943.5, ExcelDateTimeType::DateTime), "2025-10-13 12:00:00");
+        assert_eq!(cell(1.5, ExcelDateTimeType::TimeDelta), "36:00:00");
+    }
+
+    #[test]
+    fn merged_cells_are_refused_where_they_hold_a_value() {
+        let mut cells = Cells::default();
+        cells.add(1, 0, "1".to_owned()).unwrap();
+        let merged = |start, end| cells.check_merged("a", &[Dimensions { start, end }]);
+        let error = merged((1, 0), (2, 0)).unwrap_err();
+        assert_eq!(error.message, "sheet `a`, row 2: cells are merged, and only the first of them holds the value");
+        assert_eq!(merged((1, 0), (1, 0)), Ok(()));
+        assert_eq!(merged((5, 5), (9, 9)), Ok(()), "only their frame is merged");
+    }
 }

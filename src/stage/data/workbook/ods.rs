@@ -8,6 +8,7 @@
 
 use super::super::super::StageError;
 use super::archive::{Archive, attribute, broken};
+use super::{is_merged, not_computed};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::io::{BufRead, Read};
@@ -175,6 +176,14 @@ impl<R: BufRead> Walk<R> {
                 At::Start(e) if is(&e, "table:table-cell") || is(&e, "table:covered-table-cell") => {
                     let count = repeats(&e, "table:number-columns-repeated")?;
                     let text = self.cell(&e)?;
+                    let spans = |name| attribute(&e, name).is_some_and(|count| count.trim() != "1");
+                    let spanned = spans("table:number-columns-spanned") || spans("table:number-rows-spanned");
+                    if spanned && !is_empty(&text) {
+                        return Err(is_merged(""));
+                    }
+                    if attribute(&e, "table:formula").is_some() && attribute(&e, "office:value-type").is_none() {
+                        return Err(not_computed(""));
+                    }
                     if !is_empty(&text) {
                         cells.push((column, count, text));
                     }
