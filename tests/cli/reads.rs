@@ -8,9 +8,11 @@ seed = 1
 [factor]
 a = { sets = "m.a", levels = [1, 2] }
 b = { sets = "m.a", levels = [1, 2] }
+p = { unit = "MPa", range = [0, 50] }
 [response]
 y = {}
 z = {}
+strength = { unit = "MPa" }
 [material.base]
 m = { a = 1 }
 [stage.d]
@@ -48,7 +50,7 @@ fn every_kind_of_stage_that_names_a_column_is_told_of_it_before_the_run() {
         ("kind = \"regression\"\ntable = \"d\"\nterms.y = [\"ln(b)\"]", "b"),
         ("kind = \"regression\"\ntable = \"d\"\nby = [\"sampel\"]\nterms.y = [\"a\"]", "sampel"),
         ("kind = \"rsm\"\ntables = [\"d\"]\nresponses = [\"z\"]", "z"),
-        ("kind = \"envelope\"\ntable = \"d\"\nconfinement = \"a\"\nstrength = \"z\"", "z"),
+        ("kind = \"envelope\"\ntable = \"d\"\nconfinement = \"p\"\nstrength = \"strength\"", "strength"),
         ("kind = \"agreement\"\nof = \"d\"\ncompare = \"d\"\nresponses = [\"z\"]", "z"),
         ("kind = \"table\"\nof = \"d\"\ncolumns = [\"a\", \"x\"]", "x"),
         ("kind = \"table\"\nof = \"d\"\nwhere = { x = \"1\" }", "x"),
