@@ -6,6 +6,7 @@
 use super::results::Results;
 use super::run::Run;
 use super::{Artifact, ArtifactKind, Field, Node, Table};
+use std::fmt;
 
 crate::words! {
     /// What a stage did with a run that is not valid.
@@ -218,20 +219,47 @@ impl NotValid {
 
     /// The sentences. Equal ones are one, with all their responses in front.
     pub fn grouped_sentences(&self) -> Vec<String> {
-        let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
-        for (response, said) in self.sentences() {
-            match groups.iter_mut().find(|(_, known)| *known == said) {
-                Some((responses, _)) => responses.push(response),
-                None => groups.push((vec![response], said)),
+        self.statements().iter().map(Statement::to_string).collect()
+    }
+
+    /// The same, with the responses apart.
+    fn statements(&self) -> Vec<Statement> {
+        let mut groups: Vec<Statement> = Vec::new();
+        for (response, words) in self.sentences() {
+            match groups.iter_mut().find(|known| known.words == words) {
+                Some(known) => known.responses.push(response.to_owned()),
+                None => groups.push(Statement { responses: vec![response.to_owned()], words }),
             }
         }
-        groups.into_iter().map(|(responses, said)| format!("{}: {said}", responses.join(", "))).collect()
+        groups
+    }
+}
+
+/// A statement on runs, and the responses that it is about; none where it is about the runs as a whole.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Statement {
+    /// Names of responses.
+    pub responses: Vec<String>,
+    /// The sentence.
+    pub words: String,
+}
+
+impl From<String> for Statement {
+    fn from(words: String) -> Self {
+        Self { responses: Vec::new(), words }
+    }
+}
+
+impl fmt::Display for Statement {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let colon = if self.responses.is_empty() { "" } else { ": " };
+        write!(out, "{}{colon}{}", self.responses.join(", "), self.words)
     }
 }
 
 /// The statements on the runs of an artifact, or on those that it was made from, to be shown wherever its numbers are.
 pub fn sentences(artifact: &Artifact) -> Vec<String> {
-    let mut found = faults(artifact);
+    let mut found: Vec<String> = faults(artifact).iter().map(Statement::to_string).collect();
     if artifact.is(ArtifactKind::RUN) && found.is_empty() {
         let outcome = Run::outcome(artifact).ok().filter(|outcome| !outcome.cautions.is_empty());
         found.extend(outcome.map(|outcome| format!("the run is to be read with caution: {}", outcome.cautions)));
@@ -242,19 +270,20 @@ pub fn sentences(artifact: &Artifact) -> Vec<String> {
 }
 
 /// The part of it that nobody may miss who sees a number or a picture: runs without a result and runs that are not valid.
-pub fn faults(artifact: &Artifact) -> Vec<String> {
+pub fn faults(artifact: &Artifact) -> Vec<Statement> {
     if artifact.is(ArtifactKind::RUN) {
-        return of_run(artifact).into_iter().collect();
+        return of_run(artifact).into_iter().map(Statement::from).collect();
     }
     let runs = [ArtifactKind::RESULTS, ArtifactKind::VERIFICATION].iter().any(|kind| artifact.is(*kind));
     let runs = if runs { Results::table(artifact).ok() } else { None };
     if artifact.is(ArtifactKind::RESULTS) {
-        return runs.map(|runs| of_runs(runs, Verdict::NotValid)).unwrap_or_default();
+        let said = runs.map(|runs| of_runs(runs, Verdict::NotValid)).unwrap_or_default();
+        return said.into_iter().map(Statement::from).collect();
     }
     // A list of another version says nothing here; whoever shows the tables tells.
     let list = <Option<NotValid> as Field>::take(&artifact.root, NOT_VALID, "").ok().flatten();
     let failed = runs.and_then(|runs| failures(runs).sentence(Verdict::NoResult));
-    failed.into_iter().chain(list.iter().flat_map(NotValid::grouped_sentences)).collect()
+    failed.map(Statement::from).into_iter().chain(list.iter().flat_map(NotValid::statements)).collect()
 }
 
 /// Name of the list of runs that are not valid in artifacts that were made from runs.

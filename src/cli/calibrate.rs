@@ -82,7 +82,10 @@ impl Calibrate {
         let solution = typed(Solution::from_artifact(&solution))?;
         if !(self.json || self.csv && self.verify) {
             let csv = || csv_text(&solution.solution.to_table());
-            super::output::write(&if self.csv { csv() } else { answer::text(&asked, &solution) });
+            match self.csv {
+                true => super::output::write(&csv()),
+                false => super::output::lines(&answer::text(&asked, &solution)),
+            }
         }
         let (verified, exit) = if self.verify { self.verified(&asked) } else { (Vec::new(), Exit::Done) };
         if self.json {
@@ -90,7 +93,10 @@ impl Calibrate {
         } else {
             for verification in &verified {
                 let summary = verification.summary.to_table();
-                super::output::write(&if self.csv { csv_text(&summary) } else { answer::verified(&summary) });
+                match self.csv {
+                    true => super::output::write(&csv_text(&summary)),
+                    false => super::output::lines(&answer::verified(&summary)),
+                }
             }
         }
         Ok(exit)

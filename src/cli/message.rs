@@ -1,7 +1,7 @@
 //! Faults as a person reads them: the line, a caret under the location, what is known, what to do.
 
 use super::color::Color;
-use super::output::{on_screen, steers};
+use super::output::{on_screen, steers, width};
 use crate::plan::{Fault, Location, Source};
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use std::ops::Range;
@@ -21,7 +21,11 @@ pub(super) fn warnings(found: &[Fault], color: Color) {
 }
 
 fn renderer(colour: bool) -> Renderer {
-    if colour { Renderer::styled() } else { Renderer::plain() }
+    let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+    match width(&std::io::stderr()) {
+        Some(width) => renderer.term_width(width),
+        None => renderer,
+    }
 }
 
 /// All faults, one under the other, and how many there are.
@@ -122,7 +126,7 @@ mod tests {
 6 | fil = \"a.csv\"
   | ^^^ did you mean `file`?
   |
-  = help: known keys: `file`, `delimiter`, `decimal`, `encoding`, `missing`, `sheet`
+  = help: known keys: `file`, `delimiter`, `decimal`, `encoding`, `missing`, `sheet`, `first_line`
 
 error: 1 fault; nothing was run
 ";

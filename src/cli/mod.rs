@@ -24,6 +24,7 @@ mod progress;
 mod report;
 mod run;
 mod schema;
+mod sheet;
 mod show;
 mod site;
 mod store;

@@ -147,7 +147,8 @@ fn total(lines: &[Line]) -> Option<String> {
         Some(seconds) => format!(", about {}", duration(seconds / cores() as f64)),
         None => "; how long they take is known for stages that ran here before".to_owned(),
     };
-    Some(format!("in all {most}{tasks} tasks to run{stages}{time}"))
+    let noun = if tasks == 1 { "task" } else { "tasks" };
+    Some(format!("in all {most}{tasks} {noun} to run{stages}{time}"))
 }
 
 fn document(name: &str, report: &Report, lines: &[Line]) -> serde_json::Value {

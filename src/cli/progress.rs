@@ -1,6 +1,6 @@
 //! What a person sees while a campaign runs: a live table on a terminal, plain lines elsewhere.
 
-use super::output::on_screen;
+use super::output::{on_screen, width, wrapped};
 use super::whole::Whole;
 use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, TaskCount, Watch};
@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 
 /// Shortest time between two plain lines of one stage.
 const PAUSE: Duration = Duration::from_secs(5);
+
+/// A terminal with fewer columns has no room for bars.
+const NARROW: usize = 72;
 
 /// Reports failures at once, stages when they end, and the progress of each now and then.
 pub(super) struct Progress<'a> {
@@ -41,6 +44,10 @@ struct Live {
     reported: Instant,
     /// Tasks that ended since, other than from the store.
     ended: usize,
+    /// When the tasks that run were started, by row.
+    running: HashMap<Option<usize>, Instant>,
+    /// Tasks of which it is known how long they took, and their seconds.
+    timed: (usize, f64),
     /// Tasks that failed; each failure was reported with its reason.
     failed: usize,
     /// Progress in the words of the stage; empty for stages that do not decide by outcomes.
@@ -48,6 +55,23 @@ struct Live {
     /// Warnings without their numbers, with the rows that gave them.
     warned: BTreeMap<String, BTreeSet<Option<usize>>>,
     bar: Option<ProgressBar>,
+}
+
+impl Live {
+    fn new(bar: Option<ProgressBar>) -> Self {
+        let now = Instant::now();
+        let (running, note, warned) = (HashMap::new(), String::new(), BTreeMap::new());
+        Self { started: now, reported: now, ended: 0, running, timed: (0, 0.0), failed: 0, note, warned, bar }
+    }
+
+    /// Counts a task that ended. Returns the mean seconds of those that ran here.
+    fn count_ended(&mut self, row: Option<usize>, failed: usize) -> Option<f64> {
+        (self.ended, self.failed) = (self.ended + 1, failed);
+        if let Some(begun) = self.running.remove(&row) {
+            self.timed = (self.timed.0 + 1, self.timed.1 + begun.elapsed().as_secs_f64());
+        }
+        (self.timed.0 > 0).then(|| self.timed.1 / self.timed.0 as f64)
+    }
 }
 
 impl<'a> Progress<'a> {
@@ -81,7 +105,7 @@ impl<'a> Progress<'a> {
     fn say(&self, line: &str) {
         match &self.screen {
             // Its `suspend` panics when the terminal has gone.
-            Some(screen) => drop(screen.println(on_screen(line))),
+            Some(screen) => drop(screen.println(wrapped(&on_screen(line), width(&std::io::stderr())))),
             None => err!("{line}"),
         }
     }
@@ -92,7 +116,9 @@ impl<'a> Progress<'a> {
             Some(line) => screen.insert_before(line, ProgressBar::new(0)),
             None => screen.add(ProgressBar::new(0)),
         };
-        let style = ProgressStyle::with_template("{prefix:16} {bar:10.cyan/dim} {pos:>5}/{len:5} {wide_msg}");
+        let narrow = width(&std::io::stderr()).is_some_and(|width| width < NARROW);
+        let bar_of = if narrow { "" } else { " {bar:10.cyan/dim}" };
+        let style = ProgressStyle::with_template(&format!("{{prefix:16}}{bar_of} {{pos:>5}}/{{len:5}} {{wide_msg}}"));
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(stage.to_owned());
         Some(bar)
@@ -101,10 +127,14 @@ impl<'a> Progress<'a> {
     fn started(&self, stage: &str) {
         let mut stages = self.stages();
         if !stages.contains_key(stage) {
-            let now = Instant::now();
-            let (note, warned, bar) = (String::new(), BTreeMap::new(), self.bar(stage));
-            stages
-                .insert(stage.to_owned(), Live { started: now, reported: now, ended: 0, failed: 0, note, warned, bar });
+            let bar = self.bar(stage);
+            if let Some(bar) = &bar {
+                let whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
+                let [ended, total] = whole.counts(stage);
+                bar.set_length(total as u64);
+                bar.set_position(ended as u64);
+            }
+            stages.insert(stage.to_owned(), Live::new(bar));
         }
     }
 
@@ -146,18 +176,16 @@ impl<'a> Progress<'a> {
         }
     }
 
-    fn ended(&self, stage: &str, count: TaskCount) {
+    fn ended(&self, stage: &str, row: Option<usize>, count: TaskCount) {
         let mut stages = self.stages();
         let Some(live) = stages.get_mut(stage) else { return };
-        live.ended += 1;
-        live.failed = count.failed;
+        let measured = live.count_ended(row, count.failed);
         let elapsed = live.started.elapsed().as_secs_f64();
         let left = count.total - count.ended();
         let earlier = &self.ahead().seconds;
         let expected = earlier.get(stage).map(|s| s / self.workers as f64);
-        let measured = elapsed / live.ended as f64 * self.workers as f64;
         let words = self.whole(|whole| {
-            whole.note(stage, count, Some(measured));
+            whole.note(stage, count, measured);
             whole.expect(|name| earlier.get(name).copied());
         });
         let pace = pace(live.ended, left, elapsed, expected);
@@ -209,9 +237,12 @@ impl<'a> Progress<'a> {
 impl Watch for Progress<'_> {
     fn event(&self, event: Event<'_>) {
         match event {
-            Event::Started { stage, .. } => {
+            Event::Started { stage, row } => {
                 self.ahead();
                 self.started(stage);
+                if let Some(live) = self.stages().get_mut(stage) {
+                    live.running.insert(row, Instant::now());
+                }
             }
             Event::Progress { stage, row, progress } if progress.warning => self.warn(stage, row, &progress.note),
             Event::Progress { stage, row, progress } => {
@@ -221,12 +252,17 @@ impl Watch for Progress<'_> {
                     bar.set_message(on_screen(&format!("{row}{part}{}", progress.note)));
                 }
             }
+            Event::Counted { stage, count, is_done } => {
+                // Nothing is said yet: where all is cached, it is over at once.
+                let mut whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
+                if is_done { whole.close(stage, count) } else { whole.note(stage, count, None) }
+            }
             Event::Asked { stage, count, note } => self.asked(stage, count, note),
             Event::Ended { stage, row, count, failure } => {
                 if let Some(why) = failure {
                     self.say(&format!("error: {}: {why}", task_name(stage, row)));
                 }
-                self.ended(stage, count);
+                self.ended(stage, row, count);
             }
             Event::Word { text } => self.say(&format!("cluster: {text}")),
             Event::Stage { report } => self.closed(report),

@@ -1,17 +1,16 @@
 //! `flow show`: a result, or one row's run, as a readable table.
 
 use super::common::{Campaign, provenance, system};
-use super::output::steers;
+use super::sheet::text;
 use super::{Exit, complete};
 use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
-use crate::export::{cells, csv_text, head};
+use crate::export::csv_text;
 use crate::plan::Workflow;
 use crate::run::{Report, StageReport, StageStatus, decide};
 use crate::stage::units::presented;
 use crate::store::{ObjectId, Store};
 use clap::Args;
-use math::elementary::log10;
 use serde_json::{Value, json};
 
 /// Show a result as a table.
@@ -219,61 +218,6 @@ fn print_others(artifact: &Artifact, only_table: bool) {
             Node::Group(_) | Node::Table(_) | Node::Text(_) => {}
         }
     }
-}
-
-/// Numbers for a reader: seven digits, small and large ones with an exponent.
-fn short(values: &Values) -> Vec<String> {
-    let one = |v: &f64| match v.abs() {
-        _ if v.is_nan() => String::new(),
-        0.0 => "0".to_owned(),
-        size if !(1e-4..1e7).contains(&size) => format!("{v:.5e}"),
-        size => {
-            let decimals = (6 - log10(size).floor() as i32).max(0) as usize;
-            let text = format!("{v:.decimals$}");
-            if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-        }
-    };
-    match values {
-        Values::Reals(values) => values.iter().map(one).collect(),
-        Values::Ints(_) | Values::Texts(_) => cells(values),
-    }
-}
-
-/// Most rows of a table that are shown; `--csv` and `--json` give all.
-const MOST_ROWS: usize = 100;
-
-/// Most columns shown at once.
-const MOST_COLUMNS: usize = 200;
-
-/// A cell: what would steer the terminal, which a log or a file may hold, is shown as a sign.
-fn in_cell(cell: &str) -> String {
-    cell.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
-}
-
-pub(super) fn text(table: &Table) -> String {
-    let mut shown = comfy_table::Table::new();
-    shown.load_style(comfy_table::presets::NOTHING);
-    let seen = &table.columns[..table.columns.len().min(MOST_COLUMNS)];
-    shown.set_header(seen.iter().map(|column| in_cell(&head(column))));
-    let columns: Vec<Vec<String>> = seen.iter().map(|column| short(&column.values)).collect();
-    for row in 0..table.rows().min(MOST_ROWS) {
-        shown.add_row(columns.iter().map(|column| in_cell(&column[row])));
-    }
-    for (index, column) in seen.iter().enumerate() {
-        if let (Some(shown), Values::Reals(_) | Values::Ints(_)) = (shown.column_mut(index), &column.values) {
-            shown.set_cell_alignment(comfy_table::CellAlignment::Right);
-        }
-    }
-    let more = table.rows().saturating_sub(MOST_ROWS);
-    let hidden = table.columns.len() - seen.len();
-    let rest = match (more, hidden) {
-        (0, 0) => String::new(),
-        (rows, 0) => format!("\n… and {rows} more rows; --csv shows all"),
-        (0, columns) => format!("\n… and {columns} more columns; --csv shows all"),
-        (rows, columns) => format!("\n… and {rows} more rows and {columns} more columns; --csv shows all"),
-    };
-    let lines: Vec<String> = shown.lines().map(|line| line.trim_end().to_owned()).collect();
-    format!("{}{rest}", lines.join("\n"))
 }
 
 fn values_json(values: &Values) -> Value {

@@ -54,6 +54,11 @@ impl Whole {
         part.seconds = seconds.or(part.seconds);
     }
 
+    /// The tasks of a stage that ended, and all that it asked for.
+    pub(super) fn counts(&self, stage: &str) -> [usize; 2] {
+        self.stages.get(stage).map_or([0; 2], |part| [part.ended, part.total])
+    }
+
     /// A stage has ended.
     pub(super) fn close(&mut self, stage: &str, count: TaskCount) {
         self.note(stage, count, None);
@@ -115,6 +120,13 @@ mod tests {
         whole.close("more", count(3, 3));
         whole.close("table", count(1, 1));
         assert_eq!(whole.in_words(2).unwrap(), "campaign 14/14");
+        // What is in the store does not run again, whether its stage has begun or not.
+        let mut stored = Whole::default();
+        stored.note("runs", TaskCount { total: 10, cached: 8, ..TaskCount::default() }, None);
+        stored.close("more", TaskCount { total: 5, cached: 5, ..TaskCount::default() });
+        stored.look_ahead([("runs", runs(10)), ("more", runs(5))]);
+        stored.expect(|_| Some(2.0));
+        assert_eq!(stored.in_words(2).unwrap(), "campaign 13/15, 2.0 s left");
         let mut alone = Whole::default();
         alone.look_ahead([("one", Forecast::ONE)]);
         assert_eq!(alone.in_words(1), None);

@@ -66,9 +66,11 @@ impl Figure for RankedBars {
         let panel = Panel::fit(Rect { top: page.top + legend_height, ..page }, x, y, style);
         legend::draw(&mut scene, &entries, Rect { left: panel.area.left, ..page }, style);
         panel.draw_grid(&mut scene);
+        let first = scene.items.len();
         for (row, &i) in order.iter().enumerate() {
             self.draw_bar(&mut scene, &panel, row as f64, &self.bars[i]);
         }
+        scene.group_from(first, Some(panel.area), panel.facts());
         for (k, (_, at)) in self.references.iter().enumerate() {
             let x = panel.place_x(*at);
             scene.stroke(Path::polyline(&[[x, panel.area.top], [x, panel.area.bottom]]), reference_style(k));
@@ -120,9 +122,7 @@ impl RankedBars {
     fn describe(&self, order: &[usize]) -> String {
         let top = order.iter().take(4).map(|&i| {
             let bar = &self.bars[i];
-            // A factor without a key is called by its symbol, in plain letters here.
-            let name =
-                if bar.factor.key.is_empty() { &Line::new(&bar.factor.name, 1.0).plain } else { &bar.factor.key };
+            let name = Line::new(&bar.factor.sign(), 1.0).plain;
             format!("{name} {}", self.quantity.in_words(bar.value))
         });
         format!("Bars in descending order: {}.", top.collect::<Vec<_>>().join(", "))

@@ -133,10 +133,10 @@ impl MainEffects {
     }
 
     fn describe(&self) -> String {
-        let mut spans: Vec<(f64, &str)> = Vec::new();
+        let mut spans: Vec<(f64, String)> = Vec::new();
         for f in &self.factors {
             let (low, high) = extent(f.means.iter().copied());
-            spans.push((high - low, f.factor.id()));
+            spans.push((high - low, f.factor.words()));
         }
         spans.sort_by(|a, b| b.0.total_cmp(&a.0));
         let most: Vec<String> =

@@ -93,7 +93,7 @@ impl Solutions {
     fn describe(&self) -> String {
         let tell = |s: &SolutionSet| {
             let best = s.rows.first().cloned().unwrap_or_default();
-            let value = |(f, v): (&Quantity, f64)| format!("{} {}", f.id(), f.in_words(v));
+            let value = |(f, v): (&Quantity, f64)| format!("{} {}", f.words(), f.in_words(v));
             let pairs = self.factors.iter().zip(best).map(value);
             format!("{}: {} solutions, best {}.", s.name, s.rows.len(), pairs.collect::<Vec<_>>().join(", "))
         };

@@ -3,7 +3,8 @@
 
 use super::column::{Column, Digits, Values};
 use super::escape;
-use super::text::unit_parts;
+use super::text::{is_compound, unit_parts};
+use std::collections::BTreeMap;
 
 /// A table with caption and note.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +17,36 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// Note under the table.
     pub notes: Vec<String>,
+    /// Symbols of names that cells of some columns hold.
+    pub symbols: Symbols,
+}
+
+/// Symbols of the names that stand in cells, alone or in products of powers such as `mu^2*Ec`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Symbols {
+    /// Symbols by name, in the notation of LaTeX without dollar signs.
+    pub of: BTreeMap<String, String>,
+    /// Keys of the columns that hold names.
+    pub columns: &'static [&'static str],
+}
+
+impl Symbols {
+    /// A cell as mathematics; nothing of a cell that holds anything but names with symbols.
+    fn cell(&self, column: &Column, text: &str) -> Option<String> {
+        if !self.columns.contains(&column.key.as_str()) {
+            return None;
+        }
+        let part = |part: &str| {
+            let (name, power) = part.split_once('^').map_or((part, None), |(name, power)| (name, Some(power)));
+            let symbol = self.of.get(name.trim())?;
+            let Some(power) = power else { return Some(symbol.clone()) };
+            let is_number = power.bytes().all(|b| b.is_ascii_digit()) && !power.is_empty();
+            let base = if is_compound(symbol) { format!("({symbol})") } else { symbol.clone() };
+            is_number.then(|| format!("{base}^{{{power}}}"))
+        };
+        let parts = text.split('*').map(part).collect::<Option<Vec<String>>>()?;
+        Some(format!("${}$", parts.join(r" \cdot ")))
+    }
 }
 
 /// All digits, one head row `key [unit]`, RFC 4180 quoting, lines end with a newline.
@@ -102,7 +133,7 @@ impl Table {
         let head: Vec<String> = self.columns.iter().map(latex_head).collect();
         out += &format!("{} \\\\\n\\midrule\n", head.join(" & "));
         for row in 0..rows(&self.columns) {
-            let cells: Vec<String> = self.columns.iter().map(|c| latex_cell(c, row)).collect();
+            let cells: Vec<String> = self.columns.iter().map(|c| self.latex_cell(c, row)).collect();
             out += &format!("{} \\\\\n", cells.join(" & "));
         }
         out += "\\bottomrule\n\\end{tabular}\n";
@@ -122,13 +153,32 @@ impl Table {
         let rule = self.columns.iter().map(|c| if matches!(c.values, Values::Words(_)) { ":--" } else { "--:" });
         out += &format!("| {} |\n| {} |\n", head.join(" | "), rule.collect::<Vec<_>>().join(" | "));
         for row in 0..rows(&self.columns) {
-            let cells = self.columns.iter().map(|c| shown(c, row).map_or("–".into(), |cell| escape::markdown(&cell)));
+            let cells = self.columns.iter().map(|c| self.markdown_cell(c, row));
             out += &format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "));
         }
         for note in &self.notes {
             out += &format!("\n{}\n", escape::markdown_markup(note));
         }
         out
+    }
+
+    fn latex_cell(&self, c: &Column, row: usize) -> String {
+        let Some(text) = shown(c, row) else { return "--".into() };
+        if matches!(c.values, Values::Words(_)) {
+            return self.symbols.cell(c, &text).unwrap_or_else(|| escape::latex(&text));
+        }
+        match text.split_once('e') {
+            Some((mantissa, power)) => format!("${mantissa}\\times 10^{{{power}}}$"),
+            None if text.starts_with('-') => format!("${text}$"),
+            None => text,
+        }
+    }
+
+    fn markdown_cell(&self, c: &Column, row: usize) -> String {
+        let Some(text) = shown(c, row) else { return "–".into() };
+        // A bar would end the cell, also within mathematics.
+        let symbol = self.symbols.cell(c, &text).map(|symbol| symbol.replace('|', "\\vert "));
+        symbol.unwrap_or_else(|| escape::markdown(&text))
     }
 
     /// [`csv`] of the columns.
@@ -148,18 +198,6 @@ fn latex_unit(unit: &str) -> String {
         if power.is_empty() { text } else { format!("{text}$^{{{}}}$", escape::latex(power)) }
     };
     unit_parts(unit).into_iter().map(part).collect()
-}
-
-fn latex_cell(c: &Column, row: usize) -> String {
-    let Some(text) = shown(c, row) else { return "--".into() };
-    if matches!(c.values, Values::Words(_)) {
-        return escape::latex(&text);
-    }
-    match text.split_once('e') {
-        Some((mantissa, power)) => format!("${mantissa}\\times 10^{{{power}}}$"),
-        None if text.starts_with('-') => format!("${text}$"),
-        None => text,
-    }
 }
 
 fn markdown_head(c: &Column) -> String {
@@ -188,7 +226,37 @@ mod tests {
             label: "tab:a".into(),
             columns,
             notes: vec!["One note.".into()],
+            symbols: Symbols::default(),
         }
+    }
+
+    #[test]
+    fn names_and_terms_are_printed_by_their_symbols() {
+        let of = [("kn_ks", "k_n/k_s"), ("mu", r"\mu"), ("R", "R|_0")].map(|(name, sign)| (name.into(), sign.into()));
+        let term = ["mu", "kn_ks^2", "mu*kn_ks", "const", "mu*other", "mu^x", "R"];
+        let columns = vec![
+            Column::words("term", term.map(String::from).to_vec()),
+            Column::words("remark", vec!["mu".into(); term.len()]),
+        ];
+        let symbols = Symbols { of: BTreeMap::from(of), columns: &["term"] };
+        let table = Table { columns, symbols, ..Table::default() };
+        let cells = |text: String, end: &str| -> Vec<String> {
+            text.lines().filter(|line| line.contains("mu") && line.ends_with(end)).map(str::to_owned).collect()
+        };
+        assert_eq!(
+            cells(table.latex(), r"\\"),
+            [
+                r"$\mu$ & mu \\",
+                r"$(k_n/k_s)^{2}$ & mu \\",
+                r"$\mu \cdot k_n/k_s$ & mu \\",
+                r"const & mu \\",
+                r"mu{*}other & mu \\",
+                r"mu\textasciicircum{}x & mu \\",
+                r"$R|_0$ & mu \\",
+            ]
+        );
+        assert_eq!(cells(table.markdown(), "|")[6], r"| $R\vert _0$ | mu |");
+        assert!(table.csv().contains("kn_ks^2,mu\n"), "programs read names");
     }
 
     #[test]

@@ -94,6 +94,15 @@ pub fn plain_text(text: &str) -> String {
     text.replace('$', r"$\$$")
 }
 
+/// Whether a symbol needs brackets before a power, as `k_n/k_s` does and `(k_n/k_s)_j` does not.
+pub fn is_compound(symbol: &str) -> bool {
+    let mut depth = 0_i32;
+    symbol.chars().any(|letter| {
+        depth += i32::from(matches!(letter, '(' | '[' | '{')) - i32::from(matches!(letter, ')' | ']' | '}'));
+        depth == 0 && matches!(letter, '/' | ' ' | '^' | '*' | '+' | '-')
+    })
+}
+
 /// The markup of a quantity: name (itself markup), symbol and unit, each of which may be empty.
 pub fn quantity(name: &str, symbol: &str, unit: &str) -> String {
     let mut out = name.to_string();

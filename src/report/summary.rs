@@ -1,10 +1,10 @@
 //! The first section: what was done, how far computed and published values agree, and what to beware of.
 
-use super::compared;
 use super::paper::{Cost, Outcome, Paper, Part};
 use super::tally::tally;
 use super::time::{duration, moment};
 use super::warning::warnings;
+use super::{compared, symbol};
 use crate::stage::Kind;
 use crate::stage::figure::Figure as Picture;
 use crate::stage::table::Table as PrintedTable;
@@ -25,7 +25,7 @@ pub(super) fn summary(paper: &Paper) -> Markup {
                 ul.warnings {
                     @for (part, found) in &all {
                         @for warning in found {
-                            li { a href={ "#stage-" (part.name) } { (part.words()) } ": " (warning) }
+                            li { a href={ "#stage-" (part.name) } { (part.words()) } ": " (symbol::typeset(&paper.context, warning)) }
                         }
                     }
                 }

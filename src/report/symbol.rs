@@ -90,7 +90,9 @@ pub(super) fn term(context: &Context, term: &str) -> Option<Markup> {
         html! {
             @for (i, (factor, power)) in parts.iter().enumerate() {
                 @if i > 0 { (PreEscaped("\u{202f}·\u{202f}")) }
-                @if let Some(symbol) = of(context, factor) { (symbol) } @else { (factor) }
+                @if let Some(symbol) = of(context, factor) {
+                    @if power.is_some() && raw(context, factor).is_some_and(text::is_compound) { "(" (symbol) ")" } @else { (symbol) }
+                } @else { (factor) }
                 @if let Some(power) = power { sup { (power) } }
             }
         }
@@ -103,12 +105,10 @@ const WORDS: [&str; 3] = ["a", "A", "I"];
 /// The symbols of a workflow as they stand in plain words, such as `σ_u`, and the names that have one, with their markup;
 /// longer ones first. A symbol that is the same in both is left out.
 pub(super) fn known(context: &Context) -> Vec<(String, Markup)> {
-    let factors = context.factors.iter().map(|(name, factor)| (name, &factor.symbol));
-    let symbols = factors.chain(context.responses.iter().map(|(name, response)| (name, &response.symbol)));
-    let pairs = symbols.filter(|(_, symbol)| !symbol.is_empty()).flat_map(|(name, symbol)| {
+    let pairs = context.symbols().into_iter().flat_map(|(name, symbol)| {
         let markup = format!("${symbol}$");
         let set = label(&markup);
-        [Line::new(&markup, 1.0).plain, name.clone()].map(|plain| (plain, html! { span.sign { (set) } }))
+        [Line::new(&markup, 1.0).plain, name].map(|plain| (plain, html! { span.sign { (set) } }))
     });
     let mut found: Vec<(String, Markup)> =
         pairs.filter(|(plain, _)| !plain.is_empty() && !WORDS.contains(&plain.as_str())).collect();

@@ -5,7 +5,7 @@
 
 use super::symbol;
 use crate::artifact::{self, Values};
-use crate::stage::Context;
+use crate::stage::{Context, NAMING_COLUMNS};
 use figure::column::{self, Column, Digits};
 use figure::table::shown;
 use maud::{Markup, PreEscaped, html};
@@ -198,8 +198,7 @@ impl<'a> Sheet<'a> {
 
     /// A word that names a factor, a response or a term of them, with its symbol.
     fn words(&self, shown: &Shown, word: &str) -> Option<Markup> {
-        const NAMES: [&str; 4] = ["factor", "response", "source", "term"];
-        NAMES.contains(&shown.column.key.as_str()).then(|| symbol::term(self.context, word)).flatten()
+        NAMING_COLUMNS.contains(&shown.column.key.as_str()).then(|| symbol::term(self.context, word)).flatten()
     }
 }
 

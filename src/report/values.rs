@@ -11,6 +11,7 @@
 mod own;
 
 use crate::artifact::{Table, Values};
+use crate::report::symbol;
 use crate::stage::Context;
 use figure::text::Line;
 use figure::{agreement, convergence, curve, effect_plot, effects, residuals};
@@ -36,6 +37,9 @@ pub(super) fn of(show: &str, data: &Table, context: &Context) -> Option<Value> {
         "convergence" => convergence(data),
         "half-normal" | "normal" => effect_plot(data),
         "xy" | "curves" => own::series(data, context),
+        "envelope" => own::series(data, context),
+        "pareto" | "range" => bars(data, context),
+        "verification" => verification(data, context),
         "histogram" => own::bins(data, context),
         "box" => own::boxes(data),
         "heat-map" => own::cells(data, context),
@@ -65,7 +69,7 @@ fn texts<'a>(data: &'a Table, name: &str) -> Option<&'a [String]> {
 
 /// A name for people: the symbol of a factor or response, or the name itself.
 fn name_of(context: &Context, key: &str) -> String {
-    super::symbol::raw(context, key).map_or_else(|| key.to_owned(), |s| Line::new(&format!("${s}$"), 1.0).plain)
+    symbol::raw(context, key).map_or_else(|| key.to_owned(), |s| Line::new(&format!("${s}$"), 1.0).plain)
 }
 
 /// The columns of curves that are no counts of cracks.
@@ -223,6 +227,49 @@ fn effect_plot(data: &Table) -> Option<Value> {
     points(vec![(0..xs.len()).map(|i| (xs[i], ys[i], words(i))).collect()])
 }
 
+/// Bars from above: a factor or a term, its value, and the published one.
+fn bars(data: &Table, context: &Context) -> Option<Value> {
+    let (factors, values) = (texts(data, "factor")?, data.shown("value").ok()?.0);
+    let unit = &data.column("value")?.unit;
+    let published = data.shown("published").ok().map(|(values, _)| values);
+    let words = |i: usize| {
+        // A term is a label of its own.
+        let name = match symbol::raw(context, &factors[i]) {
+            Some(_) => name_of(context, &factors[i]),
+            None => Line::new(&factors[i], 1.0).plain,
+        };
+        let other = published.as_ref().map(|all| all[i]).filter(|value| value.is_finite());
+        let other = other.map_or_else(String::new, |value| format!(", published {}", quantity(value, unit)));
+        format!("{name}: {}{other}", quantity(values[i], unit))
+    };
+    let mut found = points(vec![(0..values.len()).map(|i| (values[i], i as f64, words(i))).collect()])?;
+    // The bar beside the pointer, however long it is.
+    found["cells"] = true.into();
+    Some(found)
+}
+
+/// Means of the runs of each target set, a panel for each response.
+fn verification(data: &Table, context: &Context) -> Option<Value> {
+    let (responses, units, sets) = (texts(data, "response")?, texts(data, "unit")?, texts(data, "set")?);
+    let (targets, values) = (data.shown("target").ok()?.0, data.shown("value").ok()?.0);
+    let panel = |(response, rows): (&str, Vec<usize>)| {
+        let own: Vec<String> = rows.iter().map(|&row| sets[row].clone()).collect();
+        let set = |(index, (set, members)): (usize, (&str, Vec<usize>))| {
+            let runs: Vec<f64> = members.iter().map(|&k| values[rows[k]]).collect();
+            let (mean, row) = (runs.iter().sum::<f64>() / runs.len() as f64, rows[members[0]]);
+            let said = match runs.len() {
+                1 => "the only run gives".to_owned(),
+                count => format!("mean of {count} runs"),
+            };
+            let (name, unit) = (name_of(context, response), &units[row]);
+            let (mean_in_words, target) = (quantity(mean, unit), quantity(targets[row], unit));
+            (index as f64, mean, format!("set {set}: {name}, {said} {mean_in_words}, target {target}"))
+        };
+        groups(&own).into_iter().enumerate().map(set).collect()
+    };
+    points(groups(responses).into_iter().map(panel).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -251,6 +298,29 @@ mod tests {
             (441, &json!(3.0), &json!(300.0), &json!(6060.0))
         );
         assert_eq!(of("surface", &Table::default(), &Context::default()), None);
+    }
+
+    #[test]
+    fn bars_and_verified_sets_say_what_they_are() {
+        let words = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
+        let bars = Table::default()
+            .texts_column("factor", "", words(&["$E_c$ · $\\mu$", "nu"]))
+            .reals_column("value", "%", "", vec![31.25, 2.0])
+            .reals_column("published", "%", "", vec![f64::NAN, 3.0]);
+        let value = of("pareto", &bars, &Context::default()).unwrap();
+        assert_eq!(value["panels"][0]["words"], json!(["E_c · μ: 31.25 %", "nu: 2.000 %, published 3.000 %"]));
+        assert_eq!((&value["panels"][0]["y"], &value["cells"]), (&json!([0.0, 1.0]), &json!(true)));
+        let runs = Table::default()
+            .texts_column("response", "", words(&["E", "E", "E", "nu"]))
+            .texts_column("unit", "", words(&["GPa", "GPa", "GPa", ""]))
+            .texts_column("set", "", words(&["1", "1", "2", "1"]))
+            .reals_column("target", "", "", vec![30.0, 30.0, 20.0, 0.2])
+            .reals_column("value", "", "", vec![29.0, 30.0, 21.0, 0.21]);
+        let value = of("verification", &runs, &Context::default()).unwrap();
+        assert_eq!((&value["panels"][0]["x"], &value["panels"][0]["y"]), (&json!([0.0, 1.0]), &json!([29.5, 21.0])));
+        assert_eq!(value["panels"][0]["words"][0], json!("set 1: E, mean of 2 runs 29.50 GPa, target 30.00 GPa"));
+        assert_eq!(value["panels"][0]["words"][1], json!("set 2: E, the only run gives 21.00 GPa, target 20.00 GPa"));
+        assert_eq!(value["panels"][1]["words"], json!(["set 1: nu, the only run gives 0.2100, target 0.2000"]));
     }
 
     #[test]

@@ -21,6 +21,15 @@ pub enum Event<'a> {
         /// Its progress.
         progress: &'a Progress,
     },
+    /// A stage asked for tasks: how many there are, and how many of them are in the store.
+    Counted {
+        /// The stage.
+        stage: &'a str,
+        /// Its counts.
+        count: TaskCount,
+        /// Whether the store has its result, so that it asks for nothing more.
+        is_done: bool,
+    },
     /// A stage that decides by outcomes asked for more.
     Asked {
         /// The stage.

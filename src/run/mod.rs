@@ -253,11 +253,13 @@ impl Loop<'_, '_> {
         for index in self.stages.due(self.workflow, &self.board) {
             moved = true;
             if self.stages.recall(self.workflow, index, self.store) {
+                self.counted(index, true);
                 continue;
             }
             match self.stages.step(self.workflow, index, self.store, &mut self.board) {
                 Ok((new, stands)) => {
                     new.into_iter().for_each(|node| self.settle(node));
+                    self.counted(index, false);
                     if let Some(note) = stands.filter(|_| !self.settings.dry) {
                         let (stage, count) = (&self.workflow.stages[index].name, self.board.count(index));
                         self.watch.event(Event::Asked { stage, count, note: &note });
@@ -282,6 +284,14 @@ impl Loop<'_, '_> {
         }
         self.tell_without_result(false);
         moved
+    }
+
+    /// Reports how many tasks of a stage are known and in the store.
+    fn counted(&self, index: usize, is_done: bool) {
+        if !self.settings.dry {
+            let StageReport { name, tasks, .. } = self.stages.report(self.workflow, index, &self.board);
+            self.watch.event(Event::Counted { stage: &name, count: tasks, is_done });
+        }
     }
 
     /// Reports failed stages once all their tasks have ended, so that every failure is counted, and then the stages that were

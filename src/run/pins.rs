@@ -167,7 +167,7 @@ calibrate e38b40d330ef
 verify 38b0cc910644
 effort cf49a99b0418
 agreement 7abe77c0ea84
-table 464517716712
+table c2566245f62a
 figure e5375085b080
 confinements 9c0bb1671473
 strengths de63dd9b98f3
@@ -180,7 +180,7 @@ data 4
 design 3
 effort 1
 envelope 1
-figure 16
+figure 17
 fit 4
 formula 2
 gather 2
@@ -191,7 +191,7 @@ screening 5
 shapes 1
 simulate 4
 specimen 2
-table 7
+table 8
 verify 3
 ";
 

@@ -37,6 +37,13 @@ impl Context {
     pub fn sets_stage(&self, path: &str) -> bool {
         path.split_once('.').is_some_and(|(stage, _)| self.sketches.contains_key(stage))
     }
+
+    /// Symbols of factors and responses by name, of those that have one.
+    pub fn symbols(&self) -> BTreeMap<String, String> {
+        let factors = self.factors.iter().map(|(name, factor)| (name, &factor.symbol));
+        let all = factors.chain(self.responses.iter().map(|(name, response)| (name, &response.symbol)));
+        all.filter(|(_, symbol)| !symbol.is_empty()).map(|(name, symbol)| (name.clone(), symbol.clone())).collect()
+    }
 }
 
 /// The properties of a stage that other stages can use before anything runs.

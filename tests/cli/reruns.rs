@@ -59,10 +59,10 @@ fn the_style_of_a_figure_draws_that_figure() {
 }
 
 #[test]
-fn a_symbol_draws_the_figures_that_show_it() {
+fn a_symbol_draws_the_figures_and_prints_the_tables_that_show_it() {
     let (space, _) = space();
     space.write("w.toml", &edited("symbol = 'a'", "symbol = '\\alpha'"));
-    space.run(&[]).expect(&[("effects", 1)]);
+    space.run(&[]).expect(&[("effects", 1), ("means", 1)]);
 }
 
 #[test]

@@ -13,6 +13,7 @@
 import argparse
 import json
 import random
+import re
 import shlex
 import shutil
 import subprocess
@@ -117,6 +118,15 @@ def form(page, model):
     low.fill(str(float(before) * 50))
     low.press("Enter")
     check("out of reach" in page.locator(".verdict").inner_text() and "nearest" in page.locator(".verdict").inner_text(), "a target out of reach is named with the nearest that can be had")
+    # Messages call a quantity what the form calls it: by its symbol, not by the name beside that.
+    beside = page.evaluate("() => [...document.querySelectorAll('.head .name')].map((e) => e.textContent)")
+    said = page.evaluate("""() => ['.verdict', '.said', '.extents', '.mark'].flatMap((what) => [...document.querySelectorAll(what)]).map((e) => {
+      const words = e.cloneNode(true);
+      words.querySelectorAll('.symbol').forEach((symbol) => symbol.remove());
+      return words.textContent;
+    }).join(' ')""")
+    named = [name for name in beside if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", said)]
+    check(page.locator(".verdict .symbol").count() > 0 and not named, f"messages use the symbols of the form {named}")
     low.fill(before)
     low.press("Enter")
     check("All targets are met" in page.locator(".verdict").inner_text(), "and met again")

@@ -3,7 +3,8 @@
 use super::Asked;
 use crate::artifact::Table;
 use crate::artifact::calibration::{Determination, Parameters, Prediction, Solution, Verification};
-use crate::cli::show::{rows_json, text as shown};
+use crate::cli::sheet::text as shown;
+use crate::cli::show::rows_json;
 use serde_json::{Value, json};
 use std::fmt::Write;
 

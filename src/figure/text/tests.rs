@@ -44,3 +44,9 @@ fn a_turned_line_takes_a_tall_place() {
     assert!((r.height() - line.width).abs() < 1e-9 && (r.bottom - 50.0).abs() < 1e-9);
     assert!((r.right - 10.0 - line.below).abs() < 1e-9 && (10.0 - r.left - line.above).abs() < 1e-9);
 }
+
+#[test]
+fn a_quotient_takes_brackets_before_a_power() {
+    assert!(["k_n/k_s", "a b", "a^2"].into_iter().all(is_compound));
+    assert!(["(k_n/k_s)_j", r"\bar\sigma_c", r"\sigma_{c, 1}", "E_c"].into_iter().all(|symbol| !is_compound(symbol)));
+}

@@ -17,7 +17,9 @@ const Calibrator = (() => {
       return all;
     };
     const labels = { parameter: (i) => label(heads.parameter(i), parameters[i].unit), response: (k) => label(heads.response(k), responses[k].unit) };
-    const symbol = (head) => head.querySelector(".symbol")?.cloneNode(true);
+    // Messages are lists of words and symbols, so that a quantity is called everywhere what it is called in the form.
+    const sign = { parameter: (i) => heads.parameter(i).querySelector(".symbol").cloneNode(true), response: (k) => heads.response(k).querySelector(".symbol").cloneNode(true) };
+    const joined = (lists, between) => lists.flatMap((list, n) => n ? [between, ...list] : list);
 
     // Targets.
     const readAim = (row, response) => {
@@ -31,11 +33,11 @@ const Calibrator = (() => {
     };
     const aims = () => aimRows.map(readAim).filter(Boolean);
     const faultOf = (list) => {
-      if (!list.length) return "Give at least one target.";
+      if (!list.length) return ["Give at least one target."];
       const empty = list.find(({ low, high }) => low > high);
-      if (empty) return responses[empty.response].name + ": the band is empty, its lower end is above its upper one.";
+      if (empty) return [sign.response(empty.response), ": the band is empty, its lower end is above its upper one."];
       const zero = list.find(({ low, high }) => model.denominator !== "largest" && (low === 0 || high === 0));
-      return zero ? responses[zero.response].name + ": a target of 0 has no relative deviation." : "";
+      return zero ? [sign.response(zero.response), ": a target of 0 has no relative deviation."] : null;
     };
     const writeSet = (set) => {
       state.tolerances = Object.create(null); // a response may be called `constructor`
@@ -61,9 +63,9 @@ const Calibrator = (() => {
       knob.querySelector(".hold input").checked = state.held[i];
     });
     const enforce = (i, x) => {
-      const { low, high, name, unit } = parameters[i];
+      const { low, high, unit } = parameters[i];
       const fit = Math.min(Math.max(x, low), high);
-      find(".said").textContent = fit === x ? "" : `${name} ends at ${withUnit(shown(fit), unit)}: beyond it nothing was run.`;
+      find(".said").replaceChildren(...fit === x ? [] : [sign.parameter(i), ` ends at ${withUnit(shown(fit), unit)}: beyond it nothing was run.`]);
       return fit;
     };
 
@@ -74,9 +76,9 @@ const Calibrator = (() => {
       card.querySelector(".value").textContent = shown(value);
       card.querySelector(".interval").textContent = Number.isFinite(interval[0]) ? "mean within " + range(interval) + " (95 %)" : "interval unknown: the fit has no residual";
       card.querySelector(".run").textContent = Number.isFinite(run[0]) ? "a single run within " + range(run) : "";
-      const beyond = outside.length ? "extrapolated: " + outside.map((i) => parameters[i].name).join(", ") + " outside what was run" : far ? "extrapolated: farther out than any run" : "";
-      card.querySelector(".mark").textContent = beyond;
-      card.classList.toggle("beyond", beyond !== "");
+      const beyond = outside.length ? ["extrapolated: ", ...joined(outside.map((i) => [sign.parameter(i)]), ", "), " outside what was run"] : far ? ["extrapolated: farther out than any run"] : [];
+      card.querySelector(".mark").replaceChildren(...beyond);
+      card.classList.toggle("beyond", beyond.length > 0);
     });
     const words = () => responses.map((surface) => surface.name + " = " + withUnit(shown(Surface.value(surface, state.point)), surface.unit)).join(", ");
     const showTexts = () => {
@@ -85,12 +87,12 @@ const Calibrator = (() => {
     };
     const readout = make("output", { class: "readout", "data-hint": "Values: point at a curve." });
     const say = (response, parameter, u) => {
-      if (response === null) { readout.textContent = ""; return; }
+      if (response === null) { readout.replaceChildren(); return; }
       const x = state.point.slice();
       x[parameter] = Box.natural(parameters[parameter], u);
-      const { value, interval } = Surface.predict(responses[response], x), { name, unit } = parameters[parameter];
+      const { value, interval } = Surface.predict(responses[response], x), { unit } = parameters[parameter];
       const about = Number.isFinite(interval[0]) ? ` (${shown(interval[0])} … ${shown(interval[1])})` : "";
-      readout.textContent = `${responses[response].name} = ${withUnit(shown(value), responses[response].unit)}${about} at ${name} = ${withUnit(shown(x[parameter]), unit)}`;
+      readout.replaceChildren(sign.response(response), ` = ${withUnit(shown(value), responses[response].unit)}${about} at `, sign.parameter(parameter), ` = ${withUnit(shown(x[parameter]), unit)}`);
     };
     const charts = Charts.charts(model, find(".charts"), labels, (i, u) => move(i, Box.natural(parameters[i], u)), say);
     find(".charts").prepend(readout);
@@ -102,27 +104,27 @@ const Calibrator = (() => {
     const showReaches = () => aimRows.forEach((row, k) => { row.querySelector(".reach").textContent = "can be " + shown(state.reaches[k][0]) + " … " + shown(state.reaches[k][1]); });
     const reachAnew = () => { state.reaches = Solve.reaches(model, state.point, state.held); showReaches(); };
     const verdict = (found) => {
-      const lines = [];
+      const lines = [], add = (...parts) => lines.push(parts);
       const out = found.aims.filter(({ response, low, high }) => { const [least, most] = state.reaches[response]; return least > high || most < low; });
       for (const { response, high } of out) {
-        const [least, most] = state.reaches[response], { name, unit } = responses[response];
-        lines.push(`The target of ${name} is out of reach: ${least > high ? "at least " + withUnit(shown(least), unit) : "at most " + withUnit(shown(most), unit)} can be had by itself.`);
+        const [least, most] = state.reaches[response], { unit } = responses[response];
+        add("The target of ", sign.response(response), ` is out of reach: ${least > high ? "at least " + withUnit(shown(least), unit) : "at most " + withUnit(shown(most), unit)} can be had by itself.`);
       }
       const missed = found.aims.filter((aim, k) => !Solve.within(model, aim, found.values[k]));
-      if (found.isMet) lines.push("All targets are met.");
-      else if (!missed.length) lines.push("All targets are met within their tolerance, not exactly.");
+      if (found.isMet) add("All targets are met.");
+      else if (!missed.length) add("All targets are met within their tolerance, not exactly.");
       else {
-        if (!out.length) lines.push("Each target can be met by itself, all together cannot.");
-        const nearest = found.aims.map(({ response }, k) => `${responses[response].name} = ${withUnit(shown(found.values[k]), responses[response].unit)}${Math.abs(found.deviations[k]) > 5e-4 ? " (" + shown(100 * found.deviations[k], 3) + " %)" : ""}`);
-        lines.push("The nearest that can: " + nearest.join(", ") + ".");
+        if (!out.length) add("Each target can be met by itself, all together cannot.");
+        const nearest = found.aims.map(({ response }, k) => [sign.response(response), ` = ${withUnit(shown(found.values[k]), responses[response].unit)}${Math.abs(found.deviations[k]) > 5e-4 ? " (" + shown(100 * found.deviations[k], 3) + " %)" : ""}`]);
+        add("The nearest that can: ", ...joined(nearest, ", "), ".");
       }
-      if (found.free > 0) lines.push(`Not unique: ${found.free} direction${found.free > 1 ? "s" : ""} stay${found.free > 1 ? "" : "s"} free; this is the solution nearest the ${parameters.some((p) => p.preferred !== null) ? "preferred point" : "middle of the ranges"}.`);
-      lines.push("Misfit " + (found.misfit < 1e-12 ? "0" : found.misfit.toExponential(1)) + ".");
+      if (found.free > 0) add(`Not unique: ${found.free} direction${found.free > 1 ? "s" : ""} stay${found.free > 1 ? "" : "s"} free; this is the solution nearest the ${parameters.some((p) => p.preferred !== null) ? "preferred point" : "middle of the ranges"}.`);
+      add("Misfit " + (found.misfit < 1e-12 ? "0" : found.misfit.toExponential(1)) + ".");
       return lines;
     };
     const extent = (i, known) => {
       const parameter = parameters[i], low = Box.unit(parameter, known.low), high = Box.unit(parameter, known.high), at = Box.unit(parameter, found().point[i]);
-      const by = known.by.flatMap((k, n) => [n ? " and " : " by ", symbol(heads.response(k)) ?? responses[k].name]);
+      const by = known.by.flatMap((k, n) => [n ? " and " : " by ", sign.response(k)]);
       const tied = known.word !== "held" && known.word !== "free" && known.word !== "unknown";
       const text = [known.word, ...(tied && !by.length ? [" by all targets together"] : by)];
       const svg = "http://www.w3.org/2000/svg", bar = document.createElementNS(svg, "svg");
@@ -134,11 +136,11 @@ const Calibrator = (() => {
       rect(200 * low, Math.max(200 * (high - low), 1), known.word === "free" ? "loose" : "tied", 2, 10);
       rect(200 * at - 1, 2, "here", 0, 14);
       const ends = known.word === "held" ? shown(found().point[i]) : shown(known.low) + " … " + shown(known.high);
-      return make("div", { class: "extent", role: "listitem" }, make("span", { class: "head" }, symbol(heads.parameter(i))), bar, make("span", { class: "range" }, withUnit(ends, parameter.unit)), make("span", { class: "word" }, ...text));
+      return make("div", { class: "extent", role: "listitem" }, make("span", { class: "head" }, sign.parameter(i)), bar, make("span", { class: "range" }, withUnit(ends, parameter.unit)), make("span", { class: "word" }, ...text));
     };
     const found = () => state.found;
     const showFound = () => {
-      find(".verdict").replaceChildren(...verdict(state.found).map((line) => make("p", {}, line)));
+      find(".verdict").replaceChildren(...verdict(state.found).map((line) => make("p", {}, ...line)));
       find(".verdict").classList.toggle("unmet", !state.found.isMet);
       find(".other").disabled = !state.found.others.length;
     };
@@ -155,7 +157,7 @@ const Calibrator = (() => {
     const seek = () => {
       const list = aims(), fault = faultOf(list);
       forget();
-      if (fault) { find(".verdict").replaceChildren(make("p", {}, fault)); find(".verdict").classList.add("unmet"); charts.update(state.point, []); return; }
+      if (fault) { find(".verdict").replaceChildren(make("p", {}, ...fault)); find(".verdict").classList.add("unmet"); charts.update(state.point, []); return; }
       const broken = Box.domain(model, state.point, state.held).broken;
       if (broken.length) { find(".verdict").replaceChildren(make("p", {}, "What is held breaks " + broken.map(({ text }) => text).join(", ") + ".")); return; }
       state.found = Solve.solve(model, list, state.point, state.held);

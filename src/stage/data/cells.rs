@@ -22,8 +22,14 @@ pub(super) fn column(
     names: &mut HashSet<String>,
 ) -> Result<Column, StageError> {
     let (name, unit) = name_and_unit(head)?;
-    if name.is_empty() || !names.insert(name.to_owned()) {
-        return Err(StageError::new(format!("column `{head}`: every column needs a name of its own")));
+    if name.is_empty() {
+        let message = format!("column {} has no name: every column needs a name of its own", names.len() + 1);
+        let hint = "say `first_line = 3` if the names stand in the third line; of merged cells only the first has a text, so \
+                    write a name above every column";
+        return Err(StageError::new(message).hint(hint));
+    }
+    if !names.insert(name.to_owned()) {
+        return Err(StageError::new(format!("two columns are called `{name}`: every column needs a name of its own")));
     }
     let column =
         |unit: &str, values| Column { name: name.to_owned(), unit: unit.to_owned(), about: String::new(), values };
@@ -37,10 +43,10 @@ pub(super) fn column(
 }
 
 /// Signs in the place of a unit that say that there is none, as in `w/c [-]`.
-const DIMENSIONLESS: [&str; 3] = ["-", "–", "—"];
+pub(super) const DIMENSIONLESS: [&str; 3] = ["-", "–", "—"];
 
 /// `UCS [MPa]`, `UCS (MPa)`, `UCS/MPa` or `UCS`. A bracket or stroke that holds no unit, as in `kn/ks`, is part of the name.
-fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
+pub(super) fn name_and_unit(head: &str) -> Result<(&str, &str), StageError> {
     if let Some((name, unit)) = head.split_once('[') {
         let alone = unit.trim_end().strip_suffix(']').filter(|unit| !unit.contains(['[', ']']));
         let unit = alone.map(str::trim).ok_or_else(|| {
@@ -85,7 +91,7 @@ impl Cells<'_> {
     }
 
     /// The number of a cell, NaN for a missing one.
-    fn number(&self, cell: &str) -> Option<f64> {
+    pub(super) fn number(&self, cell: &str) -> Option<f64> {
         if self.is_missing(cell) {
             return Some(f64::NAN);
         }

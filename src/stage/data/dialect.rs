@@ -64,6 +64,25 @@ pub(super) struct Dialect {
     /// The sheet of a workbook.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sheet: Option<String>,
+    /// The line or row with the names of the columns, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_line: Option<usize>,
+}
+
+impl Dialect {
+    /// Refuses settings that have no effect on a file of this kind.
+    pub(super) fn check(&self, is_workbook: bool) -> Result<(), StageError> {
+        let of_texts = [("delimiter", self.delimiter.is_some()), ("encoding", self.encoding.is_some())];
+        let of_workbooks = [("sheet", self.sheet.is_some())];
+        let (idle, what) = if is_workbook { (&of_texts[..], "a workbook") } else { (&of_workbooks[..], "a text file") };
+        match idle.iter().find(|(_, given)| *given) {
+            Some((key, _)) => {
+                let error = StageError::new(format!("`{key}` has no effect on {what}"));
+                Err(error.hint(format!("leave out `{key}`")))
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 impl Delimiter {
@@ -219,6 +238,24 @@ pub(super) fn is_meant_as_number(text: &str) -> bool {
         || narrow.to_lowercase().starts_with("inf");
     starts
         && (narrow.parse::<f64>().is_ok() || hexadecimal.is_some_and(|digits| u64::from_str_radix(digits, 16).is_ok()))
+}
+
+/// A text whose first line that is not empty is this one, from 1; the lines keep their numbers.
+pub(super) fn from_line(text: &str, line: usize) -> Result<String, StageError> {
+    let mut lines = text.split_inclusive('\n').skip(line - 1).peekable();
+    if lines.peek().is_none() {
+        let message = format!("the file has no line {line}, in which `first_line` looks for the names");
+        return Err(StageError::new(message).hint("count the lines from 1"));
+    }
+    Ok("\n".repeat(line - 1) + &lines.collect::<String>())
+}
+
+/// The delimiter that a first line `sep=;` states, as Excel writes and reads it, and the lines below it.
+pub(super) fn stated(text: &str) -> Option<(Delimiter, &str)> {
+    let (first, rest) = text.trim_start_matches('\u{feff}').split_once('\n')?;
+    let sign = first.trim_end_matches('\r').strip_prefix("sep=")?;
+    let delimiter = Delimiter::ALL.into_iter().find(|delimiter| sign.as_bytes() == [delimiter.byte()])?;
+    Some((delimiter, rest))
 }
 
 /// The note on how a table was read; `None` for the default.

@@ -131,6 +131,52 @@ fn workbooks_are_read_by_sheet() {
     }
 }
 
+#[test]
+fn names_and_units_stand_where_the_laboratory_put_them() {
+    let german = b"sep=;\r\nPr\xfcfbericht 12;;\r\nProbe;UCS;nu\r\n;MPa;-\r\nA1;31,5;0,2\r\nA2;29,25;0,21\r\n";
+    let third = Dialect { first_line: Some(3), ..Dialect::default() };
+    let (table, said) = read(german, &third);
+    assert_eq!(table.shown("UCS").unwrap(), (vec![31.5, 29.25], "MPa"));
+    assert_eq!((table.rows(), table.column("nu").unwrap().unit.as_str()), (2, ""));
+    assert!(said.contains("windows-1252") && said.ends_with("detected: units in the row below the names"), "{said}");
+    let message = |bytes: &[u8], how: &Dialect| parse_as(bytes, how).unwrap_err().message;
+    let beyond = Dialect { first_line: Some(9), ..Dialect::default() };
+    assert_eq!(message(b"a\n1\n", &beyond), "the file has no line 9, in which `first_line` looks for the names");
+    let second = Dialect { first_line: Some(2), ..Dialect::default() };
+    assert_eq!(message(b"t,,\na,b\n1,2\n3\n", &second), "line 4 has 1 cell where the first line has 2");
+    assert_eq!(
+        message(b"a,,c\n1,2,3\n", &Dialect::default()),
+        "column 2 has no name: every column needs a name of its own"
+    );
+    let sheet = Dialect { sheet: Some("a".into()), ..Dialect::default() };
+    assert_eq!(message(b"a\n1\n", &sheet), "`sheet` has no effect on a text file");
+}
+
+#[test]
+fn numbers_that_a_sheet_holds_as_text_have_one_decimal_sign() {
+    let sheet = |cells: &[&str]| {
+        let cell = |n: usize, text: &str| {
+            format!(
+                "<row r=\"{n}\"><c r=\"A{n}\" t=\"inlineStr\"><is><t>{text}</t></is></c><c r=\"B{n}\"><v>1.5</v></c></row>"
+            )
+        };
+        let head = "<row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>y</t></is></c><c r=\"B1\" t=\"inlineStr\"><is><t>z</t></is></c></row>";
+        let rows: String = cells.iter().enumerate().map(|(i, text)| cell(i + 2, text)).collect();
+        workbook_of(&format!("{head}{rows}"), None)
+    };
+    let (table, said) = read(&sheet(&["12,5", "13"]), &Dialect::default());
+    assert_eq!((table.shown("y").unwrap().0, table.shown("z").unwrap().0), (vec![12.5, 13.0], vec![1.5, 1.5]));
+    assert_eq!(said, "detected: decimal commas in cells that hold text; the key `decimal` fixes it");
+    let message = |cells: &[&str], how: &Dialect| parse_as(&sheet(cells), how).unwrap_err().message;
+    assert!(message(&["12,5", "13.5"], &Dialect::default()).contains("decimal comma and `13.5` a decimal point"));
+    assert!(message(&["1,234"], &Dialect::default()).contains("no cell settles it"));
+    let comma = Dialect { decimal: Some(Decimal::Comma), ..Dialect::default() };
+    assert!(message(&["1.234"], &comma).contains("a text with a point"));
+    assert_eq!(read(&sheet(&["1,234"]), &comma).0.shown("y").unwrap().0, [1.234]);
+    let tab = Dialect { delimiter: Some(Delimiter::Tab), ..Dialect::default() };
+    assert_eq!(message(&["1"], &tab), "`delimiter` has no effect on a workbook");
+}
+
 /// An archive of these parts.
 fn archive_of(parts: &[(&str, &str)]) -> Vec<u8> {
     let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
@@ -197,23 +243,6 @@ fn a_cell_far_out_costs_no_memory() {
     assert!(parse(&workbook_of(&beyond, None)).unwrap_err().message.contains("has a cell in column"));
     let below = format!("{head}{line}<row r=\"4000000\">{}</row>", number("A4000000"));
     assert_eq!(parse(&workbook_of(&below, None)).unwrap().rows(), 2);
-}
-
-/// A program that writes workbooks need not compute formulas; the empty cell was taken for a missing value.
-#[test]
-fn what_only_looks_like_a_value_in_a_workbook_is_refused() {
-    let head = "<row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>y</t></is></c></row>";
-    let line = |cell: &str| format!("{head}<row r=\"2\"><c r=\"A2\">{cell}</c></row>");
-    let computed = parse(&workbook_of(&line("<f>1+2</f><v>3</v>"), None)).unwrap();
-    assert_eq!(computed.columns[0].values, Values::Reals(vec![3.0]));
-    let never = parse(&workbook_of(&line("<f>1+2</f>"), None)).unwrap_err();
-    assert_eq!(never.message, "sheet `a`, row 2: a formula has no value");
-    let row = |cell: &str| format!("{HEAD}<table:table-row>{cell}</table:table-row>");
-    let never = parse(&ods_of(&row(&ods_cell("table:formula=\"of:=1+2\"", "")))).unwrap_err();
-    assert_eq!(never.message, "a formula has no value");
-    let spans = "table:number-rows-spanned=\"2\" office:value-type=\"float\" office:value=\"1\"";
-    let merged = parse(&ods_of(&row(&ods_cell(spans, "<text:p>1</text:p>")))).unwrap_err();
-    assert!(merged.message.starts_with("cells are merged"), "{}", merged.message);
 }
 
 /// A workbook of LibreOffice with one sheet of these rows.
@@ -288,6 +317,41 @@ fn cells_of_libreoffice_are_read_as_they_stand() {
     let error = ods_cell("office:value-type=\"string\" calcext:value-type=\"error\"", "<text:p>#DIV/0!</text:p>");
     let fault = parse(&ods_of(&format!("{HEAD}<table:table-row>{error}</table:table-row>"))).unwrap_err();
     assert_eq!(fault.message, "sheet `a`, row 2: a cell holds the error #DIV/0!");
+}
+
+#[test]
+fn a_formula_that_was_never_computed_is_refused() {
+    let sheet = |cell: &str| {
+        let head = "<row r=\"1\"><c r=\"A1\" t=\"inlineStr\"><is><t>y</t></is></c></row>";
+        workbook_of(&format!("{head}<row r=\"2\"><c r=\"A2\">{cell}</c></row>"), None)
+    };
+    assert_eq!(parse(&sheet("<f>1+1</f><v>2</v>")).unwrap().shown("y").unwrap().0, [2.0]);
+    for never in ["<f>1+1</f>", "<f/>"] {
+        let fault = parse(&sheet(never)).unwrap_err();
+        assert_eq!(fault.message, "sheet `a`, row 2: a cell holds a formula that was never computed");
+    }
+}
+
+/// A cell that shows 7 % holds 0.07.
+#[test]
+fn shares_are_per_cent_where_their_column_is() {
+    let head = |text: &str| ods_cell("office:value-type=\"string\"", &format!("<text:p>{text}</text:p>"));
+    let share = ods_cell("office:value-type=\"percentage\" office:value=\"0.07\"", "<text:p>7 %</text:p>");
+    let number = ods_cell("office:value-type=\"float\" office:value=\"7\"", "<text:p>7</text:p>");
+    let row = |cells: &[&String]| {
+        let cells: String = cells.iter().map(|cell| cell.as_str()).collect();
+        format!("<table:table-row>{cells}</table:table-row>")
+    };
+    let read = |heads: [&str; 3], units: &str| {
+        let [a, b, c] = heads.map(head);
+        let rows = [row(&[&a, &b, &c]), units.to_owned(), row(&[&share, &share, &number])].concat();
+        let table = parse(&ods_of(&rows)).unwrap();
+        ["x", "y", "z"].map(|name| table.column(name).unwrap().clone().values)
+    };
+    let wanted = [7.0, 0.07, 7.0].map(|value| Values::Reals(vec![value]));
+    assert_eq!(read(["x [%]", "y", "z [%]"], ""), wanted);
+    let units = row(&[&head("%"), &head("-"), &head("%")]);
+    assert_eq!(read(["x", "y", "z"], &units), wanted, "with the units in the row below the names");
 }
 
 /// Files that unpack to more than there is memory, announce more than they hold, or end too early.

@@ -2,15 +2,17 @@
 
 mod archive;
 mod ods;
+mod remarks;
 mod xls;
 
 use super::super::StageError;
 use super::super::sheet::Sheet;
+use super::dialect::{self, Decimal, Dialect};
 use archive::{Archive, broken};
-use calamine::{Data, Dimensions, Reader, Sheets, open_workbook_auto_from_rs};
+use calamine::{Data, Dimensions, ExcelDateTime, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
 /// Whether these are the first bytes of a workbook: a zip archive, or the container of old Office files.
@@ -18,39 +20,68 @@ pub(super) fn is_workbook(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1")
 }
 
-/// The cells of a sheet, the first row with the heads; rows without any cell are left out.
-pub(super) fn sheet(bytes: &[u8], sheet: Option<&str>) -> Result<Sheet, StageError> {
-    let mut lines = lines(bytes, sheet)?.into_iter();
-    let heads: Vec<String> = lines.next().unwrap_or_default().iter().map(|head| head.trim().to_owned()).collect();
-    let mut columns = vec![Vec::new(); heads.len()];
+/// A sheet as a table of text.
+pub(super) struct Book {
+    /// The first row with the heads; rows without any cell are left out.
+    pub sheet: Sheet,
+    /// What was detected.
+    pub said: Option<String>,
+    /// Column and row of the cells that are shown in per cent and hold a share.
+    pub shares: Vec<(usize, usize)>,
+}
+
+/// The cells of a sheet.
+pub(super) fn sheet(bytes: &[u8], how: &Dialect) -> Result<Book, StageError> {
+    let mut cells = cells(bytes, how.sheet.as_deref())?;
+    let first = how.first_line.unwrap_or(1) as u32 - 1;
+    cells.rows.retain(|row, _| *row >= first);
+    cells.check_merged()?;
+    let detected = cells.settle_decimals(how.decimal)?;
+    let said =
+        detected.then(|| "detected: decimal commas in cells that hold text; the key `decimal` fixes it".to_owned());
+    let mut lines = cells.lines().into_iter();
+    let heads: Vec<String> = lines.next().unwrap_or_default().iter().map(|head| head.text.trim().to_owned()).collect();
+    let (mut columns, mut shares) = (vec![Vec::new(); heads.len()], Vec::new());
     for (row, line) in lines.enumerate() {
         if row == MOST_RUNS {
             return Err(StageError::new(format!("the table has more than {MOST_RUNS} rows")).hint("name a part of it"));
         }
-        for (column, cell) in columns.iter_mut().zip(line) {
-            column.push(cell);
+        for (index, (column, cell)) in columns.iter_mut().zip(line).enumerate() {
+            column.push(cell.text);
+            if cell.is_share {
+                shares.push((index, row));
+            }
         }
     }
-    Ok(Sheet { heads, columns })
+    Ok(Book { sheet: Sheet { heads, columns }, said, shares })
 }
 
-/// The lines of a sheet, all of one length.
-fn lines(bytes: &[u8], sheet: Option<&str>) -> Result<Vec<Vec<String>>, StageError> {
+/// The cells of a sheet.
+fn cells(bytes: &[u8], sheet: Option<&str>) -> Result<Cells, StageError> {
     let mut archive = bytes.starts_with(b"PK").then(|| Archive::open(bytes)).transpose()?;
     let mut cells = Cells::default();
     let open = archive.as_mut().map(ods::is_ods).transpose()?.unwrap_or(false);
     if let Some(archive) = archive.as_mut().filter(|_| open) {
         let name = chosen(&ods::names(archive)?, sheet)?;
-        ods::cells(archive, &name, |row, column, text| cells.take(&name, row, column, text.clone()))?;
+        ods::cells(archive, &name, |row, column, value| cells.take(&name, row, column, value.clone()))?;
     } else {
         // Old formats are full of counts and offsets, and a damaged file may send their reader beyond its end.
         let read = std::panic::AssertUnwindSafe(|| {
             let judged = if archive.is_some() { Cow::Borrowed(bytes) } else { Cow::Owned(xls::judged(bytes)?) };
             read_cells(&judged, sheet, &mut cells)
         });
-        std::panic::catch_unwind(read).unwrap_or_else(|_| Err(broken("it is damaged")))?;
+        let name = std::panic::catch_unwind(read).unwrap_or_else(|_| Err(broken("it is damaged")))?;
+        if let Some(archive) = &mut archive {
+            let remarks = remarks::remarks(archive, &name)?;
+            if let Some((row, _)) = remarks.uncomputed {
+                let message =
+                    format!("sheet `{name}`, row {}: a cell holds a formula that was never computed", row + 1);
+                return Err(StageError::new(message).hint("open the workbook in a spreadsheet program and save it"));
+            }
+            cells.mark(&remarks.shares);
+        }
     }
-    Ok(cells.lines())
+    Ok(cells)
 }
 
 /// The sheet of this name, or the only one.
@@ -65,8 +96,8 @@ fn chosen(names: &[String], sheet: Option<&str>) -> Result<String, StageError> {
     Err(StageError::new(message).hint(format!("`sheet` is one of: {}", names.join(", "))))
 }
 
-/// Reads the cells of a workbook of Excel.
-fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<(), StageError> {
+/// Reads the cells of a workbook of Excel; returns the name of their sheet.
+fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<String, StageError> {
     let mut book = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(broken)?;
     let name = chosen(&book.sheet_names(), sheet)?;
     // Cell by cell where the format allows it: the size of a sheet is the position of its last cell, so one cell far away
@@ -74,37 +105,32 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<()
     match &mut book {
         Sheets::Xlsx(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
-            while let Some(cell) = reader.next_cell_with_formula().map_err(broken)? {
-                let ((row, column), value) = (cell.pos, Data::from(cell.value));
-                if value == Data::Empty && cell.formula.is_some() {
-                    return Err(not_computed(&in_row(&name, row)));
-                }
-                cells.take(&name, row, column, text(&value))?;
+            while let Some(cell) = reader.next_cell().map_err(broken)? {
+                let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
+                cells.take(&name, row, column, read(&value))?;
             }
             drop(reader);
-            cells.check_merged(&name, &book.merge_cells_by_sheet_name(&name).map_err(broken)?)?;
+            cells.merged = book.merge_cells_by_sheet_name(&name).map_err(broken)?;
         }
         Sheets::Xlsb(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
             while let Some(cell) = reader.next_cell().map_err(broken)? {
                 let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
-                cells.take(&name, row, column, text(&value))?;
+                cells.take(&name, row, column, read(&value))?;
             }
         }
         Sheets::Xls(_) | Sheets::Ods(_) => {
-            let merged = match &book {
-                Sheets::Xls(book) => book.merge_cells_by_sheet_name(&name).map_err(broken)?,
-                Sheets::Xlsx(_) | Sheets::Xlsb(_) | Sheets::Ods(_) => Vec::new(),
-            };
+            if let Sheets::Xls(book) = &book {
+                cells.merged = book.merge_cells_by_sheet_name(&name).map_err(broken)?;
+            }
             let range = book.worksheet_range(&name).map_err(broken)?;
             let (row, column) = range.start().unwrap_or_default();
             for (i, j, cell) in range.used_cells() {
-                cells.take(&name, row + i as u32, column + j as u32, text(cell))?;
+                cells.take(&name, row + i as u32, column + j as u32, read(cell))?;
             }
-            cells.check_merged(&name, &merged)?;
         }
     }
-    Ok(())
+    Ok(name)
 }
 
 /// Most columns of a sheet.
@@ -113,29 +139,86 @@ const MOST_COLUMNS: u32 = 1 << 14;
 /// Most cells of the lines of a sheet, the empty ones between others included.
 const MOST_CELLS: usize = 1 << 24;
 
+/// A cell as it is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Cell {
+    text: String,
+    /// Whether it holds text, not a number, a date or a truth value.
+    is_word: bool,
+    /// Whether it is shown in per cent.
+    is_share: bool,
+}
+
+impl Cell {
+    fn word(text: String) -> Self {
+        Self { text, is_word: true, is_share: false }
+    }
+
+    fn value(text: impl ToString) -> Self {
+        Self { text: text.to_string(), ..Self::default() }
+    }
+}
+
 /// The cells of a sheet that are not empty, by row and column.
 #[derive(Default)]
 struct Cells {
-    rows: BTreeMap<u32, Vec<(u32, String)>>,
+    rows: BTreeMap<u32, Vec<(u32, Cell)>>,
     /// The first column that is used, and the last.
     columns: Option<[u32; 2]>,
+    /// The merged cells of a workbook of Excel.
+    merged: Vec<Dimensions>,
 }
 
 impl Cells {
     /// Takes a cell of a sheet, or the error that it holds.
-    fn take(&mut self, sheet: &str, row: u32, column: u32, text: Result<String, String>) -> Result<(), StageError> {
-        self.add(row, column, text.map_err(|error| at(sheet, row as usize + 1, &error))?)
+    fn take(&mut self, sheet: &str, row: u32, column: u32, cell: Result<Cell, String>) -> Result<(), StageError> {
+        self.add(row, column, cell.map_err(|error| at(sheet, row as usize + 1, &error))?)
     }
 
-    fn add(&mut self, row: u32, column: u32, text: String) -> Result<(), StageError> {
-        if text.is_empty() {
+    /// Marks the numbers that are shown in per cent, by row and column.
+    fn mark(&mut self, shares: &BTreeSet<(u32, u32)>) {
+        if shares.is_empty() {
+            return;
+        }
+        for (row, cells) in &mut self.rows {
+            for (column, cell) in cells.iter_mut().filter(|(_, cell)| !cell.is_word) {
+                cell.is_share = shares.contains(&(*row, *column));
+            }
+        }
+    }
+
+    /// Writes numbers that stand as text with decimal commas as numbers are written; returns whether that was detected.
+    ///
+    /// # Errors
+    /// The texts do not tell which sign stands before decimals, or one has another sign than the setting.
+    fn settle_decimals(&mut self, fixed: Option<Decimal>) -> Result<bool, StageError> {
+        let words = self.rows.values().flatten().filter(|(_, cell)| cell.is_word).map(|(_, cell)| cell.text.as_str());
+        let decimal = fixed.map_or_else(|| dialect::decimal(words.clone()), Ok)?;
+        if decimal == Decimal::Point {
+            return Ok(false);
+        }
+        if let Some(other) = words.clone().find(|word| word.contains('.') && dialect::is_number(word)) {
+            let message = format!("`{other}` is a text with a point in a sheet whose texts have decimal commas");
+            return Err(StageError::new(message).hint("turn the texts of the sheet into numbers"));
+        }
+        for (_, cell) in self.rows.values_mut().flatten().filter(|(_, cell)| cell.is_word) {
+            let number = cell.text.replacen(',', ".", 1);
+            if dialect::is_number(&number.replacen('−', "-", 1)) {
+                cell.text = number;
+            }
+        }
+        Ok(fixed.is_none())
+    }
+
+    fn add(&mut self, row: u32, column: u32, cell: Cell) -> Result<(), StageError> {
+        if cell.text.is_empty() {
             return Ok(());
         }
         if column >= MOST_COLUMNS {
             let message = format!("the sheet has a cell in column {}", u64::from(column) + 1);
             return Err(StageError::new(message).hint(format!("at most {MOST_COLUMNS} columns are read")));
         }
-        self.rows.entry(row).or_default().push((column, text));
+        self.rows.entry(row).or_default().push((column, cell));
         let [first, last] = self.columns.unwrap_or([column; 2]);
         let (first, last) = (first.min(column), last.max(column));
         self.columns = Some([first, last]);
@@ -149,43 +232,29 @@ impl Cells {
     }
 
     /// Refuses merged cells, of which only the first holds the value that people see in all of them.
-    fn check_merged(&self, sheet: &str, merged: &[Dimensions]) -> Result<(), StageError> {
+    fn check_merged(&self) -> Result<(), StageError> {
         let filled = |(row, column): (u32, u32)| {
             self.rows.get(&row).is_some_and(|cells| cells.iter().any(|(own, _)| *own == column))
         };
-        match merged.iter().find(|cells| cells.start != cells.end && filled(cells.start)) {
-            Some(cells) => Err(is_merged(&in_row(sheet, cells.start.0))),
-            None => Ok(()),
-        }
+        let Some(cells) = self.merged.iter().find(|cells| cells.start != cells.end && filled(cells.start)) else {
+            return Ok(());
+        };
+        let row = u64::from(cells.start.0) + 1;
+        let message = format!("row {row}: cells are merged, and only the first of them holds the value");
+        Err(StageError::new(message).hint("split them, and write the value into each cell that it is for"))
     }
 
     /// The lines, all of one length, from the first column that is used to the last.
-    fn lines(self) -> Vec<Vec<String>> {
+    fn lines(self) -> Vec<Vec<Cell>> {
         let Some([first, last]) = self.columns else { return Vec::new() };
         let width = (last - first) as usize + 1;
-        let line = |cells: Vec<(u32, String)>| {
-            let mut line = vec![String::new(); width];
-            cells.into_iter().for_each(|(column, text)| line[(column - first) as usize] = text);
+        let line = |cells: Vec<(u32, Cell)>| {
+            let mut line = vec![Cell::default(); width];
+            cells.into_iter().for_each(|(column, cell)| line[(column - first) as usize] = cell);
             line
         };
         self.rows.into_values().map(line).collect()
     }
-}
-
-/// Merged cells; `place` says where, with a colon, if that is known.
-fn is_merged(place: &str) -> StageError {
-    StageError::new(format!("{place}cells are merged, and only the first of them holds the value"))
-        .hint("split them, and write the value into each cell that it is for")
-}
-
-/// A formula that was never computed.
-fn not_computed(place: &str) -> StageError {
-    StageError::new(format!("{place}a formula has no value"))
-        .hint("the program that wrote the workbook did not compute it: open it in a spreadsheet and save it")
-}
-
-fn in_row(sheet: &str, row: u32) -> String {
-    format!("sheet `{sheet}`, row {}: ", u64::from(row) + 1)
 }
 
 fn at(sheet: &str, row: usize, error: &str) -> StageError {
@@ -193,50 +262,64 @@ fn at(sheet: &str, row: usize, error: &str) -> StageError {
         .hint("mend the formula in the workbook, or empty the cell")
 }
 
-/// A cell as text: numbers with all digits, dates as year-month-day, durations as hours:minutes:seconds.
-fn text(cell: &Data) -> Result<String, String> {
+/// A cell: numbers with all digits, dates as year-month-day, times as hours, minutes and seconds.
+fn read(cell: &Data) -> Result<Cell, String> {
     Ok(match cell {
-        Data::Empty => String::new(),
-        Data::Float(value) => value.to_string(),
-        Data::Int(value) => value.to_string(),
-        Data::Bool(value) => value.to_string(),
-        // As a number of days it would be taken for a value: spreadsheets make a date of 1-3.
-        Data::DateTime(time) if time.is_duration() => {
-            let seconds = (time.as_f64() * 86_400.0).round();
-            format!("{:02}:{:02}:{:02}", (seconds / 3600.0).floor(), (seconds / 60.0).floor() % 60.0, seconds % 60.0)
-        }
-        Data::DateTime(time) => match time.to_ymd_hms_milli() {
-            (year, month, day, 0, 0, 0, 0) => format!("{year}-{month:02}-{day:02}"),
-            (year, month, day, hour, minute, second, _) => {
-                format!("{year}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}")
-            }
-        },
+        Data::Empty => Cell::value(""),
+        Data::Float(value) => Cell::value(value),
+        Data::Int(value) => Cell::value(value),
+        Data::Bool(value) => Cell::value(value),
+        Data::DateTime(moment) => Cell::value(in_words(*moment)),
         Data::Error(error) => return Err(error.to_string()),
-        other => other.to_string().trim().to_owned(),
+        other => Cell::word(other.to_string().trim().to_owned()),
     })
+}
+
+/// A date, a time of day or a duration of Excel, which are all stored as a number of days.
+fn in_words(moment: ExcelDateTime) -> String {
+    let days = moment.as_f64();
+    if moment.is_duration() || days.abs() < 1.0 {
+        return clock(days * 86_400.0);
+    }
+    let (year, month, day, hour, minute, second, _) = moment.to_ymd_hms_milli();
+    let date = format!("{year:04}-{month:02}-{day:02}");
+    match (hour, minute, second) {
+        (0, 0, 0) => date,
+        _ => format!("{date}T{hour:02}:{minute:02}:{second:02}"),
+    }
+}
+
+/// Seconds as `36:05:00`.
+fn clock(seconds: f64) -> String {
+    let sign = if seconds < 0.0 { "-" } else { "" };
+    let all = seconds.abs().round() as u64;
+    format!("{sign}{}:{:02}:{:02}", all / 3600, all / 60 % 60, all % 60)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use calamine::{ExcelDateTime, ExcelDateTimeType};
+    use calamine::ExcelDateTimeType;
 
-    /// A spreadsheet makes a date of `1-3`; as a number of days it was taken for a value.
     #[test]
-    fn dates_and_durations_are_words() {
-        let cell = |value, kind| text(&Data::DateTime(ExcelDateTime::new(value, kind, false))).unwrap();
-        assert_eq!(cell(43831.0, ExcelDateTimeType::DateTime), "2020-01-01");
-        assert_eq!(cell(45943.5, ExcelDateTimeType::DateTime), "2025-10-13 12:00:00");
-        assert_eq!(cell(1.5, ExcelDateTimeType::TimeDelta), "36:00:00");
+    fn dates_and_times_of_excel_are_no_numbers() {
+        let date = |days| in_words(ExcelDateTime::new(days, ExcelDateTimeType::DateTime, false));
+        // The serial numbers that Excel documents: 1 is 1 January 1900, 45943 is 13 October 2025.
+        assert_eq!([date(45943.0), date(45943.541)], ["2025-10-13", "2025-10-13T12:59:02"]);
+        assert_eq!([date(0.5), date(0.75 + 1.0 / 86_400.0)], ["12:00:00", "18:00:01"]);
+        assert_eq!(in_words(ExcelDateTime::new(1.5, ExcelDateTimeType::TimeDelta, false)), "36:00:00");
+        assert_eq!(clock(-90.0), "-0:01:30");
     }
 
     #[test]
     fn merged_cells_are_refused_where_they_hold_a_value() {
-        let mut cells = Cells::default();
-        cells.add(1, 0, "1".to_owned()).unwrap();
-        let merged = |start, end| cells.check_merged("a", &[Dimensions { start, end }]);
+        let merged = |start, end| {
+            let mut cells = Cells { merged: vec![Dimensions { start, end }], ..Cells::default() };
+            cells.add(1, 0, Cell::value("1")).unwrap();
+            cells.check_merged()
+        };
         let error = merged((1, 0), (2, 0)).unwrap_err();
-        assert_eq!(error.message, "sheet `a`, row 2: cells are merged, and only the first of them holds the value");
+        assert_eq!(error.message, "row 2: cells are merged, and only the first of them holds the value");
         assert_eq!(merged((1, 0), (1, 0)), Ok(()));
         assert_eq!(merged((5, 5), (9, 9)), Ok(()), "only their frame is merged");
     }

@@ -249,6 +249,15 @@ impl Needs {
     pub(super) fn is_plot(&self) -> bool {
         self.keys.iter().any(|keys| !keys.is_empty())
     }
+
+    /// Whether it draws results of analyses, whose responses are made from runs that may have been left out.
+    pub(super) fn of_analyses(&self) -> bool {
+        const OTHERS: [Of; 5] = [Of::RUN, Of::SPECIMEN, Of::SHAPES, Of::DESIGN, Of::RESULTS];
+        match self.from {
+            Accepts::Only(kinds) => kinds.iter().any(|kind| !OTHERS.contains(kind)),
+            Accepts::All | Accepts::Tables => self.is_plot(),
+        }
+    }
 }
 
 const MANY: usize = usize::MAX;

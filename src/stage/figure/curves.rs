@@ -1,11 +1,13 @@
 //! The runs whose curves are drawn together: single runs, or every row of a simulator's results.
 
+use super::super::invalid::sentence;
 use super::super::rows::DesignRows;
 use super::super::{Input, Known, Source, StageError};
 use super::{Figure, Params};
 use crate::artifact::results::Results;
 use crate::artifact::validity::of_runs;
 use crate::artifact::{Artifact, ArtifactKind, Values};
+use figure::text::plain_text;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -15,7 +17,7 @@ pub(super) struct Runs {
     pub inputs: Vec<(Cow<'static, str>, Source)>,
     /// Number and name of the group, input by input; empty without groups.
     pub groups: Vec<(usize, String)>,
-    /// Statements on runs that gave no result or are not valid.
+    /// Sentences, as labels, on runs that gave no result or are not valid.
     pub notes: Vec<String>,
 }
 
@@ -33,7 +35,7 @@ pub(super) fn runs(figure: &Figure, known: &Known) -> Result<Runs, StageError> {
         let stage = figure.names.get(input.stage).cloned().unwrap_or_else(|| input.stage.replace('_', " "));
         if artifact.is(ArtifactKind::RUN) {
             let (drawn, said) = figure.choice().of_run(&artifact, &stage)?;
-            found.notes.extend(said);
+            found.notes.extend(said.map(|said| sentence("", &plain_text(&said))));
             if !drawn {
                 continue;
             }
@@ -46,7 +48,7 @@ pub(super) fn runs(figure: &Figure, known: &Known) -> Result<Runs, StageError> {
         add_rows(figure, known, input, &artifact, (&stage, several), (&mut found, &mut keys))?;
     }
     if found.inputs.is_empty() {
-        let message = format!("no run is left to draw: {}", found.notes.join("; "));
+        let message = format!("no run is left to draw. {}", found.notes.join(" "));
         return Err(StageError::new(message).hint("invalid = \"keep\" draws runs that are not valid"));
     }
     if found.inputs.len() > MOST {
@@ -75,8 +77,8 @@ fn add_rows(
     let rows = DesignRows::of(artifact, known.context)?;
     let table = Results::table(artifact)?;
     let judged = figure.choice().judge(table)?;
-    let whose = if several { format!("{stage}: ") } else { String::new() };
-    found.notes.extend(of_runs(table, judged.verdict()).into_iter().map(|said| format!("{whose}{said}")));
+    let about = if several { stage } else { "" };
+    found.notes.extend(of_runs(table, judged.verdict()).iter().map(|said| sentence(about, &plain_text(said))));
     let failures = Results::failures(table);
     let failed = |row: usize| failures.get(row).is_some_and(|why| !why.is_empty()) || judged.leaves_out(row);
     let label = |row: usize| match &figure.by {

@@ -6,8 +6,9 @@ use super::source::Sources;
 use super::{Params, Show};
 use crate::artifact::results::Results;
 use crate::stage::StageError;
+use figure::text::plain_text;
 
-/// Sentences on rows without a number, values that a logarithmic axis cannot show, and groups without the requested line.
+/// Sentences, as labels, on rows without a number, values that a logarithmic axis cannot show, and groups without the requested line.
 /// Other footnotes state runs without a result and runs that are not valid.
 pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String>, StageError> {
     let [keys, _] = params.show.needs().keys;
@@ -23,7 +24,7 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
     let (whole, lost): (Vec<usize>, Vec<usize>) = all.iter().copied().partition(numbers);
     let mut found = Vec::new();
     if !lost.is_empty() {
-        let names: Vec<String> = columns.iter().map(|column| format!("`{}`", column.quantity.id())).collect();
+        let names: Vec<String> = columns.iter().map(|column| column.quantity.sign()).collect();
         let have = if lost.len() == 1 { "has" } else { "have" };
         let (lost, all) = (lost.len(), all.len());
         found.push(format!("{lost} of {all} rows {have} no number in {}", names.join(" or ")));
@@ -33,9 +34,8 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
         let off = whole.iter().filter(|at| column.values[**at] <= 0.0).count();
         if drawn.plot.log.contains(&direction) && off > 0 {
             let (is, all) = (if off == 1 { "is" } else { "are" }, whole.len());
-            let name = column.quantity.id();
-            found
-                .push(format!("{off} of {all} values of `{name}` {is} not above zero and not on the logarithmic axis"));
+            let name = column.quantity.sign();
+            found.push(format!("{off} of {all} values of {name} {is} not above zero and not on the logarithmic axis"));
         }
     }
     if let (Show::Xy, [x, y]) = (params.show, &columns[..]) {
@@ -58,7 +58,7 @@ fn lines(drawn: &Drawn, x: &Shown, y: &Shown, rows: &[usize]) -> Result<Vec<Stri
             continue;
         }
         let whose = match (key, &by) {
-            (Some(key), Some(by)) => format!(" of {} = {}", by.quantity.id(), by.text(key)),
+            (Some(key), Some(by)) => format!(" of {} = {}", by.quantity.sign(), plain_text(&by.text(key))),
             _ => String::new(),
         };
         found.push(format!("the {} points{whose} support no line: too few, or all at one place", x.len()));

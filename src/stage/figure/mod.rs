@@ -128,9 +128,12 @@ struct Params {
     /// What to do with runs that are not valid.
     #[serde(default, skip_serializing_if = "Invalid::is_default")]
     invalid: Invalid,
-    /// Statements on the runs whose curves are drawn.
+    /// Sentences on the runs whose curves are drawn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
+    /// Symbols of the responses that sentences below the picture may name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    symbols: BTreeMap<String, String>,
 }
 
 impl Stage for Figure {
@@ -223,6 +226,7 @@ impl Stage for Figure {
             labels,
             groups: runs.groups,
             notes: runs.notes,
+            symbols: if self.show.needs().of_analyses() { symbols(known.context) } else { BTreeMap::new() },
             invalid: if self.show == Show::Dag { Invalid::default() } else { self.choice() },
             show: self.show,
             width: self.width.millimetres(),
@@ -253,6 +257,11 @@ impl Stage for Figure {
         }
         Ok(Step::Finish(task))
     }
+}
+
+/// Symbols of the responses.
+fn symbols(context: &Context) -> BTreeMap<String, String> {
+    context.symbols().into_iter().filter(|(name, _)| context.responses.contains_key(name)).collect()
 }
 
 impl Figure {
@@ -371,8 +380,9 @@ impl Kind for Figure {
     /// axes stay on the page; lines of a contour are labelled in the words of its bar. 13: names
     /// in what is stated below the picture keep their letters. 14: pictures in space name their axes as specimens do: the
     /// load acts along y. 15: cylinders and thick discs in space have a round frame; cells of a matrix say where they are.
-    /// 16: the scatter of a single run in a verification is unknown, not zero.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 16, run: draw }];
+    /// 16: the scatter of a single run in a verification is unknown, not zero. 17: titles, descriptions and the sentences
+    /// below a picture use the declared symbols.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 17, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

@@ -15,6 +15,7 @@ use figure::effect_plot::{Coordinates, Effect, EffectPlot};
 use figure::marks::Band;
 use figure::residuals::Residuals;
 use figure::surface::Surface;
+use figure::text;
 use figure::xy::{self, Xy};
 use math::distribution::normal_quantile;
 use math::elementary::ln;
@@ -367,7 +368,11 @@ fn term_label(term: &str, params: &Params) -> String {
         let (key, power) = part.split_once('^').unwrap_or((part, ""));
         let label = params.factors.iter().find(|l| l.key == key.trim());
         let sign = label.map_or_else(|| key.to_owned(), |l| l.quantity().sign());
-        if power.is_empty() { sign } else { format!("{sign}$^{{{power}}}$") }
+        match label.is_some_and(|l| text::is_compound(&l.symbol)) {
+            _ if power.is_empty() => sign,
+            true => format!("({sign})$^{{{power}}}$"),
+            false => format!("{sign}$^{{{power}}}$"),
+        }
     };
     term.split('*').map(part).collect::<Vec<_>>().join(" · ")
 }
@@ -393,7 +398,7 @@ fn shares(params: &Params, source: Source) -> Result<RankedBars, StageError> {
     }
     let sign = response.quantity().sign();
     let name = format!("Share of the sum of squares of {sign},");
-    let title = format!("Contributions to {}", response.key);
+    let title = format!("Contributions to {}", response.quantity().words());
     Ok(RankedBars { title, quantity: Quantity::new(&name, r"\eta^2", "%"), bars, references: Vec::new() })
 }
 
@@ -418,7 +423,7 @@ pub(super) fn pareto(params: &Params, sources: &Sources) -> Result<RankedBars, S
         response.quantity().worded("Absolute effect on")
     };
     Ok(RankedBars {
-        title: format!("Effects on {}", response.key),
+        title: format!("Effects on {}", response.quantity().words()),
         quantity,
         bars: (0..found.values.len()).map(bar).collect(),
         references: found.margin.into_iter().chain(simultaneous).collect(),

@@ -1,12 +1,13 @@
 //! The treatment of runs that are not valid in a figure, and the footnote on them.
 
 use super::super::StageError;
-use super::super::invalid::{Invalid, sentence};
+use super::super::invalid::{Invalid, responses_of, sentence};
 use super::source::Sources;
 use super::{Figure, Params, Show, lost};
 use crate::artifact::results::Results;
-use crate::artifact::validity::{Verdict, faults, of_runs};
+use crate::artifact::validity::{Statement, Verdict, faults, of_runs};
 use crate::artifact::{Artifact, ArtifactKind};
+use figure::text::plain_text;
 
 impl Figure {
     /// The default: a figure of a table of runs treats them as statistics do, a figure of one run draws it.
@@ -15,7 +16,7 @@ impl Figure {
     }
 }
 
-/// The sentences below the picture.
+/// The sentences below the picture, as labels.
 ///
 /// # Errors
 /// A run is not valid and refused.
@@ -24,13 +25,15 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
     // For curves the setting was applied when the runs were chosen.
     let all = sources.of.iter().chain(&sources.compare).filter(|_| params.show != Show::Curves);
     for (index, source) in all.enumerate() {
-        let whose = params.series.get(index).map_or_else(String::new, |name| format!("{name}: "));
-        let said = of_source(params, source.0)?;
-        found.extend(said.into_iter().map(|said| format!("{whose}{said}")));
+        for said in of_source(params, source.0)? {
+            let names = [params.series.get(index).cloned().unwrap_or_default(), responses_of(&said, &params.symbols)];
+            let about: Vec<&str> = names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+            found.push(sentence(&about.join(": "), &plain_text(&said.words)));
+        }
     }
-    found.extend(lost::sentences(params, sources)?);
+    found.extend(lost::sentences(params, sources)?.iter().map(|said| sentence("", said)));
     let mut sentences: Vec<String> = Vec::new();
-    for said in found.into_iter().map(|said| sentence(&said)) {
+    for said in found {
         if !sentences.contains(&said) {
             sentences.push(said);
         }
@@ -38,12 +41,12 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
     Ok(sentences)
 }
 
-fn of_source(params: &Params, artifact: &Artifact) -> Result<Vec<String>, StageError> {
+fn of_source(params: &Params, artifact: &Artifact) -> Result<Vec<Statement>, StageError> {
     if artifact.is(ArtifactKind::RESULTS) {
         let runs = Results::table(artifact)?;
         let judged = params.invalid.judge(runs)?;
         let verdict = if params.show.needs().runs { judged.verdict() } else { Verdict::NotValid };
-        return Ok(of_runs(runs, verdict));
+        return Ok(of_runs(runs, verdict).into_iter().map(Statement::from).collect());
     }
     if artifact.is(ArtifactKind::RUN) && params.invalid == Invalid::Refuse {
         params.invalid.of_run(artifact, "the run")?;

@@ -2,7 +2,7 @@
 
 use super::{Params, chosen, chosen_rows, find, named};
 use crate::artifact::results::Results;
-use crate::artifact::validity::{faults, of_runs};
+use crate::artifact::validity::{Statement, faults, of_runs};
 use crate::artifact::{Artifact, ArtifactKind};
 use crate::stage::StageError;
 use crate::stage::invalid::Invalid;
@@ -15,12 +15,12 @@ const MARK: &str = "validity";
 ///
 /// # Errors
 /// There is no such table or column, or a run is refused because it is not valid.
-pub(super) fn printed(artifact: &Artifact, params: &Params) -> Result<(Vec<Column>, Vec<String>), StageError> {
+pub(super) fn printed(artifact: &Artifact, params: &Params) -> Result<(Vec<Column>, Vec<Statement>), StageError> {
     let table = find(artifact, params.table.as_deref())?;
     if artifact.is(ArtifactKind::RUN) {
         let (shown, said) = params.invalid.of_run(artifact, "the run")?;
         let columns = if shown { chosen(table, params, &|_| true)? } else { Vec::new() };
-        return Ok((columns, said.into_iter().collect()));
+        return Ok((columns, said.into_iter().map(Statement::from).collect()));
     }
     let runs = Results::table(artifact).ok().filter(|runs| std::ptr::eq(*runs, table));
     let Some(runs) = runs.filter(|_| artifact.is(ArtifactKind::RESULTS)) else {
@@ -33,5 +33,5 @@ pub(super) fn printed(artifact: &Artifact, params: &Params) -> Result<(Vec<Colum
     if marked && columns.iter().all(|column| column.key != MARK) {
         columns.extend(named(table, &[MARK.to_owned()], params, &chosen_rows(table, params, &|_| true)?)?);
     }
-    Ok((columns, said))
+    Ok((columns, said.into_iter().map(Statement::from).collect()))
 }

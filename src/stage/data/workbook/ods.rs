@@ -8,7 +8,7 @@
 
 use super::super::super::StageError;
 use super::archive::{Archive, attribute, broken};
-use super::{is_merged, not_computed};
+use super::{Cell, clock};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::io::{BufRead, Read};
@@ -27,8 +27,8 @@ pub(super) fn is_ods(archive: &mut Archive) -> Result<bool, StageError> {
     Ok(read.is_ok() && head.starts_with("application/vnd.oasis.opendocument.spreadsheet"))
 }
 
-/// What is read of a cell: its text, or the error that its formula came to.
-type Text = Result<String, String>;
+/// What is read of a cell, or the error that its formula came to.
+type Value = Result<Cell, String>;
 
 /// The names of the sheets, in their order.
 ///
@@ -50,18 +50,18 @@ pub(super) fn names(archive: &mut Archive) -> Result<Vec<String>, StageError> {
 pub(super) fn cells(
     archive: &mut Archive,
     sheet: &str,
-    mut add: impl FnMut(u32, u32, &Text) -> Result<(), StageError>,
+    mut add: impl FnMut(u32, u32, &Value) -> Result<(), StageError>,
 ) -> Result<(), StageError> {
     let mut walk = Walk::open(archive)?;
     while walk.next_sheet()?.is_some_and(|name| name != sheet) {}
     let mut row = 0_u32;
     while let Some(repeats) = walk.next_row()? {
         let cells = walk.row()?;
-        let filled = cells.iter().any(|(_, _, text)| !is_empty(text));
+        let filled = cells.iter().any(|(_, _, value)| !is_empty(value));
         for copy in 0..if filled { repeats } else { 0 } {
-            for (column, repeats, text) in cells.iter().filter(|(_, _, text)| !is_empty(text)) {
+            for (column, repeats, value) in cells.iter().filter(|(_, _, value)| !is_empty(value)) {
                 for along in 0..*repeats {
-                    add(row.saturating_add(copy), column.saturating_add(along), text)?;
+                    add(row.saturating_add(copy), column.saturating_add(along), value)?;
                 }
             }
         }
@@ -70,8 +70,8 @@ pub(super) fn cells(
     Ok(())
 }
 
-fn is_empty(text: &Text) -> bool {
-    text.as_ref().is_ok_and(|text| text.trim().is_empty())
+fn is_empty(value: &Value) -> bool {
+    value.as_ref().is_ok_and(|cell| cell.text.trim().is_empty())
 }
 
 /// A walk through `content.xml`.
@@ -168,24 +168,16 @@ impl<R: BufRead> Walk<R> {
         }
     }
 
-    /// The cells of this row: column, how often it stands there, text.
-    fn row(&mut self) -> Result<Vec<(u32, u32, Text)>, StageError> {
+    /// The cells of this row: column, how often it stands there, value.
+    fn row(&mut self) -> Result<Vec<(u32, u32, Value)>, StageError> {
         let (mut cells, mut column) = (Vec::new(), 0_u32);
         loop {
             match self.within()? {
                 At::Start(e) if is(&e, "table:table-cell") || is(&e, "table:covered-table-cell") => {
                     let count = repeats(&e, "table:number-columns-repeated")?;
-                    let text = self.cell(&e)?;
-                    let spans = |name| attribute(&e, name).is_some_and(|count| count.trim() != "1");
-                    let spanned = spans("table:number-columns-spanned") || spans("table:number-rows-spanned");
-                    if spanned && !is_empty(&text) {
-                        return Err(is_merged(""));
-                    }
-                    if attribute(&e, "table:formula").is_some() && attribute(&e, "office:value-type").is_none() {
-                        return Err(not_computed(""));
-                    }
-                    if !is_empty(&text) {
-                        cells.push((column, count, text));
+                    let value = self.cell(&e)?;
+                    if !is_empty(&value) {
+                        cells.push((column, count, value));
                     }
                     column = column.saturating_add(count);
                 }
@@ -196,26 +188,25 @@ impl<R: BufRead> Walk<R> {
     }
 
     /// The value of a cell; the walk then stands behind it.
-    fn cell(&mut self, cell: &BytesStart) -> Result<Text, StageError> {
+    fn cell(&mut self, cell: &BytesStart) -> Result<Value, StageError> {
         let content = self.content(cell.name().as_ref())?;
         let kind = attribute(cell, "office:value-type").unwrap_or_default();
         let own = |name: &str| attribute(cell, name);
         if own("calcext:value-type").is_some_and(|kind| kind == "error") {
             return Ok(Err(content));
         }
-        Ok(Ok(match kind.as_str() {
+        let text = match kind.as_str() {
             "float" | "percentage" | "currency" => {
                 let value = own("office:value").unwrap_or(content);
                 value.parse::<f64>().map(|value| value.to_string()).unwrap_or(value)
             }
             "boolean" => own("office:boolean-value").unwrap_or(content).to_ascii_lowercase(),
             "date" => own("office:date-value").unwrap_or(content),
-            "time" => own("office:time-value").unwrap_or(content),
+            "time" => own("office:time-value").map(|time| seconds(&time).map(clock).unwrap_or(time)).unwrap_or(content),
             "string" => own("office:string-value").unwrap_or(content),
             _ => String::new(),
-        }
-        .trim()
-        .to_owned()))
+        };
+        Ok(Ok(Cell { text: text.trim().to_owned(), is_word: kind == "string", is_share: kind == "percentage" }))
     }
 
     /// The paragraphs of a cell, without what is drawn in it or remarked on it.
@@ -260,6 +251,20 @@ impl<R: BufRead> Walk<R> {
         }
         Ok(())
     }
+}
+
+/// The seconds of a time such as `PT12H30M05.5S`.
+fn seconds(time: &str) -> Option<f64> {
+    let (sign, rest) = time.strip_prefix('-').map_or((1.0, time), |rest| (-1.0, rest));
+    let mut rest = rest.strip_prefix("PT")?;
+    let mut sum = 0.0;
+    for (unit, seconds) in [('H', 3600.0), ('M', 60.0), ('S', 1.0)] {
+        if let Some((number, behind)) = rest.split_once(unit) {
+            sum += number.parse::<f64>().ok()? * seconds;
+            rest = behind;
+        }
+    }
+    rest.is_empty().then_some(sign * sum)
 }
 
 fn is(element: &BytesStart, name: &str) -> bool {
