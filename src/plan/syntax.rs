@@ -81,13 +81,8 @@ pub(super) fn tree(sources: &Sources, index: u32) -> (Option<Node>, Vec<Fault>) 
     });
     read.unwrap_or_else(|error| {
         let fault = Fault::new(format!("no thread can be started: {error}"));
-        (
-            None,
-            vec![
-                fault
-                    .hint("end other programs, or raise the limits on processes and memory (`ulimit -u`, `ulimit -v`)"),
-            ],
-        )
+        let hint = "end other programs, or raise the limits on processes and memory (`ulimit -u`, `ulimit -v`)";
+        (None, vec![fault.hint(hint)])
     })
 }
 

@@ -74,7 +74,7 @@ impl Disk {
         let root = Folder::at(&self.root)?;
         // A name that a user gave, such as that of a queue, leads nowhere else.
         if inside.split('/').any(|part| part == "..") {
-            return Err(ErrorKind::NotFound.into());
+            return Err(std::io::Error::new(ErrorKind::InvalidInput, "a name with `..` leads out of the store"));
         }
         inside.split('/').filter(|part| !part.is_empty()).try_fold(root, |folder, part| folder.inner(part))
     }

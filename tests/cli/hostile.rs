@@ -377,3 +377,28 @@ fn a_table_of_more_columns_than_anybody_reads_is_refused() {
     let said = told(&space.flow(&["check", "w.toml"]));
     assert!(said.contains("the first line has 40000 cells; at most 32768 columns are read"), "{said}");
 }
+
+/// The length of the axis was infinite, and the points were drawn somewhere.
+#[test]
+fn what_no_axis_can_show_is_refused() {
+    let figure = "kind = \"figure\"\nshow = \"xy\"\nof = \"d\"\nx = \"a\"\ny = \"y\"";
+    let space = data("a,y\n1,1e308\n2,-1e308\n", figure);
+    let output = space.flow(&["run", "w.toml"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    let words = "column `y` has values of the size 1e308, which no axis can show";
+    assert!(told(&output).contains(words), "{}", told(&output));
+}
+
+#[test]
+fn a_marker_of_a_remote_that_flow_did_not_write_is_told() {
+    let space = Space::new();
+    std::fs::create_dir(space.path("remote")).expect("a folder");
+    let marker = space.path("remote/flow.remote");
+    let made = Command::new("mkfifo").arg(&marker).status().expect("mkfifo");
+    assert!(made.success());
+    let said = || told(&space.flow(&["store", "pull", "remote", "--unsigned"]));
+    assert!(said().contains("its file `flow.remote` is not the one that flow writes"), "{}", said());
+    std::fs::remove_file(&marker).expect("removing a pipe");
+    space.write("remote/flow.remote", "flow remote 2\n");
+    assert!(said().contains("a newer flow made it"), "{}", said());
+}
