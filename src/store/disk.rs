@@ -160,7 +160,15 @@ impl Disk {
             Err(_) => return Ok(None),
         }
         // Between check and link the name may have become that of another file.
-        if !to.names(name, file) {
+        let other = match self.read_back(&to, name, &path, bytes) {
+            // Where files are known by their names alone, the open file, too, is that of the other node.
+            Err(StoreError::Changed { .. }) => true,
+            read => {
+                read?;
+                !to.names(name, file)
+            }
+        };
+        if other {
             to.remove(name).map_err(|error| self.fail("remove", &path, error))?;
             return Ok(None);
         }
