@@ -97,8 +97,8 @@ pub enum UnitError {
     /// The text does not begin with a number.
     #[error("`{0}` does not begin with a number; write for example \"{1}\"")]
     NoNumber(String, &'static str),
-    /// The number is infinite or not a number.
-    #[error("`{0}` is not a finite number")]
+    /// The number is infinite, not a number, or too close to zero.
+    #[error("`{0}` is not a finite number, or too small for one")]
     NotFinite(String),
     /// A number without a unit.
     #[error("`{0}` needs a unit; write for example \"{1}\"")]
@@ -263,12 +263,19 @@ pub fn split_any(text: &str) -> Result<(f64, &str), UnitError> {
 /// The number of SI units, which must be finite too.
 fn si(text: &str, value: f64, unit: Unit) -> Result<f64, UnitError> {
     let si = value * unit.factor;
-    if si.is_finite() { Ok(si) } else { Err(UnitError::NotFinite(text.to_owned())) }
+    let lost = si == 0.0 && value != 0.0;
+    if si.is_finite() && !lost { Ok(si) } else { Err(UnitError::NotFinite(text.to_owned())) }
 }
 
 fn finite<'t>(text: &'t str, example: &'static str) -> Result<(f64, &'t str), UnitError> {
     let (value, rest) = split_number(text).ok_or_else(|| UnitError::NoNumber(text.to_owned(), example))?;
     if value.is_finite() { Ok((value, rest)) } else { Err(UnitError::NotFinite(text.to_owned())) }
+}
+
+/// Whether a text that was read as zero has another digit than 0 before its exponent: it is too small for a double.
+pub fn vanishes(text: &str, value: f64) -> bool {
+    let mantissa = text.split(['e', 'E', 'd', 'D', 'q', 'Q']).next().unwrap_or_default();
+    value == 0.0 && mantissa.bytes().any(|digit| (b'1'..=b'9').contains(&digit))
 }
 
 /// The longest leading text that is a number, and what follows it.
@@ -277,6 +284,8 @@ fn split_number(text: &str) -> Option<(f64, &str)> {
     let mut end = text.find(|c| !numeric(c)).unwrap_or(text.len());
     while end > 0 {
         if let Ok(value) = text[..end].replace('_', "").parse() {
+            // A number that nothing can be computed with is none: it is refused as an infinite one is.
+            let value = if vanishes(&text[..end], value) { f64::NAN } else { value };
             return Some((value, text[end..].trim_start()));
         }
         end -= 1;

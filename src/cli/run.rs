@@ -184,7 +184,7 @@ pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
     let patience = if leave.is_some() { PATIENCE_FAR } else { PATIENCE };
     let wanted: &[i32] = if hangup_is_ignored() { &[SIGINT, SIGTERM] } else { &[SIGINT, SIGTERM, SIGHUP] };
     match Signals::new(wanted) {
-        Ok(mut signals) => drop(std::thread::spawn(move || {
+        Ok(mut signals) => listen(move || {
             for signal in signals.forever() {
                 if let Some(leave) = leave.as_ref().filter(|_| signal != SIGINT) {
                     leave.store(true, Ordering::Relaxed);
@@ -193,16 +193,23 @@ pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
                     at_once();
                 }
                 err!("stopping: finished tasks are stored; press Ctrl-C again to stop at once");
-                std::thread::spawn(move || {
+                listen(move || {
                     std::thread::sleep(patience);
                     err!("interrupted; run again to continue: the tasks that ran were ended and will start again");
                     at_once();
                 });
             }
-        })),
+        }),
         Err(e) => err!("warning: Ctrl-C will not stop cleanly: {e}"),
     }
     stop
+}
+
+/// Runs this beside everything else, or warns where no thread can be started.
+fn listen(work: impl FnOnce() + Send + 'static) {
+    if let Err(error) = std::thread::Builder::new().spawn(work) {
+        err!("warning: Ctrl-C will not stop cleanly: no thread can be started: {error}");
+    }
 }
 
 /// How long tasks may take to end by themselves. Statistics and packings look at the flag only now and then, and a store is

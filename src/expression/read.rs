@@ -13,6 +13,7 @@
 //! or more. `1e-3` is a number, `2a` is a fault.
 
 use super::{Measure, function_of_all, function_of_one};
+use crate::unit::vanishes;
 
 /// Longest formula that is read, in bytes.
 const LONGEST: usize = 10_000;
@@ -254,6 +255,7 @@ impl Reader<'_> {
         let next = self.text[self.at + end..].chars().next();
         let joined = next.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '.');
         match text.parse::<f64>() {
+            Ok(value) if vanishes(text, value) && !joined => Err(format!("`{text}` is too small: it would be 0")),
             Ok(value) if value.is_finite() && !joined => {
                 self.at += end;
                 Ok(Term::Number(value))

@@ -133,7 +133,9 @@ fn shape(out: &mut String, path: &Path, fill: Option<&Fill>, stroke: Option<&Str
 fn path_data(path: &Path) -> String {
     let mut d = String::new();
     let (mut here, mut start) = ([0_i64; 2], [0_i64; 2]);
-    let grid = |p: Point| p.map(|v| 10 * (v * 100.0).round() as i64);
+    // Nothing that far off the page is seen.
+    const FAR: f64 = 1e9;
+    let grid = |p: Point| p.map(|v| 10 * (v.clamp(-FAR, FAR) * 100.0).round() as i64);
     let mut last = ' ';
     for step in &path.0 {
         match *step {

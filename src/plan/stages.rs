@@ -10,9 +10,10 @@ use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
 use crate::artifact::{Accepts, ArtifactKind};
 use crate::stage::beside::Beside;
+use crate::stage::reads::{self, Missing};
 use crate::stage::simulate::Simulate;
 use crate::stage::vary::Template;
-use crate::stage::{Complaint, Context, KINDS, Kind, Port, Stage};
+use crate::stage::{Class, Complaint, Context, KINDS, Kind, Port, Stage};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -28,7 +29,7 @@ struct Configured {
 pub(super) struct Looked<'a> {
     /// The folder they lie in; none when there is only a text.
     pub(super) folder: Option<&'a Path>,
-    /// Those that cannot be read.
+    /// Those that cannot be read, or lack a column that a stage reads.
     pub(super) absent: Vec<Fault>,
     /// Warnings about them.
     pub(super) warnings: Vec<Fault>,
@@ -125,17 +126,55 @@ fn examine(check: &mut Check<'_>, table: &Table, stages: &[Configured], material
 /// Looks at the files that the stages name.
 fn look(check: &Check<'_>, table: &Table, stages: &[Configured], context: &Context, looked: &mut Looked<'_>) {
     let Some(folder) = looked.folder else { return };
+    let mut columns = BTreeMap::new();
     for stage in stages {
         let Some(node) = table.get(&stage.name) else { continue };
         let mut found = Beside::of(folder);
         stage.stage.beside(context, &mut found);
-        let fault = |complaint: Complaint| {
-            let location = check.sources.location(node.nearest(&steps(complaint.path.iter().map(String::as_str))).span);
-            Fault { hint: complaint.hint, ..Fault::new(complaint.message) }.at(location)
-        };
-        looked.absent.extend(found.faults.into_iter().map(fault));
-        looked.warnings.extend(found.warnings.into_iter().map(fault));
+        looked.absent.extend(found.faults.into_iter().map(|complaint| located(check, node, complaint)));
+        looked.warnings.extend(found.warnings.into_iter().map(|complaint| located(check, node, complaint)));
+        let design = stage.ports.iter().find(|port| port.key == "design").and_then(|port| port.stages.first());
+        let of_runs = || reads::of_simulator(&stage.name, design?, context);
+        columns.extend(found.columns.or_else(of_runs).map(|names| (stage.name.clone(), names)));
     }
+    look_for_columns(check, table, stages, (&columns, context), looked);
+}
+
+/// Looks for the columns that stages read from tables whose columns are known.
+fn look_for_columns(
+    check: &Check<'_>,
+    table: &Table,
+    stages: &[Configured],
+    (columns, context): (&BTreeMap<String, Vec<String>>, &Context),
+    looked: &mut Looked<'_>,
+) {
+    for stage in stages {
+        let Some(node) = table.get(&stage.name) else { continue };
+        let analyses = crate::stage::kind(stage.kind).is_some_and(|kind| kind.class == Class::Statistics);
+        let named = stage.ports.iter().flat_map(|port| port.stages.iter().map(|name| (port.key, name)));
+        for (port, name) in named.filter(|_| analyses && check.lost.is_empty()) {
+            let complaint = columns.get(name).and_then(|own| reads::nothing_to_analyse(port, name, own, context));
+            looked.absent.extend(complaint.map(|complaint| located(check, node, complaint)));
+        }
+        for Missing { column, complaint } in stage.stage.reads().iter().flat_map(|reads| reads.missing(columns)) {
+            let fault = located(check, node, complaint);
+            // One that is not declared, or that its stage cannot give, was reported there already.
+            let is_said = |other: &Fault| {
+                other.location == fault.location
+                    && [format!("`{column}`"), format!(".{column}]")].iter().any(|name| other.message.contains(name))
+            };
+            let is_lost = check.lost.iter().any(|(_, name)| *name == column);
+            if !is_lost && !check.faults.iter().chain(&looked.absent).any(is_said) {
+                looked.absent.push(fault);
+            }
+        }
+    }
+}
+
+/// A complaint about a stage as a fault with its location.
+fn located(check: &Check<'_>, node: &Node, complaint: Complaint) -> Fault {
+    let location = check.sources.location(node.nearest(&steps(complaint.path.iter().map(String::as_str))).span);
+    Fault { hint: complaint.hint, ..Fault::new(complaint.message) }.at(location)
 }
 
 fn stage_of(kind: &str, reader: Reader<'_>) -> Result<Box<dyn Stage>, Unread> {

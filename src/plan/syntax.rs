@@ -4,6 +4,7 @@
 
 use super::fault::Fault;
 use super::node::{Entry, Node, Sources, Span, Table, Value, shortened};
+use crate::unit::vanishes;
 use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
@@ -66,7 +67,7 @@ pub(super) fn tree(sources: &Sources, index: u32) -> (Option<Node>, Vec<Fault>) 
     if text.len() > LARGEST {
         return (None, vec![Fault::new(format!("the workflow is larger than {} MiB", LARGEST >> 20))]);
     }
-    on_a_large_stack(|| {
+    let read = on_a_large_stack(|| {
         let (root, errors) = match DeTable::parse(text) {
             Ok(root) => (root, Vec::new()),
             Err(_) if text.len() <= LARGEST_FAULTY => DeTable::parse_recoverable(text),
@@ -77,16 +78,20 @@ pub(super) fn tree(sources: &Sources, index: u32) -> (Option<Node>, Vec<Fault>) 
         let span = convert.span(root.span());
         let value = Value::Table(convert.table(root.into_inner(), 0));
         (whole.then_some(Node { span, value }), convert.faults)
+    });
+    read.unwrap_or_else(|error| {
+        let fault = Fault::new(format!("no thread can be started: {error}"));
+        let hint = "end other programs, or raise the limits on processes and memory (`ulimit -u`, `ulimit -v`)";
+        (None, vec![fault.hint(hint)])
     })
 }
 
 /// Keys nested to the reader's own limit take more stack to walk and to drop than a thread may have.
-fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> std::io::Result<T> {
     const STACK: usize = 32 << 20;
     std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
-        let joined = thread.unwrap_or_else(|e| panic!("no memory for a thread: {e}")).join();
-        joined.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work)?;
+        Ok(thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })
 }
 
@@ -220,7 +225,10 @@ impl Convert<'_> {
                 Err(_) => self.hole(span, format!("`{whole}` is too large for a whole number")),
             },
             DeValue::Float(real) => match real.as_str().parse::<f64>() {
-                Ok(real) if real.is_finite() => Value::Real(real),
+                Ok(number) if vanishes(real.as_str(), number) => {
+                    self.hole(span, format!("`{real}` is too small: it would be 0"))
+                }
+                Ok(number) if number.is_finite() => Value::Real(number),
                 _ => self.hole(span, format!("`{real}` is not a finite number")),
             },
         };

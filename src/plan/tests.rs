@@ -99,3 +99,41 @@ fn options_that_set_nothing_are_faults() {
     assert_eq!(fault("workflow.seed=nan"), "--set:1:15: wanted a whole number of 0 or more, found the text \"nan\"");
     assert_eq!(fault("stage=1"), "--set:1:1: the option must name one of the stages below `stage`");
 }
+
+/// One specimen of a single group, tested with the first material; others stand beside it.
+fn tested(materials: &str) -> String {
+    format!(
+        "[workflow]\nseed = 1\n[material]\n{materials}\n\
+         [stage.core]\nkind = \"specimen\"\nwidth = \"40 mm\"\nheight = \"80 mm\"\nporosity = 0.12\nmean_radius = \"2 mm\"\n\
+         radius_ratio = 2\ndensity = \"2000 kg/m^3\"\n\
+         [stage.press]\nkind = \"simulate\"\nspecimen = \"core\"\nmaterial = \"base\"\ntest = \"uniaxial\"\n\
+         platen_speed = \"0.1 m/s\"\n"
+    )
+}
+
+const MORTAR: &str = "{ Ec = \"20 GPa\", kn_ks = 2.5, sigma_c = \"10 MPa\", tau_c = \"15 MPa\", mu = 0.5 }";
+
+fn warned(materials: &str) -> Vec<String> {
+    let workflow = parse("w.toml", &tested(materials), &Overrides::default()).unwrap_or_else(|e| panic!("{e:?}"));
+    workflow.warnings.iter().map(|fault| format!("{fault} | {}", fault.hint.as_deref().unwrap_or_default())).collect()
+}
+
+#[test]
+fn materials_and_groups_that_no_specimen_has_are_said() {
+    assert_eq!(warned(&format!("base.mortar = {MORTAR}")), [""; 0]);
+    let one = warned(&format!("base.mortar = {MORTAR}\nbase.stone = {MORTAR}\nspare.rock = {MORTAR}"));
+    let [stone, spare] = &one[..] else { panic!("{one:?}") };
+    assert!(stone.starts_with("w.toml:5:"), "{stone}");
+    assert!(stone.contains("no stage uses `stone` of [material.base]: no specimen has such contacts"), "{stone}");
+    assert!(stone.ends_with("the specimens have mortar"), "{stone}");
+    assert!(spare.contains("no stage uses [material.spare] | say `material = \"spare\"` in a stage"), "{spare}");
+}
+
+/// Its contacts would follow the rule `pairs`, and nobody would see it.
+#[test]
+fn a_pair_with_a_group_that_is_none_is_a_fault() {
+    let found = faults(&tested(&format!("base.mortar = {MORTAR}\nbase.mortar-morter = {MORTAR}")));
+    let [slip] = &found[..] else { panic!("{found:?}") };
+    assert!(slip.contains("`mortar-morter` of [material.base] is a pair with `morter`, which is no group"), "{slip}");
+    assert!(slip.contains("did you mean `mortar`? the groups are mortar"), "{slip}");
+}

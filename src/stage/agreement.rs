@@ -9,6 +9,7 @@
 //! * `pairs` (`response,table,row,computed,reference,ratio`): every pair, `row` in the reference.
 
 use super::columns::{Columns, Rows, Wanted, check_names, runs};
+use super::reads::Reads;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use super::{Context, figure::Names, given::check_given, invalid::Invalid};
 use crate::artifact::agreement::{Agreement as Stored, Pairs, Ratios, Trends};
@@ -86,6 +87,15 @@ impl Stage for Agreement {
             found.push(Complaint::new("tolerance", message).hint("0.001 allows for levels printed with three digits"));
         }
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        let of = |stages: &Names| Reads {
+            path: "responses".to_owned(),
+            stages: stages.list(),
+            columns: self.responses.clone(),
+        };
+        vec![of(&self.of), of(&self.compare)]
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -11,6 +11,7 @@ use super::given::check_given;
 use super::invalid::Invalid;
 use super::notes::{Notes, short};
 use super::published::{Computed, beside, prints};
+use super::reads::Reads;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::statistics::{Anova as Stored, Fits, Variances};
 use crate::artifact::validity::NotValid;
@@ -188,6 +189,14 @@ impl Stage for Anova {
         let levels = levels.into_iter().chain(self.pool_above.map(|p| ("pool_above", p)));
         found.extend(levels.filter_map(|(key, value)| check_probability(key, value)));
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        vec![
+            Reads::of("factors", &self.table, &self.factors),
+            Reads::of("responses", &self.table, &self.responses),
+            Reads::of("weights", &self.table, &self.weights),
+        ]
     }
 
     fn beside(&self, _context: &Context, found: &mut Beside) {

@@ -18,6 +18,8 @@ pub struct Beside {
     pub faults: Vec<Complaint>,
     /// Warnings: what may make a result stale or a program fail.
     pub warnings: Vec<Complaint>,
+    /// The columns of the file that is the stage's result, where it was read.
+    pub columns: Option<Vec<String>>,
 }
 
 impl Beside {

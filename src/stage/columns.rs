@@ -91,6 +91,12 @@ impl Columns {
             return Err(StageError::new(format!("the table has no column `{name}`")).hint(format!("it has {names}")));
         }
         let takes = |list: &[String], name: &String| list.is_empty() || list.contains(name);
+        for column in table.columns.iter().filter(|column| takes(wanted.factors, &column.name)) {
+            let factor = context.factors.get(&column.name).filter(|factor| factor.names.is_empty());
+            if let Some((row, word)) = factor.and_then(|_| first_word(&column.values)) {
+                return Err(not_a_level(&column.name, row, word));
+            }
+        }
         let factor = |name: &&String| {
             let factor = context.factors.get(*name).filter(|_| takes(wanted.factors, name))?;
             let ends = factor
@@ -223,6 +229,19 @@ fn labels(values: &Values) -> Vec<String> {
     found.sort();
     found.dedup();
     found
+}
+
+/// The first cell of a column, and its row from 0, that is no number; a column in which only some cells are words is one of words.
+pub(super) fn first_word(values: &Values) -> Option<(usize, &str)> {
+    let Values::Texts(texts) = values else { return None };
+    let is_word = |text: &str| !text.is_empty() && !text.parse().is_ok_and(f64::is_finite);
+    texts.iter().map(String::as_str).enumerate().find(|(_, text)| is_word(text))
+}
+
+/// A factor whose levels are numbers has a word in a table.
+pub(super) fn not_a_level(factor: &str, row: usize, word: &str) -> StageError {
+    let message = format!("row {}: `{factor}` is `{word}`, and the levels of [factor.{factor}] are numbers", row + 1);
+    StageError::new(message).hint(format!("correct the cell, or name the levels: `levels = [\"{word}\", …]`"))
 }
 
 /// A factor whose levels are names.

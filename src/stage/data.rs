@@ -12,6 +12,7 @@ mod dialect;
 mod workbook;
 
 use super::beside::Beside;
+use super::columns::{first_word, not_a_level};
 use super::notes::Notes;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
@@ -62,6 +63,24 @@ impl Data {
 }
 
 impl Data {
+    /// Words where the workflow declares numbers.
+    fn words(&self, table: &Table, context: &super::Context, found: &mut Beside) {
+        for column in &table.columns {
+            let Some((row, word)) = first_word(&column.values) else { continue };
+            let (file, name) = (&self.file, &column.name);
+            let error = if context.factors.get(name).is_some_and(|factor| factor.names.is_empty()) {
+                not_a_level(name, row, word)
+            } else if context.responses.contains_key(name) {
+                StageError::new(format!("row {}: `{name}` is `{word}`, which is no number", row + 1))
+                    .hint(format!("correct it, or say `missing = [\"{word}\"]` if it stands for no value"))
+            } else {
+                continue;
+            };
+            let complaint = Complaint::new("file", format!("{file}: {}", error.message));
+            found.faults.push(Complaint { hint: error.hint, ..complaint });
+        }
+    }
+
     /// Columns whose numbers cannot be read in the unit that the workflow declares for their name.
     fn units(&self, table: &Table, context: &super::Context, found: &mut Beside) {
         let declared = |name: &str| {
@@ -121,7 +140,11 @@ impl Stage for Data {
                 let complaint = Complaint::new("file", format!("{}: {message}", self.file));
                 found.faults.push(Complaint { hint, ..complaint });
             }
-            Ok((table, _)) => self.units(&table, context, found),
+            Ok((table, _)) => {
+                self.units(&table, context, found);
+                self.words(&table, context, found);
+                found.columns = Some(table.columns.into_iter().map(|column| column.name).collect());
+            }
         }
     }
 
@@ -137,7 +160,7 @@ impl Kind for Data {
     const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    // 4: units in the row below the names; decimal commas in text cells of workbooks; dates and times of Excel as text. 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    // 4: merged cells, and lines without any value, are refused; units in the row below the names; decimal commas in text cells of workbooks; dates and times of Excel as text. 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
     const WORKS: &'static [Work] = &[Work { name: "data", version: 4, run: read }];
 }
 
@@ -181,9 +204,10 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
         return Err(StageError::new("the file has no rows below its first line"));
     }
     let mut names = HashSet::new();
-    let add = |table, (head, cells): (&String, _)| cells::column(table, (head, cells), &how, &mut names);
-    let table = sheet.heads.iter().zip(sheet.columns).try_fold(Table::default(), add)?;
-    Ok((table, said))
+    // A table that looks for the name of each new column among all others would cost the square of their number.
+    let column = |(head, cells): (&String, _)| cells::column((head, cells), &how, &mut names);
+    let columns = sheet.heads.iter().zip(sheet.columns).map(column).collect::<Result<_, StageError>>()?;
+    Ok((Table { about: String::new(), columns }, said))
 }
 
 /// Writes shares that a workbook shows in per cent as numbers of per cent, where the head of their column has that unit. The

@@ -24,6 +24,12 @@ fn is_plain(name: &str) -> bool {
     name.chars().all(|c| c.is_alphanumeric() || c == '_')
 }
 
+/// The names in a formula of factors; `None` for the plain name of one, and for a text that is no formula.
+pub(super) fn factors_of_formula(text: &str) -> Option<Vec<String>> {
+    let formula = Expression::parse(text).ok().filter(|_| !is_plain(text))?;
+    Some(formula.names().to_vec()).filter(|names| !names.is_empty())
+}
+
 /// Complaints about a name in a term that is neither a factor nor a formula of factors.
 pub(super) fn check(name: &str, context: &Context) -> Vec<Complaint> {
     let known = || format!("known are {}", context.factors.keys().cloned().collect::<Vec<_>>().join(", "));

@@ -11,6 +11,7 @@ use super::columns::{Columns, Wanted, check_names, runs};
 use super::given::check_given;
 use super::invalid::Invalid;
 use super::notes::Notes;
+use super::reads::Reads;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::envelope::{Curves, Envelope as Stored, Parameters, Tests};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -78,6 +79,13 @@ impl Stage for Envelope {
             }
         }
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        vec![
+            Reads::of("confinement", &self.table, [&self.confinement]),
+            Reads::of("strength", &self.table, [&self.strength]),
+        ]
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -62,6 +62,7 @@ mod notes;
 mod packed;
 mod published;
 pub mod range;
+pub mod reads;
 pub mod regression;
 pub mod rows;
 pub mod rsm;
@@ -154,6 +155,11 @@ pub trait Stage: Settings + Send + Sync {
 
     /// Checks the files that it names: files that do not exist, and files outside every key.
     fn beside(&self, _context: &Context, _found: &mut beside::Beside) {}
+
+    /// The columns that it reads from the main tables of other stages, by the keys that name them.
+    fn reads(&self) -> Vec<reads::Reads> {
+        Vec::new()
+    }
 
     /// The properties that other stages can use before anything runs.
     fn sketch(&self) -> Sketch {

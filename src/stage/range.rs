@@ -7,6 +7,7 @@ use super::columns::{Columns, Rows, Wanted, check_names, refused_without, runs};
 use super::given::check_given;
 use super::invalid::Invalid;
 use super::notes::Notes;
+use super::reads::Reads;
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::range::{LevelValues, Levels, Range as Stored, Ranges};
 use crate::artifact::validity::NotValid;
@@ -48,6 +49,14 @@ impl Stage for Range {
         let mut found = check_names(context, &self.factors, &self.responses);
         found.extend(check_given(context, "responses", &[&self.table], &self.responses));
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        vec![
+            Reads::of("factors", &self.table, &self.factors),
+            Reads::of("responses", &self.table, &self.responses),
+            Reads::of("weights", &self.table, &self.weights),
+        ]
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

@@ -16,6 +16,7 @@ use super::columns::{Columns, Wanted, check_names, check_probability, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, fit, with_constant};
 use super::given::check_given;
 use super::invalid::Invalid;
+use super::reads::Reads;
 use super::{Class, Complaint, Context, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
 use schemars::JsonSchema;
@@ -118,6 +119,15 @@ impl Stage for Regression {
         found.extend(self.check_groups());
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        let terms = self.terms.iter().map(|(response, terms)| {
+            let factors = factors_of(terms);
+            Reads::of(&format!("terms.{response}"), &self.table, factors.iter().chain([response]))
+        });
+        let others = [Reads::of("by", &self.table, &self.by), Reads::of("weights", &self.table, &self.weights)];
+        terms.chain(others).collect()
     }
 
     fn beside(&self, _context: &Context, found: &mut Beside) {

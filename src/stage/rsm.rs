@@ -10,6 +10,7 @@ use super::columns::{Columns, Wanted, check_names, runs};
 use super::fitted::{self, Fitting, Params, Predict, check_predict, with_constant};
 use super::given::check_given;
 use super::invalid::Invalid;
+use super::reads::Reads;
 use super::regression::{check_doubled, check_levels, factors_of, outlier_alpha};
 use super::{Class, Complaint, Context, Kind, Known, Port, Sketch, Stage, StageError, Step, Task, Work};
 use crate::artifact::{Accepts, ArtifactKind};
@@ -98,6 +99,18 @@ impl Stage for Rsm {
         found.extend(check_predict(self.predict.as_ref(), context));
         found.extend(check_levels(self.select, self.select_alpha, self.outlier_alpha));
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        let mut all = Vec::new();
+        for (i, response) in self.responses.iter().enumerate() {
+            let Some(table) = self.tables.get(i).or(self.tables.last()) else { continue };
+            all.push(Reads::of("responses", table, [response]));
+            all.push(Reads::of("weights", table, &self.weights));
+            let factors = self.terms.get(response).map(|terms| factors_of(terms)).unwrap_or_default();
+            all.push(Reads::of(&format!("terms.{response}"), table, &factors));
+        }
+        all
     }
 
     fn beside(&self, _context: &Context, found: &mut Beside) {

@@ -9,6 +9,7 @@ use super::fitted::{fit_table, residual_table};
 use super::given::check_given;
 use super::invalid::Invalid;
 use super::notes::Notes;
+use super::reads::Reads;
 use super::regression::{check_doubled, factors_of};
 use super::{Class, Complaint, Context, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::statistics::{Effects, Limits, Screening as Stored};
@@ -71,6 +72,14 @@ impl Stage for Screening {
         found.extend(terms.into_iter().map(|c| Complaint { path: vec!["terms".to_owned()], ..c }));
         found.extend(check_probability("alpha", self.alpha));
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        vec![
+            Reads::of("terms", &self.table, &factors_of(&self.terms)),
+            Reads::of("responses", &self.table, &self.responses),
+            Reads::of("weights", &self.table, &self.weights),
+        ]
     }
 
     fn next(&self, known: &Known) -> Result<Step, StageError> {

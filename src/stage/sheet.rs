@@ -73,7 +73,13 @@ impl Sheet {
                 let message = format!("the table has more than {MOST_RUNS} rows");
                 return Err(StageError::new(message).hint("name a part of it"));
             }
-            for (column, cell) in columns.iter_mut().zip(record.map_err(|e| fail(&e))?.iter()) {
+            let record = record.map_err(|e| fail(&e))?;
+            if heads.len() > 1 && record.iter().all(str::is_empty) {
+                let line = record.position().map_or(0, csv::Position::line) as usize + skipped;
+                return Err(StageError::new(format!("line {line} has no value in any cell"))
+                    .hint("remove such lines; spreadsheets write them below a table"));
+            }
+            for (column, cell) in columns.iter_mut().zip(record.iter()) {
                 column.push(cell.to_owned());
             }
         }

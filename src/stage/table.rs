@@ -21,6 +21,7 @@ mod validity;
 use super::beside::Beside;
 use super::figure::{Names, stored};
 use super::invalid::{Invalid, responses_of, sentence};
+use super::reads::Reads;
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, NAMING_COLUMNS, Port, Stage, StageError, Step, Task, Work,
 };
@@ -204,6 +205,23 @@ impl Stage for Table {
         found
     }
 
+    fn reads(&self) -> Vec<Reads> {
+        if self.table.as_deref().is_some_and(|name| Some(name) != ArtifactKind::RESULTS.main_table()) {
+            return Vec::new();
+        }
+        let read = |path: &str, columns: Vec<&String>| Reads {
+            path: path.to_owned(),
+            stages: self.of.list(),
+            columns: columns.into_iter().cloned().collect(),
+        };
+        vec![
+            read("columns", self.columns.iter().collect()),
+            read("where", self.only.keys().collect()),
+            read("by", self.by.iter().collect()),
+            read("pivot", self.pivot.iter().flat_map(Pivot::names).collect()),
+        ]
+    }
+
     fn beside(&self, _context: &Context, found: &mut Beside) {
         found.optional("published", self.published.as_ref());
     }
@@ -362,9 +380,11 @@ fn chosen(
     if let Some(pivot) = &params.pivot {
         return pivot::spread(table, params, pivot, allowed);
     }
-    let all: Vec<String> = table.columns.iter().map(|c| c.name.clone()).collect();
-    let names = if params.columns.is_empty() { &all } else { &params.columns };
-    named(table, names, params, &chosen_rows(table, params, allowed)?)
+    let rows = chosen_rows(table, params, allowed)?;
+    if params.columns.is_empty() {
+        return Ok(table.columns.iter().map(|column| shown(column, &rows, params)).collect());
+    }
+    named(table, &params.columns, params, &rows)
 }
 
 /// The rows of the settings among the allowed ones.

@@ -72,6 +72,10 @@ impl Disk {
     /// A folder below the root, reached without links.
     pub(super) fn folder(&self, inside: &str) -> std::io::Result<Folder> {
         let root = Folder::at(&self.root)?;
+        // A name that a user gave, such as that of a queue, leads nowhere else.
+        if inside.split('/').any(|part| part == "..") {
+            return Err(std::io::Error::new(ErrorKind::InvalidInput, "a name with `..` leads out of the store"));
+        }
         inside.split('/').filter(|part| !part.is_empty()).try_fold(root, |folder, part| folder.inner(part))
     }
 
@@ -143,7 +147,8 @@ impl Disk {
             return Ok(None);
         }
         match self.read_back(at, draft, &path, bytes) {
-            // Another node has just taken over the claim, since it looked abandoned.
+            // Another node has just taken over the claim, since it looked abandoned; this one may see that only later.
+            Err(StoreError::Changed { .. }) => return Ok(None),
             Err(_) if !at.names(draft, file) => return Ok(None),
             other => other?,
         }
@@ -155,7 +160,15 @@ impl Disk {
             Err(_) => return Ok(None),
         }
         // Between check and link the name may have become that of another file.
-        if !to.names(name, file) {
+        let other = match self.read_back(&to, name, &path, bytes) {
+            // Where files are known by their names alone, the open file, too, is that of the other node.
+            Err(StoreError::Changed { .. }) => true,
+            read => {
+                read?;
+                !to.names(name, file)
+            }
+        };
+        if other {
             to.remove(name).map_err(|error| self.fail("remove", &path, error))?;
             return Ok(None);
         }
@@ -209,17 +222,18 @@ impl Disk {
         Ok(draft)
     }
 
-    /// Reads a file that was just written and will get the name `path`, and compares.
+    /// Reads a file that was just written and will get the name `path`; [`StoreError::Changed`] if it holds anything else.
     fn read_back(&self, folder: &Folder, written: &str, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
         let same = folder.open(written, false).and_then(|file| holds(file, bytes));
         match same.map_err(|error| self.fail("read back", path, error))? {
             true => Ok(()),
-            false => Err(self.fail("write", path, ErrorKind::StorageFull.into())),
+            false => Err(StoreError::Changed { path: path.to_owned(), bytes: bytes.len() }),
         }
     }
 
     /// Removes a file, if it is there.
     pub(super) fn remove(&self, folder: &str, name: &str) -> Result<(), StoreError> {
+        self.writable(folder)?;
         let Some(found) = self.find_folder(folder)? else { return Ok(()) };
         found.remove(name).map_err(|error| self.fail("remove", &self.path(folder, name), error))
     }

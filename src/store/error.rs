@@ -20,6 +20,17 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// A file does not hold what was just written to it, though no write failed.
+    #[error(
+        "{bytes} bytes were written to {}, and others were read back: the disk is failing, or is full and does not say so; \
+         check it and run again, what is finished is kept", path.display()
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// The number of bytes that were written.
+        bytes: usize,
+    },
     /// The file is larger than this user may write.
     #[error(
         "could not {doing} {}: the file is larger than the limit on the size of files; raise it (`ulimit -f`) and run \

@@ -172,6 +172,8 @@ pub(super) fn take(disk: &Disk, key: &str, machine: &str) -> Result<Taken, Store
                     return Ok(Taken::Theirs(Waiting { folder, name, file, unsure, holder }));
                 }
                 Ok(None) => {}
+                // Where files are known by their names alone, one that was removed meanwhile has no state any more.
+                Err(error) if error.kind() == ErrorKind::NotFound => {}
                 // A link or a pipe of that name says nothing about the task: compute it without a lock.
                 Err(error) if Strange::is(&error) => return Ok(Taken::Mine(Guard(None))),
                 Err(error) => return Err(disk.fail("open the lock", &path, error)),

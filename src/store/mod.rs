@@ -36,6 +36,8 @@ mod fault;
 mod finish;
 mod folder;
 mod hdf5;
+#[cfg(any(test, fuzzing))]
+pub mod hostile;
 mod journal;
 mod located;
 mod lock;

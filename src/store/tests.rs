@@ -1,10 +1,6 @@
+use super::hostile::result;
 use super::*;
-use crate::artifact::{Artifact, Group, Node, Table};
-
-fn result(value: f64) -> Artifact {
-    let table = Table::default().reals_column("strength", "Pa", "peak stress", vec![value, -0.0, f64::NAN]);
-    Artifact::new("table", 1, Group::new().with("table", Node::Table(table)))
-}
+use crate::artifact::Artifact;
 
 fn timing(seconds: f64) -> Timing {
     Timing { started: SystemTime::now(), seconds }
@@ -55,6 +51,19 @@ fn one_of_two_claims_waits() {
     let Claim::Done(found) = second.claim(&key).unwrap() else { panic!("it is finished") };
     assert_eq!(found, record);
     assert_eq!(std::fs::read_dir(folder.path().join("locks")).unwrap().count(), 0);
+}
+
+/// The name of a queue comes from a command line.
+#[test]
+fn no_name_leads_out_of_a_store() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir_all(folder.path().join("store/queue")).unwrap();
+    std::fs::create_dir(folder.path().join("outside")).unwrap();
+    let disk = Disk { root: folder.path().join("store"), read_only: false };
+    assert!(disk.folder("queue").is_ok());
+    let error = disk.find_folder("queue/../../outside").map(|_| ()).unwrap_err();
+    assert!(error.to_string().ends_with("a name with `..` leads out of the store"), "{error}");
+    assert!(disk.make_folder("queue/../../made").is_err() && !folder.path().join("made").exists());
 }
 
 mod faults;

@@ -83,12 +83,47 @@ fn faults_of_a_table_are_found_by_check() {
         ("a,y [kg]\n1,2\n", "column `y` is in `kg` and `y` of the workflow in no unit"),
         ("a,y\n1,\0\n", "line 2 holds the character NUL, which no text has"),
         ("a\0,\0y\0\n", "is it UTF-16 without a mark at its start?"),
+        ("a,y\n1,2\n,\n", "line 3 has no value in any cell"),
+        ("a,y\n1,2\n2,broken\n", "row 2: `y` is `broken`, which is no number"),
+        ("a,y\n1,3±0.2\n2,4\n", "row 1: `y` is `3±0.2`, which is no number"),
+        ("a,y\n1,2\na,y\n2,3\n", "row 2: `a` is `a`, and the levels of [factor.a] are numbers"),
+        ("a,y\n1,2\n1-Mar,3\n2,4\n", "row 2: `a` is `1-Mar`, and the levels of [factor.a] are numbers"),
     ] {
         let space = data(csv, ANOVA);
         let output = space.flow(&["check", "w.toml"]);
         assert_eq!(output.status.code(), Some(2), "{csv:?}: {}", told(&output));
         assert!(told(&output).contains(words), "{csv:?}: {}", told(&output));
     }
+}
+
+/// A word among the numbers of a factor was one more level: a line `mean` below a table took part in the analysis.
+#[test]
+fn a_word_is_no_level_of_a_factor_of_numbers() {
+    let space = data("a,y\n1,2\n2,3\n1,4\n2,6\nmean,4\n", ANOVA);
+    let output = space.flow(&["run", "w.toml", "s"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    let words = "row 5: `a` is `mean`, and the levels of [factor.a] are numbers";
+    assert!(told(&output).contains(words), "{}", told(&output));
+    let text = std::fs::read_to_string(space.path("w.toml")).expect("the workflow");
+    space.write("w.toml", &text.replace("levels = [1, 2]", "levels = [\"1\", \"2\", \"mean\"]"));
+    space.run(&[]);
+}
+
+/// They were taken for 0.
+#[test]
+fn numbers_too_small_for_the_machine_are_refused() {
+    let space = program("run = [\"echo\", \"1e-400\"]\nread.y = { file = \"stdout\", pattern = '(.*)' }");
+    let said = told(&space.flow(&["run", "w.toml"]));
+    assert!(said.contains("`1e-400` is too small for a number of the machine: it would be 0"), "{said}");
+    let space = data("a,y\n1,2\n", ANOVA);
+    let text = std::fs::read_to_string(space.path("w.toml")).expect("the workflow");
+    space.write("w.toml", &text.replace("levels = [1, 2]", "levels = [1e-400, 1]"));
+    let said = told(&space.flow(&["check", "w.toml"]));
+    assert!(said.contains("`1e-400` is too small: it would be 0"), "{said}");
+    let space =
+        program("run = [\"true\"]\ntime_limit = \"1e-400 s\"\nread.y = { file = \"stdout\", pattern = '(.*)' }");
+    let said = told(&space.flow(&["check", "w.toml"]));
+    assert!(said.contains("`1e-400 s` is not a finite number, or too small for one"), "{said}");
 }
 
 #[test]
@@ -228,6 +263,41 @@ fn nothing_that_a_program_starts_outlives_its_run() {
     assert!(!program.starts_with(b"sleep\x00600"), "{number} is alive");
 }
 
+/// After `kill -9` of the campaign nobody is its parent, and it has hidden itself as well as it can: the next run finds it.
+#[test]
+fn what_a_killed_campaign_left_in_hiding_is_found_by_the_next_run() {
+    let hides = "exec env -i setsid -f sh -c 'cd /; exec >/dev/null 2>&1; echo $$ > PID; exec sleep 600'";
+    let space = program(
+        "run = [\"sh\", \"run.sh\"]\nfiles = { \"run.sh\" = \"run.sh\" }\nread.y = { file = \"stdout\", pattern = '(.*)' }",
+    );
+    let pid = space.path("pid");
+    space.write(
+        "run.sh",
+        &format!("{}; sleep 600\n", hides.replace("PID", &pid.display().to_string()).replace("exec env", "env")),
+    );
+    // Campaigns of other tests, which run at the same time, sweep as well: one of some tries goes undisturbed.
+    let undisturbed = (0..10).any(|_| {
+        let _ = std::fs::remove_file(&pid);
+        let mut child = space.command(&["run", "w.toml", "--quiet"]).stderr(Stdio::null()).spawn().expect("flow");
+        let written = || std::fs::read_to_string(&pid).unwrap_or_default();
+        while !written().ends_with('\n') {
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        let hidden = std::path::PathBuf::from(format!("/proc/{}", written().trim()));
+        while std::fs::read(hidden.join("cmdline")).is_ok_and(|words| !words.starts_with(b"sleep")) {
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        child.kill().expect("killing flow");
+        child.wait().expect("flow");
+        let alive = || std::fs::read(hidden.join("cmdline")).is_ok_and(|words| words.starts_with(b"sleep"));
+        let lives = alive();
+        let said = told(&space.flow(&["store", "gc", "w.toml", "--yes"]));
+        assert!(!alive(), "{} lives on: {said}", hidden.display());
+        lives && ["left 2 processes", "left 3 processes"].iter().any(|words| said.contains(words))
+    });
+    assert!(undisturbed, "it lives after the kill, and the next command ends it and says so");
+}
+
 #[test]
 fn a_program_that_cannot_be_started_says_what_helps() {
     let long = format!("run = [\"echo\", \"{}\"]", "x".repeat(200_000));
@@ -306,4 +376,29 @@ fn a_table_of_more_columns_than_anybody_reads_is_refused() {
     let space = data(&format!("{}\n", heads.join(",")), ANOVA);
     let said = told(&space.flow(&["check", "w.toml"]));
     assert!(said.contains("the first line has 40000 cells; at most 32768 columns are read"), "{said}");
+}
+
+/// The length of the axis was infinite, and the points were drawn somewhere.
+#[test]
+fn what_no_axis_can_show_is_refused() {
+    let figure = "kind = \"figure\"\nshow = \"xy\"\nof = \"d\"\nx = \"a\"\ny = \"y\"";
+    let space = data("a,y\n1,1e308\n2,-1e308\n", figure);
+    let output = space.flow(&["run", "w.toml"]);
+    assert_eq!(output.status.code(), Some(1), "{}", told(&output));
+    let words = "column `y` has values of the size 1e308, which no axis can show";
+    assert!(told(&output).contains(words), "{}", told(&output));
+}
+
+#[test]
+fn a_marker_of_a_remote_that_flow_did_not_write_is_told() {
+    let space = Space::new();
+    std::fs::create_dir(space.path("remote")).expect("a folder");
+    let marker = space.path("remote/flow.remote");
+    let made = Command::new("mkfifo").arg(&marker).status().expect("mkfifo");
+    assert!(made.success());
+    let said = || told(&space.flow(&["store", "pull", "remote", "--unsigned"]));
+    assert!(said().contains("its file `flow.remote` is not the one that flow writes"), "{}", said());
+    std::fs::remove_file(&marker).expect("removing a pipe");
+    space.write("remote/flow.remote", "flow remote 2\n");
+    assert!(said().contains("a newer flow made it"), "{}", said());
 }

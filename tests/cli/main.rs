@@ -20,6 +20,7 @@ mod kill;
 mod nodes;
 mod reading;
 mod readme;
+mod reads;
 mod report;
 mod reruns;
 mod resume;

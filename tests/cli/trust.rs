@@ -266,15 +266,20 @@ fn copy(from: &std::path::Path, to: &std::path::Path) {
 /// that results are missing, and each says what is wrong.
 #[test]
 fn a_store_that_cannot_be_read_is_not_taken_for_an_empty_one() {
-    for broken in ["journal", "objects/FIRST"] {
+    for (broken, by_link) in [("journal", false), ("objects/FIRST", false), ("objects/FIRST", true)] {
         let space = Space::new();
         space.write("w.toml", include_str!("campaign.toml"));
         space.run(&[]);
         let objects = space.objects();
         let first = objects[0].parent().and_then(|folder| folder.file_name()).expect("a folder").to_owned();
         let broken = space.path("store").join(broken.replace("FIRST", first.to_str().expect("a name")));
-        std::fs::remove_dir_all(&broken).expect("removing a folder");
-        std::fs::write(&broken, "a file").expect("writing a file");
+        if by_link {
+            std::fs::rename(&broken, space.path("elsewhere")).expect("moving a folder");
+            symlink(space.path("elsewhere"), &broken).expect("a link");
+        } else {
+            std::fs::remove_dir_all(&broken).expect("removing a folder");
+            std::fs::write(&broken, "a file").expect("writing a file");
+        }
         let left = space.objects();
         for command in ["gc w.toml --yes", "gc w.toml", "verify"] {
             let words: Vec<&str> = std::iter::once("store").chain(command.split(' ')).collect();

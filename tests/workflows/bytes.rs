@@ -4,10 +4,10 @@
 //! As in [`super::texts`], inputs are a function of their number, and `FLOW_FUZZ` says how many. A workbook is mutated within
 //! its parts and packed again, for its check sums would refuse the rest.
 
-use flow::stage::data;
+use super::properties::{surface, workbook};
 use math::random::Stream;
 use shape::mesh::Mesh;
-use shape::{mend, stl};
+use shape::stl;
 use std::io::{Cursor, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use zip::write::SimpleFileOptions;
@@ -64,17 +64,6 @@ fn fuzz(name: &str, corpus: &[Vec<u8>], target: fn(&[u8])) {
     }
 }
 
-/// What is read has finite corners or is refused by what follows, and a surface that is closed has a volume.
-fn surface(bytes: &[u8]) {
-    let Ok(triangles) = stl::read(bytes, 1e-3) else { return };
-    assert!(triangles.len() <= bytes.len());
-    let Ok((mesh, _)) = mend::mend(&triangles) else { return };
-    let (low, high) = mesh.extent();
-    assert!(low.iter().chain(&high).all(|x| x.is_finite()) && mesh.surface() > 0.0);
-    let again = stl::read(&stl::write(&mesh, 1e-3), 1e-3).unwrap();
-    assert_eq!(again.len(), mesh.facets().len());
-}
-
 #[test]
 fn surfaces() {
     let vertices = vec![[0.0; 3], [0.02, 0.0, 0.0], [0.0, 0.03, 0.0], [0.0, 0.0, 0.01]];
@@ -92,13 +81,6 @@ fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
         archive.write_all(bytes).unwrap();
     }
     archive.finish().unwrap().into_inner()
-}
-
-/// A table has as many cells in each column, or there is none.
-fn workbook(bytes: &[u8]) {
-    if let Ok(table) = data::parse(bytes) {
-        assert!(table.rows() > 0 && table.columns.iter().all(|column| column.values.len() == table.rows()));
-    }
 }
 
 #[test]

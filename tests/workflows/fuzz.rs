@@ -4,7 +4,8 @@
 //! many as it says; a failure names the number, and `FLOW_FUZZ_ONLY=number` runs and shows just that one.
 
 use super::corpus::files;
-use flow::plan::{Overrides, parse, schema};
+use super::properties::workflow as read;
+use flow::plan::{Overrides, schema};
 use math::random::Stream;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -174,32 +175,6 @@ impl Inputs {
                 *text = lines.join("\n");
             }
             _ => text.insert_str(a, &pick(random, PIECES).repeat(random.below(200))),
-        }
-    }
-}
-
-/// Reads one input; what comes out must be usable.
-fn read(text: &str, overrides: &Overrides) {
-    match parse("fuzz.toml", text, overrides) {
-        Ok(workflow) => {
-            for (i, stage) in workflow.stages.iter().enumerate() {
-                assert!(stage.inputs.iter().all(|(_, input)| *input < i), "an input comes after its stage");
-                stage.stage.settings();
-            }
-        }
-        Err(faults) => {
-            assert!(!faults.is_empty(), "refused without a fault");
-            for fault in &faults {
-                let locations = fault.location.iter().chain(fault.also.iter().map(|(location, _)| location));
-                for location in locations {
-                    assert!(
-                        location.source.text.get(location.span.clone()).is_some(),
-                        "a fault points outside its text"
-                    );
-                    let (line, column) = location.line_column();
-                    assert!(line > 0 && column > 0);
-                }
-            }
         }
     }
 }

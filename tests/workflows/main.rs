@@ -6,6 +6,7 @@ mod bytes;
 mod corpus;
 mod files;
 mod fuzz;
+mod properties;
 mod schema;
 mod texts;
 mod validator;

@@ -1,13 +1,10 @@
 //! Units, formulas and tables under mutated texts: no panic, and what is read means the same when it is read again.
 //!
-//! Inputs are a function of their number alone, without feedback from the code: coverage-guided fuzzers need an unstable
-//! compiler, and this repository is built by a pinned stable one. `FLOW_FUZZ=1000000 cargo test --release --test workflows
+//! Inputs are a function of their number alone; `fuzz/` runs the same properties with coverage as its guide. `FLOW_FUZZ=1000000 cargo test --release --test workflows
 //! texts` runs as many of each as it says; a failure names the number, and `FLOW_FUZZ_ONLY=number` runs and shows just
 //! that one. What a run by hand finds goes into `tests/workflows/corpus`.
 
-use flow::expression::{Expression, Measure};
-use flow::stage::data;
-use flow::unit::{Unit, parse_any};
+use super::properties::{formula, table, unit};
 use math::random::Stream;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -85,36 +82,6 @@ fn mutated(corpus: &[&str], random: &mut Stream) -> String {
         }
     }
     text
-}
-
-fn unit(text: &str) {
-    if let Ok(unit) = Unit::parse(text) {
-        assert!(unit.factor.is_normal() && unit.factor > 0.0, "{unit:?}");
-        let inverse = Unit::parse(&format!("1/({text})"));
-        if let (Ok(inverse), false) = (inverse, text.trim().is_empty()) {
-            assert!((inverse.factor * unit.factor - 1.0).abs() < 1e-9, "{inverse:?} {unit:?}");
-        }
-        if let Ok((value, dimension)) = parse_any(&format!("2 {text}")) {
-            assert!(value.is_finite() && dimension == unit.dimension);
-        }
-    }
-}
-
-fn formula(text: &str) {
-    let Ok(formula) = Expression::parse(text) else { return };
-    let values = vec![Measure::number(1.5); formula.names().len()];
-    let value = formula.eval(&values).unwrap().value;
-    // A bracket around the whole changes nothing.
-    let again = Expression::parse(&format!("({text})")).map(|same| same.eval(&values).unwrap().value);
-    assert!(again.is_err() || again.is_ok_and(|again| again.to_bits() == value.to_bits() || again.is_nan()));
-}
-
-fn table(text: &str) {
-    let Ok(table) = data::parse(text.as_bytes()) else { return };
-    assert!(table.rows() > 0 && table.columns.iter().all(|column| column.values.len() == table.rows()));
-    let written = flow::export::csv_text(&table);
-    let again = data::parse(written.as_bytes()).unwrap_or_else(|e| panic!("{e}: {written:?}"));
-    assert_eq!(again.columns, table.columns, "{written:?}");
 }
 
 /// Reads the texts of a corpus, and as many mutated ones as were asked for.

@@ -3,11 +3,14 @@
 //! A program may start others that leave its process group (`setsid`), and a campaign that is killed (`kill -9`, no memory)
 //! ends nothing itself. So every run is registered before its program starts, in a folder that only this user can enter
 //! and that is the same for every `TMPDIR`; and its processes are recognised by a variable of their environment,
-//! [`VARIABLE`], or by their working folder. The next campaign on this machine, and `flow store gc`, find the runs whose
-//! campaign has ended, end their processes and remove their folders. A process that clears its environment and leaves the
-//! folder, or that belongs to another user, is not found; while its campaign lives it is, for orphans become its children.
+//! [`VARIABLE`], by their working folder, or by the mark of their campaign (`lineage.rs`). The next campaign on this machine,
+//! and `flow store gc`, find the runs whose campaign has ended, end their processes and remove their folders. While a campaign
+//! lives, orphans become its children. A process of another user (`sudo`) is not found, nor what a program has another one
+//! start that is none of its own (`at`, `systemd-run`, a container's daemon).
 
+use super::lineage::{is_marked, mark_of, mark_own};
 use rustix::process::{Pid, Signal, WaitOptions, getpgrp, getpid, getuid, kill_process, set_child_subreaper, waitpid};
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs::{self, DirBuilder};
 use std::io::Write;
@@ -77,7 +80,7 @@ pub fn end_own() {
         // A record of this number that is older than this process is that of another one.
         if let Some((folder, _)) = read(&entry.path()).filter(|(_, by)| owner(std::process::id()).as_ref() == Some(by))
         {
-            Abandoned { record: entry.path(), folder }.clear();
+            Abandoned { record: entry.path(), folder, mark: None }.clear();
         }
     }
     running().clear();
@@ -90,11 +93,13 @@ pub fn end_own() {
 struct Abandoned {
     record: PathBuf,
     folder: PathBuf,
+    /// The mark of its campaign, which no living process of another one has.
+    mark: Option<u64>,
 }
 
 impl Abandoned {
     fn clear(self) -> String {
-        let ended = end_strays(&self.folder);
+        let ended = end(|| [strays(&self.folder, self.mark), orphans()].concat());
         let own = |meta: &fs::Metadata| meta.is_dir() && meta.uid() == getuid().as_raw();
         let there = fs::symlink_metadata(&self.folder).is_ok_and(|meta| own(&meta));
         let removed = there && fs::remove_dir_all(&self.folder).is_ok();
@@ -119,7 +124,8 @@ impl Abandoned {
 fn abandoned(record: &Path) -> Option<Abandoned> {
     let (folder, by) = read(record)?;
     let pid = by.split_once(' ')?.0.parse().ok()?;
-    (owner(pid) != Some(by)).then(|| Abandoned { record: record.to_owned(), folder })
+    let mark = Some(mark_of(&by));
+    (owner(pid) != Some(by)).then(|| Abandoned { record: record.to_owned(), folder, mark })
 }
 
 /// Folder and campaign of a record whose processes could be seen from here.
@@ -177,9 +183,11 @@ fn running() -> MutexGuard<'static, Vec<u32>> {
 /// Starts a program in a process group of its own.
 pub(super) fn start(command: &mut Command) -> std::io::Result<Child> {
     static ADOPT: Once = Once::new();
-    // Whatever a process does with its group, session, folder and environment: without parent it becomes a child of this one.
+    // Whatever a process does with its group, session, folder and environment: without parent it becomes a child of this one,
+    // and it has its mark.
     ADOPT.call_once(|| {
         let _ = set_child_subreaper(Some(getpid()));
+        owner(std::process::id()).iter().for_each(|own| mark_own(own));
     });
     let mut running = running();
     let child = command.spawn()?;
@@ -228,38 +236,42 @@ fn processes() -> impl Iterator<Item = Process> {
     fs::read_dir("/proc").into_iter().flatten().flatten().filter_map(read)
 }
 
-/// Ends every process that a run left, and returns their number.
-pub(super) fn end_strays(folder: &Path) -> usize {
+/// Ends every process that a run of this campaign left.
+pub(super) fn end_strays(folder: &Path) {
+    end(|| [strays(folder, None), orphans()].concat());
+}
+
+/// Ends processes until none is found, for one may start another while it is ended; returns their number.
+fn end(find: impl Fn() -> Vec<Pid>) -> usize {
     const ROUNDS: usize = 20;
-    let mut ended = 0;
-    // Repeated until none is found: a process may start another while it is ended.
+    let mut ended = BTreeSet::new();
     for _ in 0..ROUNDS {
-        let found = [strays(folder), orphans()].concat();
+        let found = find();
         if found.is_empty() {
             break;
         }
-        ended += found.iter().filter(|pid| kill_process(**pid, Signal::KILL).is_ok()).count();
+        let killed = found.into_iter().filter(|pid| kill_process(*pid, Signal::KILL).is_ok());
+        ended.extend(killed.map(Pid::as_raw_pid));
         std::thread::sleep(Duration::from_millis(2));
     }
-    ended
+    ended.len()
 }
 
-/// Processes of this user that were started in a run of this folder, or work in it.
-fn strays(folder: &Path) -> Vec<Pid> {
-    let Ok(processes) = fs::read_dir("/proc") else { return Vec::new() };
+/// Processes of this user that were started in a run of this folder, work in it, or have the mark.
+fn strays(folder: &Path, mark: Option<u64>) -> Vec<Pid> {
     let entry = [VARIABLE.as_bytes(), b"=", folder.as_os_str().as_bytes()].concat();
     let user = getuid().as_raw();
-    let own = std::process::id();
     let stray = |path: &Path| {
         let environment = fs::read(path.join("environ")).unwrap_or_default();
         let told = environment.split(|byte| *byte == 0).any(|variable| variable == entry);
         told || fs::read_link(path.join("cwd")).is_ok_and(|cwd| cwd.starts_with(folder))
+            || mark.is_some_and(|mark| is_marked(path, mark))
     };
-    let number = |process: &fs::DirEntry| process.file_name().to_str()?.parse::<u32>().ok().filter(|pid| *pid != own);
-    let all = processes.flatten().filter_map(|process| Some((number(&process)?, process.path())));
+    // One that has ended, and that nobody has waited for, still has its limits.
+    let alive = processes().filter(|process| !process.over && process.pid != getpid());
+    let all = alive.map(|process| (process.pid, PathBuf::from(format!("/proc/{}", process.pid.as_raw_pid()))));
     let mine = all.filter(|(_, path)| fs::metadata(path).is_ok_and(|meta| meta.uid() == user));
-    // A process that has ended and that nobody waited for has no environment and no folder.
-    mine.filter(|(_, path)| stray(path)).filter_map(|(pid, _)| Pid::from_raw(pid as i32)).collect()
+    mine.filter(|(_, path)| stray(path)).map(|(pid, _)| pid).collect()
 }
 
 #[cfg(test)]
@@ -278,13 +290,14 @@ mod tests {
             .stdout(Stdio::null())
             .spawn()
             .unwrap();
-        while strays(folder.path()).len() < 2 {
+        let left = || strays(folder.path(), None);
+        while left().len() < 2 {
             std::thread::sleep(Duration::from_millis(5));
         }
-        assert!(end_strays(folder.path()) >= 2);
+        assert!(end(left) >= 2);
         // It was waited for when it was ended; a second wait would find no child.
         let _ = child.wait();
-        assert_eq!(strays(folder.path()), []);
+        assert_eq!(left(), []);
     }
 
     #[test]

@@ -24,6 +24,7 @@
 mod folder;
 mod json;
 pub mod leftover;
+mod lineage;
 mod number;
 mod read;
 mod template;

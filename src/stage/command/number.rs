@@ -4,6 +4,8 @@
 //! a letter (`0.123-100`), fields too narrow for their number (`*****`), and the words of compilers for "not a number"
 //! (`NaN`, `-nan(ind)`, `1.#QNAN`). Decimal commas and thousands separators are refused because they are ambiguous.
 
+use crate::unit::vanishes;
+
 /// The value of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
@@ -29,6 +31,7 @@ pub(super) fn number(text: &str) -> Result<Number, String> {
     }
     let value = text.parse().ok().or_else(|| fortran(text)?.parse().ok());
     match value {
+        Some(value) if vanishes(text, value) => Err("is too small for a number of the machine: it would be 0".into()),
         Some(value) if f64::is_finite(value) => Ok(Number::Finite(value)),
         Some(_) => Err("is not a finite number".into()),
         None if text.contains(',') => Err("is not a number; decimals stand behind a point".into()),

@@ -2,7 +2,7 @@
 
 use super::super::StageError;
 use super::dialect::{Decimal, is_meant_as_number, is_number};
-use crate::artifact::Table;
+use crate::artifact::{Column, Values};
 use crate::unit::Unit;
 use std::collections::HashSet;
 
@@ -15,13 +15,12 @@ pub(super) struct Cells<'a> {
     pub missing: Option<&'a [String]>,
 }
 
-/// Adds one column to the table; `names` are those of the columns that it has.
+/// One column of the table; `names` are those of the columns before it.
 pub(super) fn column(
-    table: Table,
     (head, cells): (&str, Vec<String>),
     how: &Cells,
     names: &mut HashSet<String>,
-) -> Result<Table, StageError> {
+) -> Result<Column, StageError> {
     let (name, unit) = name_and_unit(head)?;
     if name.is_empty() {
         let message = format!("column {} has no name: every column needs a name of its own", names.len() + 1);
@@ -32,13 +31,15 @@ pub(super) fn column(
     if !names.insert(name.to_owned()) {
         return Err(StageError::new(format!("two columns are called `{name}`: every column needs a name of its own")));
     }
+    let column =
+        |unit: &str, values| Column { name: name.to_owned(), unit: unit.to_owned(), about: String::new(), values };
     let numbers: Option<Vec<f64>> = cells.iter().map(|cell| how.number(cell)).collect();
     if let Some(values) = numbers {
-        return Ok(table.reals_column(name, unit, "", values));
+        return Ok(column(unit, Values::Reals(values)));
     }
     how.check_words(name, unit, &cells)?;
     let words = cells.into_iter().map(|cell| if how.is_missing(&cell) { String::new() } else { cell });
-    Ok(table.texts_column(name, "", words.collect()))
+    Ok(column("", Values::Texts(words.collect())))
 }
 
 /// Signs in the place of a unit that say that there is none, as in `w/c [-]`.

@@ -2,6 +2,7 @@
 
 use super::super::StageError;
 use super::super::sheet::below_comments;
+use crate::unit::vanishes;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -220,12 +221,7 @@ fn could_be_thousands(cell: &str) -> bool {
 /// Whether a text is a finite number in plain notation.
 pub(super) fn is_number(text: &str) -> bool {
     let sane = text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b));
-    sane && text.parse::<f64>().is_ok_and(|value| value.is_finite() && !(value == 0.0 && is_tiny(text)))
-}
-
-/// Whether a number that is read as zero has another digit than 0 before its exponent: it is too small for a double.
-fn is_tiny(text: &str) -> bool {
-    text.split(['e', 'E']).next().unwrap_or_default().bytes().any(|digit| (b'1'..=b'9').contains(&digit))
+    sane && text.parse::<f64>().is_ok_and(|value| value.is_finite() && !vanishes(text, value))
 }
 
 /// Whether a text that is no number here is one elsewhere: `inf`, `1e400`, `0x10`, `5%`, digits of other scripts,

@@ -9,7 +9,7 @@ use super::super::StageError;
 use super::super::sheet::Sheet;
 use super::dialect::{self, Decimal, Dialect};
 use archive::{Archive, broken};
-use calamine::{Data, ExcelDateTime, Reader, Sheets, open_workbook_auto_from_rs};
+use calamine::{Data, Dimensions, ExcelDateTime, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,6 +35,7 @@ pub(super) fn sheet(bytes: &[u8], how: &Dialect) -> Result<Book, StageError> {
     let mut cells = cells(bytes, how.sheet.as_deref())?;
     let first = how.first_line.unwrap_or(1) as u32 - 1;
     cells.rows.retain(|row, _| *row >= first);
+    cells.check_merged()?;
     let detected = cells.settle_decimals(how.decimal)?;
     let said =
         detected.then(|| "detected: decimal commas in cells that hold text; the key `decimal` fixes it".to_owned());
@@ -108,6 +109,8 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<St
                 let ((row, column), value) = (cell.get_position(), Data::from(cell.get_value().clone()));
                 cells.take(&name, row, column, read(&value))?;
             }
+            drop(reader);
+            cells.merged = book.merge_cells_by_sheet_name(&name).map_err(broken)?;
         }
         Sheets::Xlsb(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
@@ -117,6 +120,9 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<St
             }
         }
         Sheets::Xls(_) | Sheets::Ods(_) => {
+            if let Sheets::Xls(book) = &book {
+                cells.merged = book.merge_cells_by_sheet_name(&name).map_err(broken)?;
+            }
             let range = book.worksheet_range(&name).map_err(broken)?;
             let (row, column) = range.start().unwrap_or_default();
             for (i, j, cell) in range.used_cells() {
@@ -159,6 +165,8 @@ struct Cells {
     rows: BTreeMap<u32, Vec<(u32, Cell)>>,
     /// The first column that is used, and the last.
     columns: Option<[u32; 2]>,
+    /// The merged cells of a workbook of Excel.
+    merged: Vec<Dimensions>,
 }
 
 impl Cells {
@@ -221,6 +229,19 @@ impl Cells {
             return Err(StageError::new(message).hint("name a part of it, or delete what lies far from the table"));
         }
         Ok(())
+    }
+
+    /// Refuses merged cells, of which only the first holds the value that people see in all of them.
+    fn check_merged(&self) -> Result<(), StageError> {
+        let filled = |(row, column): (u32, u32)| {
+            self.rows.get(&row).is_some_and(|cells| cells.iter().any(|(own, _)| *own == column))
+        };
+        let Some(cells) = self.merged.iter().find(|cells| cells.start != cells.end && filled(cells.start)) else {
+            return Ok(());
+        };
+        let row = u64::from(cells.start.0) + 1;
+        let message = format!("row {row}: cells are merged, and only the first of them holds the value");
+        Err(StageError::new(message).hint("split them, and write the value into each cell that it is for"))
     }
 
     /// The lines, all of one length, from the first column that is used to the last.
@@ -288,5 +309,18 @@ mod tests {
         assert_eq!([date(0.5), date(0.75 + 1.0 / 86_400.0)], ["12:00:00", "18:00:01"]);
         assert_eq!(in_words(ExcelDateTime::new(1.5, ExcelDateTimeType::TimeDelta, false)), "36:00:00");
         assert_eq!(clock(-90.0), "-0:01:30");
+    }
+
+    #[test]
+    fn merged_cells_are_refused_where_they_hold_a_value() {
+        let merged = |start, end| {
+            let mut cells = Cells { merged: vec![Dimensions { start, end }], ..Cells::default() };
+            cells.add(1, 0, Cell::value("1")).unwrap();
+            cells.check_merged()
+        };
+        let error = merged((1, 0), (2, 0)).unwrap_err();
+        assert_eq!(error.message, "row 2: cells are merged, and only the first of them holds the value");
+        assert_eq!(merged((1, 0), (1, 0)), Ok(()));
+        assert_eq!(merged((5, 5), (9, 9)), Ok(()), "only their frame is merged");
     }
 }

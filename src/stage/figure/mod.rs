@@ -49,6 +49,7 @@ mod validity;
 use super::beside::Beside;
 use super::given::check_given;
 use super::invalid::Invalid;
+use super::reads::Reads;
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Progress, Stage, StageError, Step, Task, Work,
 };
@@ -190,6 +191,23 @@ impl Stage for Figure {
             found.push(self.without_effect("band"));
         }
         found
+    }
+
+    fn reads(&self) -> Vec<Reads> {
+        let main = self.table.as_deref().is_none_or(|name| Some(name) == ArtifactKind::RESULTS.main_table());
+        let read = |path: &str, columns: Vec<&String>| Reads {
+            path: path.to_owned(),
+            stages: self.of.list(),
+            columns: columns.into_iter().cloned().collect(),
+        };
+        let mut all = vec![read("factors", self.factors.iter().collect())];
+        if main && self.show.needs().is_plot() {
+            // Curves have columns of their own along and up the page.
+            let along = (self.show != Show::Curves).then(|| [("x", &self.x), ("y", &self.y), ("value", &self.value)]);
+            all.extend(along.into_iter().flatten().map(|(key, column)| read(key, column.iter().collect())));
+            all.extend([read("by", self.by.iter().collect()), read("where", self.only.keys().collect())]);
+        }
+        all
     }
 
     fn beside(&self, _context: &Context, found: &mut Beside) {

@@ -24,6 +24,9 @@ use stats::sample::{Factor, Response, Sample};
 use stats::summary::{self, Summary};
 use stats::terms::Term;
 
+/// Beyond this the length of an axis may be infinite.
+const LARGEST: f64 = 1e300;
+
 /// A column of the plot: its quantity, its numbers, and names where its cells are words.
 pub(super) struct Shown {
     pub quantity: Quantity,
@@ -53,6 +56,10 @@ impl Shown {
                 .hint("give the column's unit in its head, as in `Ec [GPa]`")
         })?;
         let values = to.of_all(values);
+        if let Some(value) = values.iter().find(|value| value.abs() > LARGEST) {
+            let message = format!("column `{}` has values of the size {value:e}, which no axis can show", column.name);
+            return Err(StageError::new(message).hint("take another unit, or leave the row out with `where`"));
+        }
         Ok(Self { quantity: Quantity { unit, ..label.quantity() }, values, names })
     }
 

@@ -25,7 +25,8 @@ impl RemoteFolder {
         let folder = Self(Disk { root: path.to_owned(), read_only: false });
         match folder.read("", MARKER, 1 << 12)? {
             Some(text) if text.starts_with(b"flow remote 1\n") => Ok(folder),
-            Some(_) => Err(not("a newer flow made it")),
+            Some(text) if text.starts_with(b"flow remote ") => Err(not("a newer flow made it")),
+            Some(_) => Err(not("its file `flow.remote` is not the one that flow writes")),
             None => Err(not("it has no file `flow.remote`, which flow makes with a remote")),
         }
     }

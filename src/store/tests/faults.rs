@@ -122,6 +122,32 @@ fn short_writes(fault: Fault) {
     }
 }
 
+/// On a network drive the name of a claim may already be that of another node's file, which only reading it back shows.
+#[test]
+fn a_result_whose_claim_holds_something_else_is_written_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open_as(folder.path(), Mark::of(&[1; 32])).unwrap();
+    let Claim::Mine(claim) = store.claim(&Key::of(&text(0))).unwrap() else { panic!("nobody else computes it") };
+    plan(Some(Fault::Lie), 0, false);
+    let stored = store.finish(claim, text(0), result(0.0), &timing(0.0));
+    assert_eq!(met(), 1);
+    plan(None, 0, false);
+    stored.unwrap();
+    assert!(store.verify().unwrap().is_sound());
+}
+
+#[test]
+fn a_disk_that_does_not_hold_what_it_is_given_is_not_called_full() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::open_as(folder.path(), Mark::of(&[1; 32])).unwrap();
+    plan(Some(Fault::Lie), 0, true);
+    let refused = store.put(&text(0), result(0.0), &timing(0.0)).map(|_| ());
+    plan(None, 0, false);
+    let error = refused.unwrap_err();
+    assert!(matches!(error, StoreError::Changed { .. }), "{error}");
+    assert!(error.to_string().contains("others were read back: the disk is failing"), "{error}");
+}
+
 /// After a power cut what was not synced may be there, in part, or not at all.
 #[test]
 fn what_a_power_cut_leaves_in_part_is_noticed_and_computed_again() {

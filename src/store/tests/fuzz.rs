@@ -3,12 +3,9 @@
 //!
 //! The inputs are a function of their number alone, made from a small corpus (`tests/reference/hostile` and what the store
 //! writes). `FLOW_FUZZ=1000000 cargo test --release --lib store::tests::fuzz` runs as many as it says; a failure names the
-//! number. The harness needs no nightly compiler, so it runs wherever the tests do.
+//! number. What must hold for them is `store/hostile.rs`, which `fuzz/` runs with coverage as its guide.
 
-use super::*;
-use crate::artifact::ContentHash;
-use crate::store::journal::Index;
-use crate::store::{hdf5, memo};
+use crate::store::hostile;
 use math::random::Stream;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -55,7 +52,7 @@ fn fuzz(corpus: &[Vec<u8>], mut target: impl FnMut(&[u8])) {
     }
 }
 
-fn hostile() -> Vec<Vec<u8>> {
+fn hostile_files() -> Vec<Vec<u8>> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/hostile");
     let files = std::fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path());
     let mut files: Vec<_> = files.filter(|path| path.extension().is_some_and(|end| end == "h5")).collect();
@@ -65,71 +62,31 @@ fn hostile() -> Vec<Vec<u8>> {
 
 #[test]
 fn mutated_objects_are_refused_or_come_to_a_value_that_can_be_stored() {
-    let mut corpus = hostile();
-    for value in 0..4 {
-        corpus.push(hdf5::encode(&result(f64::from(value)), "work = test".to_owned()).unwrap());
-    }
-    fuzz(&corpus, |bytes| {
-        if let Ok((artifact, text)) = hdf5::decode(bytes.to_vec()) {
-            let (content, bytes) = (artifact.content_hash(), artifact.bytes());
-            assert!(bytes < 1 << 30);
-            if let Ok(image) = hdf5::encode(&artifact.canonical(), text) {
-                assert_eq!(hdf5::decode(image).unwrap().0.content_hash(), content);
-            }
-        }
-    });
+    fuzz(&[hostile_files(), hostile::objects()].concat(), hostile::object);
 }
 
 #[test]
 fn mutated_journals_give_no_own_record_that_was_not_written() {
-    let folder = tempfile::tempdir().unwrap();
-    let mark = Mark::of(&[1; 32]);
-    let store = Store::open_as(folder.path(), mark.clone()).unwrap();
-    let written: Vec<_> =
-        (0..3).map(|n| store.put(&format!("t{n}"), result(f64::from(n)), &timing(0.0)).unwrap().0.object()).collect();
-    drop(store);
-    let journal = folder.path().join("journal");
-    let path = std::fs::read_dir(&journal).unwrap().flatten().next().unwrap().path();
-    let bytes = std::fs::read(&path).unwrap();
-    let first = [b"flow journal 1 {}".to_vec(), bytes[17..].to_vec()].concat();
-    let disk = Disk { root: folder.path().to_owned(), read_only: false };
-    fuzz(&[bytes, first, vec![b' '; 700]], |bytes| {
-        std::fs::write(&path, bytes).unwrap();
-        let mut index = Index::new(mark.clone(), "here");
-        index.refresh(&disk, &Default::default()).unwrap();
-        for record in index.records() {
-            assert!(!record.own || written.contains(&record.object()));
-            assert!(record.seconds.is_finite());
-            index.of_task(&record.key);
-            index.with_content(&record.content);
-        }
-        index.damaged();
-        index.marked_records();
-    });
+    let journal = hostile::Journal::default();
+    fuzz(&journal.corpus(), |bytes| journal.read(bytes));
 }
 
 #[test]
-fn mutated_memos_are_none_or_what_was_kept() {
-    let mark = Mark::of(&[1; 32]);
-    let object = ObjectId { content: ContentHash([3; 32]), key: Key([4; 32]) };
-    let memo = |note: &str, data: usize, objects: usize| Memo {
-        note: note.to_owned(),
-        data: vec![5; data],
-        objects: vec![object; objects],
-    };
-    let kept = [memo("", 0, 0), memo("σ = 3", 40, 1), memo("{}", 300, 9)];
-    let key = Key([1; 32]);
-    let corpus: Vec<_> = kept.iter().map(|one| memo::pack(&mark, &key, one)).collect();
-    fuzz(&corpus, |bytes| {
-        if let Some(found) = memo::unpack(&mark, &key, bytes) {
-            assert!(kept.contains(&found));
+fn mutated_memos_are_none_or_what_was_written() {
+    fuzz(&hostile::memos(), hostile::memo);
+}
+
+/// Writes what the store writes as the corpus of `fuzz/`: `cargo test --lib seeds -- --ignored`, after a change of a format.
+#[test]
+#[ignore = "writes into the repository"]
+fn seeds() {
+    let all =
+        [("journal", hostile::Journal::default().corpus()), ("object", hostile::objects()), ("memo", hostile::memos())];
+    for (name, corpus) in all {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds").join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        for (number, bytes) in corpus.iter().enumerate() {
+            std::fs::write(folder.join(number.to_string()), bytes).unwrap();
         }
-        // With a right checksum, as anybody can make one.
-        let mut forged = bytes.to_vec();
-        if let Some(end) = forged.len().checked_sub(32) {
-            let check = blake3::hash(&forged[..end]);
-            forged[end..].copy_from_slice(check.as_bytes());
-            assert_eq!(memo::unpack(&mark, &key, &forged), None);
-        }
-    });
+    }
 }

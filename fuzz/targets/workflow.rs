@@ -1,0 +1,9 @@
+//! Workflow files.
+
+#![no_main]
+
+#[allow(dead_code)]
+#[path = "../../tests/workflows/properties.rs"]
+mod properties;
+
+libfuzzer_sys::fuzz_target!(|text: &str| properties::workflow(text, &flow::plan::Overrides::default()));
