@@ -140,6 +140,7 @@ const SYMBOLS: &[(&str, f64, Dimension, bool)] = &[
     ("s", 1.0, Dimension::new(0, 0, 1), true),
     ("min", 60.0, Dimension::new(0, 0, 1), false),
     ("h", 3600.0, Dimension::new(0, 0, 1), false),
+    ("d", 86_400.0, Dimension::new(0, 0, 1), false),
     ("Hz", 1.0, Dimension::new(0, 0, -1), true),
     ("N", 1.0, Dimension::new(1, 1, -2), true),
     ("Pa", 1.0, Dimension::new(-1, 1, -2), true),

@@ -139,8 +139,8 @@ impl MainEffects {
             spans.push((high - low, f.factor.words()));
         }
         spans.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let most: Vec<String> =
-            spans.iter().take(3).map(|(d, name)| format!("{name} ({} {})", fixed(*d, 3), self.response.unit)).collect();
+        let value = |span: f64| format!("{} {}", fixed(span, 3), self.response.unit).trim_end().to_owned();
+        let most: Vec<String> = spans.iter().take(3).map(|(span, name)| format!("{name} ({})", value(*span))).collect();
         format!(
             "Mean response per level of {} factors. The means differ most for {}.",
             self.factors.len(),

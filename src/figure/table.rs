@@ -31,6 +31,16 @@ pub struct Symbols {
 }
 
 impl Symbols {
+    /// The symbol of a column, and what its key says beside the name: ` published` of `UCS published`.
+    fn head<'a>(&'a self, column: &'a Column) -> Option<(&'a str, &'a str)> {
+        if !column.symbol.is_empty() {
+            return Some((&column.symbol, ""));
+        }
+        let at = column.key.find(' ')?;
+        let (name, word) = column.key.split_at(at);
+        self.of.get(name).map(|symbol| (symbol.as_str(), word))
+    }
+
     /// A cell as mathematics; nothing of a cell that holds anything but names with symbols.
     fn cell(&self, column: &Column, text: &str) -> Option<String> {
         if !self.columns.contains(&column.key.as_str()) {
@@ -130,7 +140,7 @@ impl Table {
             out += &format!("\\label{{{}}}\n", escape::latex_label(&self.label));
         }
         out += &format!("\\begin{{tabular}}{{{align}}}\n\\toprule\n");
-        let head: Vec<String> = self.columns.iter().map(latex_head).collect();
+        let head: Vec<String> = self.columns.iter().map(|c| self.latex_head(c)).collect();
         out += &format!("{} \\\\\n\\midrule\n", head.join(" & "));
         for row in 0..rows(&self.columns) {
             let cells: Vec<String> = self.columns.iter().map(|c| self.latex_cell(c, row)).collect();
@@ -149,7 +159,7 @@ impl Table {
         if !self.caption.is_empty() {
             out += &format!("**{}**\n\n", escape::markdown_markup(&self.caption));
         }
-        let head: Vec<String> = self.columns.iter().map(markdown_head).collect();
+        let head: Vec<String> = self.columns.iter().map(|c| self.markdown_head(c)).collect();
         let rule = self.columns.iter().map(|c| if matches!(c.values, Values::Words(_)) { ":--" } else { "--:" });
         out += &format!("| {} |\n| {} |\n", head.join(" | "), rule.collect::<Vec<_>>().join(" | "));
         for row in 0..rows(&self.columns) {
@@ -160,6 +170,23 @@ impl Table {
             out += &format!("\n{}\n", escape::markdown_markup(note));
         }
         out
+    }
+
+    fn latex_head(&self, c: &Column) -> String {
+        let name = match self.symbols.head(c) {
+            Some((symbol, word)) => format!("${symbol}${}", escape::latex(word)),
+            None => escape::latex(&c.key),
+        };
+        if c.unit.is_empty() { name } else { format!("{name} / {}", latex_unit(&c.unit)) }
+    }
+
+    fn markdown_head(&self, c: &Column) -> String {
+        let name = match self.symbols.head(c) {
+            // A bar would end the cell, also within mathematics.
+            Some((symbol, word)) => format!("${}${}", symbol.replace('|', "\\vert "), escape::markdown(word)),
+            None => escape::markdown(&c.key),
+        };
+        if c.unit.is_empty() { name } else { format!("{name} / {}", escape::markdown(&c.unit)) }
     }
 
     fn latex_cell(&self, c: &Column, row: usize) -> String {
@@ -187,24 +214,12 @@ impl Table {
     }
 }
 
-fn latex_head(c: &Column) -> String {
-    let name = if c.symbol.is_empty() { escape::latex(&c.key) } else { format!("${}$", c.symbol) };
-    if c.unit.is_empty() { name } else { format!("{name} / {}", latex_unit(&c.unit)) }
-}
-
 fn latex_unit(unit: &str) -> String {
     let part = |(text, power): (&str, &str)| {
         let text = escape::latex(text).replace("{*}", "$\\cdot$");
         if power.is_empty() { text } else { format!("{text}$^{{{}}}$", escape::latex(power)) }
     };
     unit_parts(unit).into_iter().map(part).collect()
-}
-
-fn markdown_head(c: &Column) -> String {
-    // A bar would end the cell, also within mathematics.
-    let name =
-        if c.symbol.is_empty() { escape::markdown(&c.key) } else { format!("${}$", c.symbol.replace('|', "\\vert ")) };
-    if c.unit.is_empty() { name } else { format!("{name} / {}", escape::markdown(&c.unit)) }
 }
 
 #[cfg(test)]
@@ -257,6 +272,9 @@ mod tests {
         );
         assert_eq!(cells(table.markdown(), "|")[6], r"| $R\vert _0$ | mu |");
         assert!(table.csv().contains("kn_ks^2,mu\n"), "programs read names");
+        let published = Table { columns: vec![Column::reals("mu published", vec![1.0]).with_unit("%")], ..table };
+        assert!(published.latex().contains("\n$\\mu$ published / \\% \\\\\n"), "{}", published.latex());
+        assert!(published.markdown().contains("| $\\mu$ published / % |"), "{}", published.markdown());
     }
 
     #[test]

@@ -134,6 +134,9 @@ struct Params {
     /// Units of responses, for tables that list quantities row by row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     units: Option<BTreeMap<String, String>>,
+    /// The columns whose unit the workflow declares.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    declared: Vec<String>,
     #[serde(default = "keep", skip_serializing_if = "is_kept")]
     invalid: Invalid,
 }
@@ -239,6 +242,9 @@ impl Stage for Table {
         let names = columns.iter().any(|column| NAMING_COLUMNS.contains(&column.as_str()));
         let rowwise = units::ROWWISE.iter().all(|name| columns.iter().any(|column| column == name));
         let units = || known.context.responses.iter().map(|(name, r)| (name.clone(), r.unit.clone())).collect();
+        let is_declared = |column: &&String| {
+            known.context.responses.contains_key(*column) || known.context.factors.contains_key(*column)
+        };
         let params = Params {
             table: self.table.clone(),
             columns: self.columns.clone(),
@@ -255,6 +261,7 @@ impl Stage for Table {
             stages: if stages.len() > 1 && given.is_none() { stages } else { Vec::new() },
             given,
             units: rowwise.then(units),
+            declared: columns.iter().filter(|column| is_declared(column)).cloned().collect(),
             invalid: self.invalid.unwrap_or(Invalid::Keep),
         };
         let mut task = Task::new(Self::WORKS[0].name, json!(params));
@@ -297,7 +304,7 @@ impl Kind for Table {
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
-    /// 8: names in cells and notes are printed by their symbols. 7: the notes of a published table stand in the last column. 6: names in what is stated below the table keep their letters. 5: runs that are not valid are marked, which is stated below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    /// 8: names in cells and notes are printed by their symbols; quantities that the workflow does not declare are in the units of the field. 7: the notes of a published table stand in the last column. 6: names in what is stated below the table keep their letters. 5: runs that are not valid are marked, which is stated below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
     const WORKS: &'static [Work] = &[Work { name: "table", version: 8, run: print }];
 }
 
@@ -336,6 +343,9 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     }
     if let Some(given) = &params.given {
         columns = chosen(&given.table(), &params, &|_| true)?;
+    }
+    if params.pivot.is_none() && params.given.is_none() {
+        units::of_the_field(&mut columns, &params.declared);
     }
     if job.files.iter().any(|file| file.name == "published") {
         let other = super::data::parse(&job.file("published")?)?;

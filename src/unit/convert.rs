@@ -108,6 +108,7 @@ mod tests {
             (2.65, "g/cm^3", 2650.0, "kg/m^3"),
             (1.1, "kN/mm^2", 1.1, "GPa"),
             (90.0, "s", 1.5, "min"),
+            (28.0, "d", 672.0, "h"),
             (0.25, "MPa*m^1", 0.25e3, "MPa*mm"),
         ] {
             assert_eq!(convert(a, from, to), b, "{a} {from}");

@@ -151,8 +151,9 @@ fn markup(shown: &Shown, context: &Context) -> Markup {
 
 /// The symbol of a factor or response with its name beside it, or the name alone.
 fn name(context: &Context, name: &str) -> Markup {
-    // A symbol that reads as the name needs it no more.
-    match symbol::of(context, name).filter(|_| symbol::raw(context, name) != Some(name)) {
+    match symbol::of(context, name) {
+        // A symbol that reads as the name needs it no more.
+        Some(symbol) if symbol::raw(context, name) == Some(name) => html! { span.symbol { (symbol) } },
         Some(symbol) => html! { span.symbol { (symbol) } " " span.name { (name) } },
         None => html! { span.symbol { (name) } },
     }

@@ -6,8 +6,9 @@ const Solve = (() => {
   // Of a band the end that others are measured by.
   const reference = ([low, high]) => Number.isFinite(low) ? low : high;
 
-  // The places whose quantities lie in given bands. `rise(u)` gives their values and slopes in the unit box.
-  const level = (domain, rise, bands, same = 1e-9) => {
+  // The places whose quantities lie in given bands. `rise(u)` gives their values and slopes in the unit box. Where `any` of
+  // them will do, the search ends at the first.
+  const level = (domain, rise, bands, same = 1e-9, any = false) => {
     const beyond = (values) => values.map((y, j) => {
       const [low, high] = bands[j], scale = size(reference(bands[j]));
       return [(y - low) / scale, (y - high) / scale];
@@ -37,10 +38,17 @@ const Solve = (() => {
     };
 
     const nearest = (start, preference) => {
-      let u = start.slice();
+      let u = start.slice(), last = null, before = Infinity;
       for (let turn = 0; turn < ITERATIONS; turn++) {
         const { values, slopes } = rise(u);
-        const ends = beyond(values), aim = step(u, ends, slopes, preference);
+        const ends = beyond(values);
+        if (any) {
+          const is = worst(ends);
+          if (is <= same) return u;
+          // A place that exists is come to in a few steps.
+          if (turn % 5 === 4) { if (is > 0.5 * before) return null; before = is; }
+        }
+        const aim = step(u, ends, slopes, preference);
         if (!aim) return null;
         const limit = Math.max(2 * worst(ends), 0.02);
         let next = aim;
@@ -48,7 +56,11 @@ const Solve = (() => {
           const share = part;
           next = u.map((x, i) => x + share * (aim[i] - x));
         }
+        // Along a bent surface whole steps go to and fro across the nearest place: half of one that turns back lands beside it.
+        const back = last && Numeric.dot(last, next.map((x, i) => x - u[i])) < 0;
+        if (back) next = next.map((x, i) => 0.5 * (x + u[i]));
         next = domain.repair(next);
+        last = next.map((x, i) => x - u[i]);
         const moved = next.reduce((most, x, i) => Math.max(most, Math.abs(x - u[i])), 0);
         u = next;
         if (moved < 1e-9 && worst(beyond(rise(u).values)) <= SAME) break;
@@ -198,7 +210,7 @@ const Solve = (() => {
       slopes.push(domain.free.map((_, j) => j === k ? sign : 0));
       return { values: keep.map((i) => values[i]), slopes: keep.map((i) => slopes[i]) };
     };
-    const set = level(domain, rise, keep.map((i) => asked[i]), 1e-7);
+    const set = level(domain, rise, keep.map((i) => asked[i]), 1e-7, true);
     const u = set.nearest(from, from);
     return u && set.isMet(u) ? u : null;
   };

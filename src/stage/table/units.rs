@@ -1,7 +1,7 @@
 //! Converts quantities that a table lists row by row (`value,unit`, in SI units) to the units of readers.
 //!
 //! A response of the workflow (column `response`) gets the unit of its `[response.NAME]`, another quantity that of the
-//! field ([`super::super::units`]).
+//! field ([`super::super::units`]). So does a column that the workflow does not declare.
 
 use super::super::units::shown_unit;
 use crate::unit::Conversion;
@@ -42,6 +42,20 @@ pub(super) fn readable(columns: &mut [Column], wanted: &BTreeMap<String, String>
                 }
             }
             Values::Reals(_) | Values::Whole(_) | Values::Words(_) => {}
+        }
+    }
+}
+
+/// Converts columns of quantities that the workflow does not declare, which are in SI units, to the units of the field.
+pub(super) fn of_the_field(columns: &mut [Column], declared: &[String]) {
+    for column in columns.iter_mut().filter(|column| !declared.contains(&column.key)) {
+        let Values::Reals(values) = &mut column.values else { continue };
+        let largest =
+            values.iter().filter(|value| value.is_finite()).fold(0.0, |most: f64, value| most.max(value.abs()));
+        let (unit, shown) = one(None, &column.unit, largest);
+        if !shown.is_identity() {
+            values.iter_mut().for_each(|value| *value = shown.of(*value));
+            column.unit = unit;
         }
     }
 }
