@@ -15,7 +15,7 @@ const SPARE: usize = 3;
 /// The responses that the runs lead to expect.
 pub(super) enum Seen {
     /// By models of the responses.
-    Models(Models),
+    Models(Box<Models>),
     /// By the mean slope of the one response over the one factor.
     Slopes(Box<Problem>, Slopes),
 }
@@ -32,7 +32,7 @@ impl Seen {
                 return Some(Self::Slopes(Box::new(problem.clone()), Slopes::of(&slopes)?));
             }
             _ if count(runs) < needed(method, problem) => return None,
-            _ => return twin::fitted(problem, runs).map(Self::Models),
+            _ => return twin::fitted(problem, runs).map(Self::models),
         };
         let trial = |run: Run| {
             let responses = run.responses.unwrap_or_default();
@@ -40,7 +40,11 @@ impl Seen {
         };
         let all: Vec<Trial> = knowledge.earlier.iter().cloned().chain(runs.iter().map(Told::run)).map(trial).collect();
         let process = settings.model == Model::GaussianProcess;
-        Models::fit(&all, problem, process, knowledge.trend.as_ref()).map(Self::Models)
+        Models::fit(&all, problem, process, knowledge.trend.as_ref()).map(Self::models)
+    }
+
+    fn models(models: Models) -> Self {
+        Self::Models(Box::new(models))
     }
 
     /// What is expected at a point of the unit box.

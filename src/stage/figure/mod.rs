@@ -203,7 +203,7 @@ impl Stage for Figure {
         let mut all = vec![read("factors", self.factors.iter().collect())];
         if main && self.show.needs().is_plot() {
             // Curves have columns of their own along and up the page.
-            let along = (self.show != Show::Curves).then(|| [("x", &self.x), ("y", &self.y), ("value", &self.value)]);
+            let along = (self.show != Show::Curves).then_some([("x", &self.x), ("y", &self.y), ("value", &self.value)]);
             all.extend(along.into_iter().flatten().map(|(key, column)| read(key, column.iter().collect())));
             all.extend([read("by", self.by.iter().collect()), read("where", self.only.keys().collect())]);
         }
