@@ -47,7 +47,6 @@ const KEEPERS: &[(&str, &[&str])] = &[
     ("clap", &["cli"]),
     ("annotate_snippets", &["cli"]),
     ("indicatif", &["cli"]),
-    ("comfy_table", &["cli"]),
     ("signal_hook", &["cli"]),
     ("csv", &["stage", "export"]),
     ("maud", &["report"]),

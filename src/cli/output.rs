@@ -51,7 +51,7 @@ pub(in crate::cli) fn width(of: &(impl AsFd + IsTerminal)) -> Option<usize> {
     (size.ws_col >= NARROWEST).then_some(usize::from(size.ws_col))
 }
 
-/// What says that it has fewer columns does not know how many it has.
+/// A terminal that reports fewer columns than these does not know its width.
 const NARROWEST: u16 = 20;
 
 /// Lines that fit the width, broken between words; what goes on is set in. Columns that are set by blanks stay where they are
@@ -63,8 +63,7 @@ pub(in crate::cli) fn wrapped(text: &str, width: Option<usize>) -> String {
         let (body, end) = line.strip_suffix('\n').map_or((line, ""), |body| (body, "\n"));
         let indent = body.len() - body.trim_start_matches(' ').len();
         let (mut rest, mut room) = (body, width);
-        while rest.chars().count() > room {
-            let over = rest.char_indices().nth(room).map_or(rest.len(), |(at, _)| at);
+        while let Some((over, _)) = rest.char_indices().nth(room) {
             // The blank that a line ends at may be the first one beyond it.
             let upto = over + rest[over..].chars().next().filter(|c| *c == ' ').map_or(0, char::len_utf8);
             let Some(cut) = rest[..upto].rfind(' ').filter(|cut| !rest[..*cut].trim().is_empty()) else { break };

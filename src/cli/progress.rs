@@ -44,8 +44,8 @@ struct Live {
     reported: Instant,
     /// Tasks that ended since, other than from the store.
     ended: usize,
-    /// When the tasks that run were started, by row.
-    running: HashMap<Option<usize>, Instant>,
+    /// When the tasks that run were started, by row; several tasks may belong to one row.
+    running: HashMap<Option<usize>, Vec<Instant>>,
     /// Tasks of which it is known how long they took, and their seconds.
     timed: (usize, f64),
     /// Tasks that failed; each failure was reported with its reason.
@@ -67,7 +67,7 @@ impl Live {
     /// Counts a task that ended. Returns the mean seconds of those that ran here.
     fn count_ended(&mut self, row: Option<usize>, failed: usize) -> Option<f64> {
         (self.ended, self.failed) = (self.ended + 1, failed);
-        if let Some(begun) = self.running.remove(&row) {
+        if let Some(begun) = self.running.get_mut(&row).and_then(Vec::pop) {
             self.timed = (self.timed.0 + 1, self.timed.1 + begun.elapsed().as_secs_f64());
         }
         (self.timed.0 > 0).then(|| self.timed.1 / self.timed.0 as f64)
@@ -241,7 +241,7 @@ impl Watch for Progress<'_> {
                 self.ahead();
                 self.started(stage);
                 if let Some(live) = self.stages().get_mut(stage) {
-                    live.running.insert(row, Instant::now());
+                    live.running.entry(row).or_default().push(Instant::now());
                 }
             }
             Event::Progress { stage, row, progress } if progress.warning => self.warn(stage, row, &progress.note),

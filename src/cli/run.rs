@@ -17,6 +17,7 @@ use crate::store::Store;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag;
 use signal_hook::iterator::Signals;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -180,16 +181,16 @@ impl Run {
 /// a second, end the process at once. Of workers on other machines only Ctrl-C is the end: at the others `leave` is set.
 pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
-    let (flag, leave) = (Arc::clone(&stop), leave.map(Arc::clone));
+    let (interrupted, leave) = (Arc::clone(&stop), leave.map(Arc::clone));
     let patience = if leave.is_some() { PATIENCE_FAR } else { PATIENCE };
     let wanted: &[i32] = if hangup_is_ignored() { &[SIGINT, SIGTERM] } else { &[SIGINT, SIGTERM, SIGHUP] };
-    match Signals::new(wanted) {
+    let heard = match Signals::new(wanted) {
         Ok(mut signals) => listen(move || {
             for signal in signals.forever() {
                 if let Some(leave) = leave.as_ref().filter(|_| signal != SIGINT) {
                     leave.store(true, Ordering::Relaxed);
                 }
-                if flag.swap(true, Ordering::Relaxed) {
+                if interrupted.swap(true, Ordering::Relaxed) {
                     at_once();
                 }
                 err!("stopping: finished tasks are stored; press Ctrl-C again to stop at once");
@@ -200,16 +201,28 @@ pub(super) fn interruption(leave: Option<&Arc<AtomicBool>>) -> Arc<AtomicBool> {
                 });
             }
         }),
-        Err(e) => err!("warning: Ctrl-C will not stop cleanly: {e}"),
+        Err(e) => {
+            err!("warning: Ctrl-C will not stop cleanly: {e}");
+            false
+        }
+    };
+    if !heard {
+        // These need no thread: the first signal sets the flag, the second one ends the process.
+        for &signal in wanted {
+            let _ = flag::register_conditional_shutdown(signal, Exit::Interrupted as i32, Arc::clone(&stop));
+            let _ = flag::register(signal, Arc::clone(&stop));
+        }
     }
     stop
 }
 
-/// Runs this beside everything else, or warns where no thread can be started.
-fn listen(work: impl FnOnce() + Send + 'static) {
-    if let Err(error) = std::thread::Builder::new().spawn(work) {
+/// Runs this beside everything else. Warns and returns `false` where no thread can be started.
+fn listen(work: impl FnOnce() + Send + 'static) -> bool {
+    let started = std::thread::Builder::new().spawn(work);
+    if let Err(error) = &started {
         err!("warning: Ctrl-C will not stop cleanly: no thread can be started: {error}");
     }
+    started.is_ok()
 }
 
 /// How long tasks may take to end by themselves. Statistics and packings look at the flag only now and then, and a store is

@@ -83,7 +83,7 @@ pub(super) fn text(table: &Table) -> String {
 fn folded(table: &Table, width: Option<usize>) -> String {
     let seen = &table.columns[..table.columns.len().min(MOST_COLUMNS)];
     let columns: Vec<Vec<String>> = seen.iter().map(lines_of).collect();
-    // A row is told by the words and numbers of rows at its start.
+    // The leading columns identify a row: texts and row numbers.
     let tells = |column: &&Column| matches!(column.values, Values::Texts(_)) || COUNTED.contains(&column.name.as_str());
     let leading = seen.iter().take_while(tells).count().min(MOST_LEADING).max(usize::from(!seen.is_empty()));
     let gap = " ".repeat(GAP);

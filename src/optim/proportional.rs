@@ -26,7 +26,7 @@ pub const MOST_MISSES: u32 = 6;
 /// How far off the value the first run after one without the response lies.
 const DETOUR: f64 = 1.1;
 
-/// So many runs say more together than the best of them.
+/// Fewest runs whose slopes are averaged; of fewer the best run is recommended.
 pub const AVERAGED: usize = 3;
 
 /// Settings.
@@ -140,7 +140,7 @@ impl Optimiser for Proportional {
     }
 
     fn recommended(&self) -> Option<Recommendation> {
-        let slopes = Slopes::of(&self.slopes).filter(|_| self.stopped != Some(Stop::NoSlope))?;
+        let slopes = Slopes::of(&self.slopes)?;
         let point = self.problem.domain.repair(&self.problem.domain.unit(&[self.next]));
         let response = slopes.expected(self.problem.domain.natural(&point)[0]);
         Some(Recommendation { point, misfit: self.problem.misfit.of(&[response.mean]), responses: vec![response] })
@@ -149,17 +149,20 @@ impl Optimiser for Proportional {
 
 /// The mean of the slopes that runs have shown, and their scatter.
 pub struct Slopes {
+    /// Response per unit of the factor.
     mean: f64,
-    /// Half the 95 % interval of the mean.
+    /// Half the 95 % interval of the mean, response per unit of the factor.
     half: f64,
     /// Standard deviation of one slope.
     deviation: f64,
 }
 
 impl Slopes {
-    /// Of so many slopes; `None` for fewer than [`AVERAGED`].
+    /// The mean of these slopes; `None` for fewer than [`AVERAGED`], and where they have not all one sign: then the response is
+    /// not proportional.
     pub fn of(slopes: &[f64]) -> Option<Self> {
-        if slopes.len() < AVERAGED {
+        let one_sign = slopes.iter().all(|slope| slope.is_finite() && slope * slopes[0] > 0.0);
+        if slopes.len() < AVERAGED || !one_sign {
             return None;
         }
         let (mean, free) = (mean(slopes), (slopes.len() - 1) as f64);
@@ -247,6 +250,14 @@ mod tests {
         assert_eq!(stop, Stop::NoSlope);
         let below = [60.0, 60.0 / 1.1, 60.0 / 1.21, 60.0 / 1.331];
         assert!(tried.len() == 4 && tried.iter().zip(below).all(|(a, b)| (a - b).abs() < 1e-9), "{tried:?}");
+    }
+
+    #[test]
+    fn slopes_of_both_signs_have_no_mean() {
+        assert!(Slopes::of(&[0.30, 0.31, 0.29]).is_some());
+        for others in [-0.1, 0.0, f64::NAN, f64::INFINITY] {
+            assert!(Slopes::of(&[0.30, 0.31, others]).is_none(), "{others}");
+        }
     }
 
     /// numpy 2.4.6 and scipy 1.17.1 of the slopes: `k.mean()`, `t.ppf(0.975, 4) * k.std(ddof=1) / 5**0.5`.

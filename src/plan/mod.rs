@@ -53,7 +53,8 @@ pub struct Workflow {
     pub profiles: Vec<String>,
     /// Stages so that each comes after its inputs, else in the order of the file.
     pub stages: Vec<StageNode>,
-    /// Files beside it that cannot be read, or lack columns that stages read. They are faults of a run, but stored results can be shown without them.
+    /// Files beside it that cannot be read, or lack columns that stages read. They are faults of a run, but stored results can be
+    /// shown without them.
     pub absent: Vec<Fault>,
     /// Warnings: no faults, but a reader must know them before trusting the results.
     pub warnings: Vec<Fault>,

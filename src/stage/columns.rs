@@ -231,7 +231,7 @@ fn labels(values: &Values) -> Vec<String> {
     found
 }
 
-/// The first cell of a column, and its row from 0, that is no number; a column in which only some cells are words is one of words.
+/// The first cell that is not a number, with its row from 0. One such cell makes the reader return the whole column as text.
 pub(super) fn first_word(values: &Values) -> Option<(usize, &str)> {
     let Values::Texts(texts) = values else { return None };
     let is_word = |text: &str| !text.is_empty() && !text.parse().is_ok_and(f64::is_finite);

@@ -89,9 +89,17 @@ pub(super) fn sentence(about: &str, words: &str) -> String {
 }
 
 /// The responses of a statement as a label: their symbols, or names where they have none.
-pub(super) fn responses_of(said: &Statement, symbols: &BTreeMap<String, String>) -> String {
+fn responses_of(said: &Statement, symbols: &BTreeMap<String, String>) -> String {
     let label = |name: &String| symbols.get(name).map_or_else(|| plain_text(name), |symbol| format!("${symbol}$"));
     said.responses.iter().map(label).collect::<Vec<_>>().join(", ")
+}
+
+/// A note on results, as a label: `whose` is the stage or series, empty where there is one; the words are those of runs and
+/// programs, and no markup.
+pub(super) fn note(whose: &str, said: &Statement, symbols: &BTreeMap<String, String>) -> String {
+    let names = [plain_text(whose), responses_of(said, symbols)];
+    let about: Vec<&str> = names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+    sentence(&about.join(": "), &plain_text(&said.words))
 }
 
 /// The error about runs that are refused.

@@ -116,7 +116,7 @@ pub const OWN_COLUMNS: [&str; 21] = [
 ];
 
 /// Columns whose cells name factors, responses, or products of their powers; people see symbols there.
-pub const NAMING_COLUMNS: [&str; 5] = ["factor", "quantity", "response", "source", "term"];
+pub const NAMING_COLUMNS: [&str; 6] = ["factor", "quantity", "response", "source", "subject", "term"];
 
 /// The fault of a symbol, which becomes mathematics in figures, pages and LaTeX.
 pub fn symbol_fault(symbol: &str) -> Option<String> {

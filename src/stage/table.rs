@@ -20,7 +20,7 @@ mod validity;
 
 use super::beside::Beside;
 use super::figure::{Names, stored};
-use super::invalid::{Invalid, responses_of, sentence};
+use super::invalid::{Invalid, note};
 use super::reads::Reads;
 use super::{
     Class, Complaint, Context, Failure, Job, Kind, Known, NAMING_COLUMNS, Port, Stage, StageError, Step, Task, Work,
@@ -329,9 +329,7 @@ fn print(job: &Job) -> Result<Artifact, Failure> {
     for (k, (_, artifact)) in inputs.enumerate() {
         let (part, said) = validity::printed(artifact, &params)?;
         for said in said {
-            let names = [params.stages.get(k).cloned().unwrap_or_default(), responses_of(&said, &params.signs)];
-            let about: Vec<&str> = names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
-            notes.push(sentence(&about.join(": "), &said.words));
+            notes.push(note(params.stages.get(k).map_or("", String::as_str), &said, &params.signs));
         }
         let rows = part.first().map_or(0, Column::len);
         names.extend(params.stages.get(k).map(|stage| vec![stage.clone(); rows]).unwrap_or_default());

@@ -1,7 +1,7 @@
 //! Units, formulas and tables under mutated texts: no panic, and what is read means the same when it is read again.
 //!
-//! Inputs are a function of their number alone; `fuzz/` runs the same properties with coverage as its guide. `FLOW_FUZZ=1000000 cargo test --release --test workflows
-//! texts` runs as many of each as it says; a failure names the number, and `FLOW_FUZZ_ONLY=number` runs and shows just
+//! Inputs are a function of their number alone; `fuzz/` runs the same properties with coverage as its guide.
+//! `FLOW_FUZZ=1000000 cargo test --release --test workflows texts` runs as many of each as it says; a failure names the number, and `FLOW_FUZZ_ONLY=number` runs and shows just
 //! that one. What a run by hand finds goes into `tests/workflows/corpus`.
 
 use super::properties::{formula, table, unit};

@@ -45,7 +45,7 @@ const Solve = (() => {
         if (any) {
           const is = worst(ends);
           if (is <= same) return u;
-          // A place that exists is come to in a few steps.
+          // A solution that exists is reached in a few steps.
           if (turn % 5 === 4) { if (is > 0.5 * before) return null; before = is; }
         }
         const aim = step(u, ends, slopes, preference);

@@ -21,8 +21,8 @@ pub(super) enum Seen {
 }
 
 impl Seen {
-    /// Whoever searches has its own: the surrogate its models, proportional corrections their slopes; other methods have
-    /// models over their runs. `None` where there are too few.
+    /// The surrogate predicts with its own models, proportional corrections with their slopes, other methods with models fitted
+    /// to their runs. `None` where the runs are too few.
     pub(super) fn of(method: &Method, problem: &Problem, knowledge: &Knowledge, runs: &[Told]) -> Option<Self> {
         let settings = match method {
             Method::Surrogate(settings) => settings,

@@ -8,8 +8,8 @@ use crate::artifact::results::Results;
 use crate::stage::StageError;
 use figure::text::plain_text;
 
-/// Sentences, as labels, on rows without a number, values that a logarithmic axis cannot show, and groups without the requested line.
-/// Other footnotes state runs without a result and runs that are not valid.
+/// Sentences, as labels, on rows without a number, values that a logarithmic axis cannot show, and groups without the requested
+/// line. Other footnotes state runs without a result and runs that are not valid.
 pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String>, StageError> {
     let [keys, _] = params.show.needs().keys;
     if keys.is_empty() {

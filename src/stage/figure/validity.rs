@@ -1,13 +1,12 @@
 //! The treatment of runs that are not valid in a figure, and the footnote on them.
 
 use super::super::StageError;
-use super::super::invalid::{Invalid, responses_of, sentence};
+use super::super::invalid::{Invalid, note, sentence};
 use super::source::Sources;
 use super::{Figure, Params, Show, lost};
 use crate::artifact::results::Results;
 use crate::artifact::validity::{Statement, Verdict, faults, of_runs};
 use crate::artifact::{Artifact, ArtifactKind};
-use figure::text::plain_text;
 
 impl Figure {
     /// The default: a figure of a table of runs treats them as statistics do, a figure of one run draws it.
@@ -26,9 +25,7 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
     let all = sources.of.iter().chain(&sources.compare).filter(|_| params.show != Show::Curves);
     for (index, source) in all.enumerate() {
         for said in of_source(params, source.0)? {
-            let names = [params.series.get(index).cloned().unwrap_or_default(), responses_of(&said, &params.symbols)];
-            let about: Vec<&str> = names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
-            found.push(sentence(&about.join(": "), &plain_text(&said.words)));
+            found.push(note(params.series.get(index).map_or("", String::as_str), &said, &params.symbols));
         }
     }
     found.extend(lost::sentences(params, sources)?.iter().map(|said| sentence("", said)));
