@@ -1,10 +1,10 @@
 //! `kind = "data"`: a table from a CSV file or a workbook, wherever a simulated table can stand.
 //!
-//! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or `sigma_c/MPa`.
-//! A column whose cells are all numbers (or missing) holds reals, any other holds texts. Comments (`#`) stand above the
-//! line of names only. Units may also stand in the row below the names. The result is an artifact `results` with the table `runs`, as `simulate` gives it, and the table
-//! `notes`, which says how the file was read where that was detected and is not the default (UTF-8, commas between
-//! cells, decimal points).
+//! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or
+//! `sigma_c/MPa`. Units may also stand in the row below the names. A column whose cells are all numbers (or missing) holds
+//! reals, any other holds texts. Comments (`#`) stand above the line of names only. The result is an artifact `results`
+//! with the table `runs`, as `simulate` gives it, and the table `notes`, which says how the file was read where that was
+//! detected and is not the default (UTF-8, commas between cells, decimal points).
 
 mod below;
 mod cells;
@@ -87,19 +87,6 @@ impl Data {
             let factor = context.factors.get(name).map(|factor| &factor.unit);
             factor.or_else(|| context.responses.get(name).map(|response| &response.unit))
         };
-        let is_category = |name: &str| context.factors.get(name).is_some_and(|factor| !factor.names.is_empty());
-        for column in
-            table.columns.iter().filter(|column| declared(&column.name).is_some() && !is_category(&column.name))
-        {
-            let Values::Texts(texts) = &column.values else { continue };
-            let is_word = |text: &&String| !text.is_empty() && text.replacen(',', ".", 1).parse::<f64>().is_err();
-            let Some((row, word)) = texts.iter().enumerate().find(|(_, text)| is_word(text)) else { continue };
-            let (file, name, row) = (&self.file, &column.name, row + 1);
-            let message =
-                format!("{file}: column `{name}` holds words, in row {row} `{word}`, where the workflow has numbers");
-            let hint = format!("correct the cell, or say `missing = [\"{word}\"]` if it stands for no value");
-            found.warnings.push(Complaint::new("file", message).hint(hint));
-        }
         for column in table.columns.iter().filter(|column| !matches!(column.values, Values::Texts(_))) {
             let Some(unit) = declared(&column.name) else { continue };
             let differ = |given: &Unit| Unit::parse(unit).is_ok_and(|wanted| wanted.dimension != given.dimension);
@@ -160,7 +147,11 @@ impl Kind for Data {
     const ABOUT: &'static str = "a table from a CSV file or a workbook, with units";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::RESULTS];
     const CLASS: Class = Class::Data;
-    // 4: merged cells, and lines without any value, are refused; units in the row below the names; decimal commas in text cells of workbooks; dates and times of Excel as text. 3: cells of LibreOffice that hold an error are refused. 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values
+    // 4: merged cells, lines without any value, and columns in per cent of old workbooks are refused; cells that are
+    // shown in per cent; units in the row below the names; decimal commas in text cells of workbooks; dates and times of
+    // Excel as text.
+    // 3: cells of LibreOffice that hold an error are refused.
+    // 2: delimiter, decimal sign and encoding are detected; workbooks; words for missing values.
     const WORKS: &'static [Work] = &[Work { name: "data", version: 4, run: read }];
 }
 
@@ -191,11 +182,14 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
         (sheet, Decimal::Point, said, shares)
     } else {
         let (sheet, decimal, said) = text(bytes, how)?;
-        (sheet, decimal, said, Vec::new())
+        (sheet, decimal, said, Some(Vec::new()))
     };
     let how = Cells { decimal, missing: how.missing.as_deref() };
     let raised = below::raise(&mut sheet, &how);
-    in_per_cent(&mut sheet, &shares, usize::from(raised))?;
+    match shares {
+        Some(shares) => in_per_cent(&mut sheet, &shares, usize::from(raised))?,
+        None => check_per_cent(&sheet, &how)?,
+    }
     if raised {
         let units = "detected: units in the row below the names";
         said = Some(said.map_or_else(|| units.to_owned(), |said| format!("{said}; {units}")));
@@ -210,11 +204,26 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
     Ok((Table { about: String::new(), columns }, said))
 }
 
-/// Writes shares that a workbook shows in per cent as numbers of per cent, where the head of their column has that unit. The
-/// first `rows` rows of the sheet are not rows of the table.
+/// The unit of columns whose cells a spreadsheet may show in per cent.
+const PER_CENT: &str = "%";
+
+/// Refuses numbers in a column in per cent where the format of the workbook does not tell whether 5 % is 5 or 0.05.
+fn check_per_cent(sheet: &Sheet, how: &Cells) -> Result<(), StageError> {
+    for (head, column) in sheet.heads.iter().zip(&sheet.columns) {
+        let is_number = |cell: &String| how.number(cell).is_some_and(f64::is_finite);
+        if cells::name_and_unit(head)?.1 == PER_CENT && column.iter().any(is_number) {
+            let message = format!("column `{head}`: this format of workbook does not say whether 5 % is 5 or 0.05");
+            return Err(StageError::new(message).hint("save the workbook as xlsx, or the sheet as CSV"));
+        }
+    }
+    Ok(())
+}
+
+/// Writes shares that a workbook shows in per cent as numbers of per cent, where the head of their column has that unit.
+/// The first `rows` rows of the sheet are not rows of the table.
 fn in_per_cent(sheet: &mut Sheet, shares: &[(usize, usize)], rows: usize) -> Result<(), StageError> {
     for &(column, row) in shares {
-        if cells::name_and_unit(&sheet.heads[column])?.1 != "%" {
+        if cells::name_and_unit(&sheet.heads[column])?.1 != PER_CENT {
             continue;
         }
         let Some(cell) = row.checked_sub(rows).and_then(|row| sheet.columns[column].get_mut(row)) else { continue };

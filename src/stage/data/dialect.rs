@@ -244,10 +244,15 @@ pub(super) fn is_meant_as_number(text: &str) -> bool {
 pub(super) fn from_line(text: &str, line: usize) -> Result<String, StageError> {
     let mut lines = text.split_inclusive('\n').skip(line - 1).peekable();
     if lines.peek().is_none() {
-        let message = format!("the file has no line {line}, in which `first_line` looks for the names");
-        return Err(StageError::new(message).hint("count the lines from 1"));
+        return Err(no_line(line));
     }
     Ok("\n".repeat(line - 1) + &lines.collect::<String>())
+}
+
+/// The fault of a file that ends above the line, from 1, that should name its columns.
+pub(super) fn no_line(line: usize) -> StageError {
+    StageError::new(format!("the file has no line {line}, in which `first_line` looks for the names"))
+        .hint("count the lines from 1")
 }
 
 /// The delimiter that a first line `sep=;` states, as Excel writes and reads it, and the lines below it.

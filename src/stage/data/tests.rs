@@ -188,7 +188,7 @@ fn archive_of(parts: &[(&str, &str)]) -> Vec<u8> {
     archive.finish().unwrap().into_inner()
 }
 
-/// A workbook of Excel with one sheet of these rows, and the list of texts where there is one.
+/// A workbook of Excel with one sheet of these rows, and the list of texts where there is one; the style 1 is per cent.
 fn workbook_of(sheet: &str, texts: Option<&str>) -> Vec<u8> {
     let types = "application/vnd.openxmlformats-officedocument.spreadsheetml";
     let relations = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
@@ -223,9 +223,57 @@ fn workbook_of(sheet: &str, texts: Option<&str>) -> Vec<u8> {
         ),
         ("xl/worksheets/sheet1.xml", format!("<worksheet xmlns=\"{main}\"><sheetData>{sheet}</sheetData></worksheet>")),
     ];
+    let styles = "<cellXfs count=\"2\"><xf numFmtId=\"0\"/><xf numFmtId=\"9\"/></cellXfs>";
+    files.push(("xl/styles.xml", format!("<styleSheet xmlns=\"{main}\">{styles}</styleSheet>")));
     files.extend(texts.map(|texts| ("xl/sharedStrings.xml", texts.to_owned())));
     let parts: Vec<(&str, &str)> = files.iter().map(|(name, text)| (*name, text.as_str())).collect();
     archive_of(&parts)
+}
+
+fn excel_text(place: &str, text: &str) -> String {
+    format!("<c{place} t=\"inlineStr\"><is><t>{text}</t></is></c>")
+}
+
+/// A title stands in A1, and the table in B3:C4.
+#[test]
+fn a_title_beside_the_columns_is_no_column() {
+    let head = [(" r=\"B3\"", "x"), (" r=\"C3\"", "y")].map(|(place, name)| excel_text(place, name)).concat();
+    let bytes = workbook_of(
+        &format!(
+            "<row r=\"1\">{}</row><row r=\"3\">{head}</row>\
+             <row r=\"4\"><c r=\"B4\"><v>1</v></c><c r=\"C4\"><v>2</v></c></row>",
+            excel_text(" r=\"A1\"", "Report 12")
+        ),
+        None,
+    );
+    let from = |line| parse_as(&bytes, &Dialect { first_line: line, ..Dialect::default() });
+    let (table, _) = from(Some(3)).unwrap();
+    assert_eq!((table.shown("x").unwrap().0, table.shown("y").unwrap().0), (vec![1.0], vec![2.0]));
+    assert_eq!(table.columns.len(), 2);
+    for line in [5, (1 << 32) + 1, usize::MAX] {
+        let message = format!("the file has no line {line}, in which `first_line` looks for the names");
+        assert_eq!(from(Some(line)).unwrap_err().message, message);
+    }
+    assert_eq!(from(Some(0)).unwrap_err(), from(None).unwrap_err());
+}
+
+/// Rows and cells of Excel may leave out where they stand; some programs write none of it.
+#[test]
+fn cells_without_a_reference_follow_one_another() {
+    let sheet = |[head, x, y]: [&str; 3], inside: &str| {
+        let heads = [excel_text(head, "x [%]"), excel_text("", "y")].concat();
+        workbook_of(
+            &format!("<row>{heads}</row><row/><row><c{x} s=\"1\"><v>0.07</v></c><c{y}>{inside}</c></row>"),
+            None,
+        )
+    };
+    for places in [["", "", ""], [" r=\"C1\"", " r=\"C3\"", ""], ["", " r=\"A3\"", " r=\"B3\""], ["", " r=\"a3\"", ""]]
+    {
+        let table = parse(&sheet(places, "<v>0.5</v>")).unwrap();
+        assert_eq!((table.shown("x").unwrap().0, table.shown("y").unwrap().0), (vec![7.0], vec![0.5]), "{places:?}");
+        let fault = parse(&sheet(places, "<f>1+1</f>")).unwrap_err();
+        assert_eq!(fault.message, "sheet `a`, row 3: a cell holds a formula that was never computed", "{places:?}");
+    }
 }
 
 /// A sheet is as large as the place of its last cell says: one in the last corner would take 512 GB.
@@ -352,6 +400,30 @@ fn shares_are_per_cent_where_their_column_is() {
     assert_eq!(read(["x [%]", "y", "z [%]"], ""), wanted);
     let units = row(&[&head("%"), &head("-"), &head("%")]);
     assert_eq!(read(["x", "y", "z"], &units), wanted, "with the units in the row below the names");
+}
+
+#[test]
+fn merged_cells_of_libreoffice_are_refused_below_the_first_line() {
+    let row = |cells: &str| format!("<table:table-row>{cells}</table:table-row>");
+    let value = |spans: &str| ods_cell(&format!("{spans} office:value-type=\"float\" office:value=\"2\""), "");
+    let covered = "<table:covered-table-cell/>";
+    let columns = "table:number-columns-spanned=\"2\" table:number-rows-spanned=\"1\"";
+    let rows = "table:number-columns-spanned=\"1\" table:number-rows-spanned=\"2\"";
+    for (below, is_merged) in [
+        (row(&value("")), false),
+        (row(&value("table:number-columns-spanned=\"1\"")), false),
+        (row(&(value(columns) + covered)), true),
+        (row(&value(rows)) + &row(covered), true),
+        (row(&value("")) + &row(&ods_cell(columns, "")), false),
+    ] {
+        let read = parse(&ods_of(&format!("{HEAD}{below}"))).map(|table| table.rows());
+        let message = "row 2: cells are merged, and only the first of them holds the value";
+        assert_eq!(read.map_err(|fault| fault.message), if is_merged { Err(message.to_owned()) } else { Ok(1) });
+    }
+    let title = row(&(ods_cell(&format!("{columns} office:value-type=\"string\""), "<text:p>t</text:p>") + covered));
+    let second = Dialect { first_line: Some(2), ..Dialect::default() };
+    let (table, _) = read(&ods_of(&format!("{title}{HEAD}{}", row(&value("")))), &second);
+    assert_eq!(table.shown("y").unwrap().0, [2.0]);
 }
 
 /// Files that unpack to more than there is memory, announce more than they hold, or end too early.

@@ -26,16 +26,18 @@ pub(super) struct Book {
     pub sheet: Sheet,
     /// What was detected.
     pub said: Option<String>,
-    /// Column and row of the cells that are shown in per cent and hold a share.
-    pub shares: Vec<(usize, usize)>,
+    /// Column and row of the cells that are shown in per cent and hold a share; `None` where the format does not say.
+    pub shares: Option<Vec<(usize, usize)>>,
 }
 
 /// The cells of a sheet.
 pub(super) fn sheet(bytes: &[u8], how: &Dialect) -> Result<Book, StageError> {
     let mut cells = cells(bytes, how.sheet.as_deref())?;
-    let first = how.first_line.unwrap_or(1) as u32 - 1;
-    cells.rows.retain(|row, _| *row >= first);
+    if let Some(line) = how.first_line {
+        cells.begin(line)?;
+    }
     cells.check_merged()?;
+    let tells_shares = cells.tells_shares;
     let detected = cells.settle_decimals(how.decimal)?;
     let said =
         detected.then(|| "detected: decimal commas in cells that hold text; the key `decimal` fixes it".to_owned());
@@ -53,7 +55,7 @@ pub(super) fn sheet(bytes: &[u8], how: &Dialect) -> Result<Book, StageError> {
             }
         }
     }
-    Ok(Book { sheet: Sheet { heads, columns }, said, shares })
+    Ok(Book { sheet: Sheet { heads, columns }, said, shares: tells_shares.then_some(shares) })
 }
 
 /// The cells of a sheet.
@@ -64,6 +66,7 @@ fn cells(bytes: &[u8], sheet: Option<&str>) -> Result<Cells, StageError> {
     if let Some(archive) = archive.as_mut().filter(|_| open) {
         let name = chosen(&ods::names(archive)?, sheet)?;
         ods::cells(archive, &name, |row, column, value| cells.take(&name, row, column, value.clone()))?;
+        cells.tells_shares = true;
     } else {
         // Old formats are full of counts and offsets, and a damaged file may send their reader beyond its end.
         let read = std::panic::AssertUnwindSafe(|| {
@@ -110,7 +113,8 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<St
                 cells.take(&name, row, column, read(&value))?;
             }
             drop(reader);
-            cells.merged = book.merge_cells_by_sheet_name(&name).map_err(broken)?;
+            cells.merge(&book.merge_cells_by_sheet_name(&name).map_err(broken)?);
+            cells.tells_shares = true;
         }
         Sheets::Xlsb(book) => {
             let mut reader = book.worksheet_cells_reader(&name).map_err(broken)?;
@@ -120,13 +124,13 @@ fn read_cells(bytes: &[u8], sheet: Option<&str>, cells: &mut Cells) -> Result<St
             }
         }
         Sheets::Xls(_) | Sheets::Ods(_) => {
-            if let Sheets::Xls(book) = &book {
-                cells.merged = book.merge_cells_by_sheet_name(&name).map_err(broken)?;
-            }
             let range = book.worksheet_range(&name).map_err(broken)?;
             let (row, column) = range.start().unwrap_or_default();
             for (i, j, cell) in range.used_cells() {
                 cells.take(&name, row + i as u32, column + j as u32, read(cell))?;
+            }
+            if let Sheets::Xls(book) = &book {
+                cells.merge(&book.merge_cells_by_sheet_name(&name).map_err(broken)?);
             }
         }
     }
@@ -147,11 +151,13 @@ struct Cell {
     is_word: bool,
     /// Whether it is shown in per cent.
     is_share: bool,
+    /// Whether it is the first of cells that are merged.
+    is_merged: bool,
 }
 
 impl Cell {
     fn word(text: String) -> Self {
-        Self { text, is_word: true, is_share: false }
+        Self { text, is_word: true, ..Self::default() }
     }
 
     fn value(text: impl ToString) -> Self {
@@ -165,14 +171,35 @@ struct Cells {
     rows: BTreeMap<u32, Vec<(u32, Cell)>>,
     /// The first column that is used, and the last.
     columns: Option<[u32; 2]>,
-    /// The merged cells of a workbook of Excel.
-    merged: Vec<Dimensions>,
+    /// Whether the format of the workbook tells which cells are shown in per cent.
+    tells_shares: bool,
 }
 
 impl Cells {
     /// Takes a cell of a sheet, or the error that it holds.
     fn take(&mut self, sheet: &str, row: u32, column: u32, cell: Result<Cell, String>) -> Result<(), StageError> {
         self.add(row, column, cell.map_err(|error| at(sheet, row as usize + 1, &error))?)
+    }
+
+    /// Leaves out what stands above a row, counted from 1.
+    ///
+    /// # Errors
+    /// Nothing is left.
+    fn begin(&mut self, line: usize) -> Result<(), StageError> {
+        self.rows.retain(|row, _| *row as usize >= line.saturating_sub(1));
+        let used = self.rows.values().flatten().map(|(column, _)| *column);
+        self.columns = used.clone().min().zip(used.max()).map(|(first, last)| [first, last]);
+        if self.rows.is_empty() { Err(dialect::no_line(line)) } else { Ok(()) }
+    }
+
+    /// Marks the first of merged cells, where it holds a value.
+    fn merge(&mut self, merged: &[Dimensions]) {
+        for Dimensions { start, .. } in merged.iter().filter(|cells| cells.start != cells.end) {
+            let mut cells = self.rows.get_mut(&start.0).into_iter().flatten();
+            if let Some((_, cell)) = cells.find(|(column, _)| *column == start.1) {
+                cell.is_merged = true;
+            }
+        }
     }
 
     /// Marks the numbers that are shown in per cent, by row and column.
@@ -233,13 +260,9 @@ impl Cells {
 
     /// Refuses merged cells, of which only the first holds the value that people see in all of them.
     fn check_merged(&self) -> Result<(), StageError> {
-        let filled = |(row, column): (u32, u32)| {
-            self.rows.get(&row).is_some_and(|cells| cells.iter().any(|(own, _)| *own == column))
-        };
-        let Some(cells) = self.merged.iter().find(|cells| cells.start != cells.end && filled(cells.start)) else {
-            return Ok(());
-        };
-        let row = u64::from(cells.start.0) + 1;
+        let is_merged = |cells: &[(u32, Cell)]| cells.iter().any(|(_, cell)| cell.is_merged);
+        let Some((row, _)) = self.rows.iter().find(|(_, cells)| is_merged(cells)) else { return Ok(()) };
+        let row = u64::from(*row) + 1;
         let message = format!("row {row}: cells are merged, and only the first of them holds the value");
         Err(StageError::new(message).hint("split them, and write the value into each cell that it is for"))
     }
@@ -314,8 +337,9 @@ mod tests {
     #[test]
     fn merged_cells_are_refused_where_they_hold_a_value() {
         let merged = |start, end| {
-            let mut cells = Cells { merged: vec![Dimensions { start, end }], ..Cells::default() };
+            let mut cells = Cells::default();
             cells.add(1, 0, Cell::value("1")).unwrap();
+            cells.merge(&[Dimensions { start, end }]);
             cells.check_merged()
         };
         let error = merged((1, 0), (2, 0)).unwrap_err();

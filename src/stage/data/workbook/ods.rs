@@ -160,7 +160,7 @@ impl<R: BufRead> Walk<R> {
         loop {
             match self.within()? {
                 At::Start(e) if is(&e, "table:table-row") => {
-                    return repeats(&e, "table:number-rows-repeated").map(Some);
+                    return number(&e, "table:number-rows-repeated").map(Some);
                 }
                 At::End(name) if name == "table:table" => return Ok(None),
                 _ => (),
@@ -174,7 +174,7 @@ impl<R: BufRead> Walk<R> {
         loop {
             match self.within()? {
                 At::Start(e) if is(&e, "table:table-cell") || is(&e, "table:covered-table-cell") => {
-                    let count = repeats(&e, "table:number-columns-repeated")?;
+                    let count = number(&e, "table:number-columns-repeated")?;
                     let value = self.cell(&e)?;
                     if !is_empty(&value) {
                         cells.push((column, count, value));
@@ -206,7 +206,13 @@ impl<R: BufRead> Walk<R> {
             "string" => own("office:string-value").unwrap_or(content),
             _ => String::new(),
         };
-        Ok(Ok(Cell { text: text.trim().to_owned(), is_word: kind == "string", is_share: kind == "percentage" }))
+        let spans = |name: &str| number(cell, name).map(|count| count > 1);
+        Ok(Ok(Cell {
+            text: text.trim().to_owned(),
+            is_word: kind == "string",
+            is_share: kind == "percentage",
+            is_merged: spans("table:number-columns-spanned")? || spans("table:number-rows-spanned")?,
+        }))
     }
 
     /// The paragraphs of a cell, without what is drawn in it or remarked on it.
@@ -220,7 +226,7 @@ impl<R: BufRead> Walk<R> {
                     paragraphs += 1;
                 }
                 At::Start(e) if is(&e, "text:s") => {
-                    let count = repeats(&e, "text:c")? as usize;
+                    let count = number(&e, "text:c")? as usize;
                     text.extend(std::iter::repeat_n(' ', count.min(MOST_CHARACTERS + 1)));
                 }
                 At::Start(e) if is(&e, "text:tab") => text.push('\t'),
@@ -271,8 +277,8 @@ fn is(element: &BytesStart, name: &str) -> bool {
     element.name().as_ref() == name
 }
 
-/// How often an element stands there: 1 where it does not say.
-fn repeats(element: &BytesStart, name: &str) -> Result<u32, StageError> {
+/// A number that an element states, such as how often it stands there: 1 where it does not say.
+fn number(element: &BytesStart, name: &str) -> Result<u32, StageError> {
     let Some(text) = attribute(element, name) else { return Ok(1) };
     let digits = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     if !digits {

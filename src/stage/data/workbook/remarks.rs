@@ -33,25 +33,35 @@ pub(super) fn remarks(archive: &mut Archive, sheet: &str) -> Result<Remarks, Sta
     let Some(part) = archive.part(&part)? else { return Ok(found) };
     let (mut reader, mut buffer) = (Reader::from_reader(part), Vec::new());
     reader.config_mut().expand_empty_elements = true;
-    let (mut cell, mut formula, mut value) = (None, false, false);
+    // Rows and cells need not say where they stand: each then follows the one before it.
+    let (mut cell, mut next): (Place, Place) = ((0, 0), (0, 0));
+    let (mut formula, mut value) = (false, false);
     loop {
         buffer.clear();
         match reader.read_event_into(&mut buffer).map_err(broken)? {
             Event::Start(element) => match element.local_name().as_ref() {
+                "row" => {
+                    let stated = attribute(&element, "r").and_then(|row| row.parse::<u32>().ok()?.checked_sub(1));
+                    next.0 = stated.unwrap_or(next.0);
+                }
                 "c" => {
-                    (cell, formula, value) = (attribute(&element, "r").as_deref().and_then(place), false, false);
+                    let stated = attribute(&element, "r").as_deref().and_then(place);
+                    (cell, formula, value) = (stated.unwrap_or(next), false, false);
+                    next.1 = cell.1.saturating_add(1);
                     let style = attribute(&element, "s").and_then(|style| style.parse().ok());
                     if style.is_some_and(|style: usize| styles.contains(&style)) {
-                        found.shares.extend(cell);
+                        found.shares.insert(cell);
                     }
                 }
                 "f" => formula = true,
                 "v" | "is" => value = true,
                 _ => (),
             },
-            Event::End(element) if element.local_name().as_ref() == "c" && formula && !value => {
-                found.uncomputed = found.uncomputed.or(cell);
-            }
+            Event::End(element) => match element.local_name().as_ref() {
+                "c" if formula && !value => found.uncomputed = found.uncomputed.or(Some(cell)),
+                "row" => next = (next.0.saturating_add(1), 0),
+                _ => (),
+            },
             Event::Eof => return Ok(found),
             _ => (),
         }
@@ -101,7 +111,8 @@ fn is_share(code: &str) -> bool {
     code.chars().any(|c| {
         let sign = c == '%' && !quoted && !escaped;
         quoted ^= c == '"' && !escaped;
-        escaped = c == '\\' && !escaped;
+        // A blank as wide as the next character, and that character as often as it fits.
+        escaped = matches!(c, '\\' | '_' | '*') && !escaped && !quoted;
         sign
     })
 }
@@ -128,7 +139,7 @@ fn place(reference: &str) -> Option<(u32, u32)> {
     let digits = reference.find(|c: char| c.is_ascii_digit())?;
     let (letters, row) = reference.split_at(digits);
     let step = |column: u32, letter: u8| {
-        let own = letter.is_ascii_uppercase().then(|| u32::from(letter - b'A') + 1)?;
+        let own = letter.is_ascii_alphabetic().then(|| u32::from(letter.to_ascii_uppercase() - b'A') + 1)?;
         column.checked_mul(26)?.checked_add(own)
     };
     let column = letters.bytes().try_fold(0, step)?.checked_sub(1)?;
@@ -142,11 +153,13 @@ mod tests {
     #[test]
     fn references_and_formats_are_read() {
         assert_eq!(
-            [place("A1"), place("AB12"), place("XFD1048576")],
+            [place("A1"), place("ab12"), place("XFD1048576")],
             [Some((0, 0)), Some((11, 27)), Some((1_048_575, 16_383))]
         );
-        assert_eq!([place("1"), place("A0"), place("a1"), place("ZZZZZZZZ1")], [None; 4]);
+        assert_eq!([place("1"), place("A0"), place("é1"), place("ZZZZZZZZ1")], [None; 4]);
         assert!(is_share("0.0%") && is_share("[Red]0%;-0%"));
+        assert!(is_share("\"a_\"0%") && is_share("0_)%") && is_share("* 0%"));
         assert!(!is_share("0.0\"%\"") && !is_share("0\\%") && !is_share("0.00"));
+        assert!(!is_share("0.0_%") && !is_share("0*%"));
     }
 }

@@ -74,6 +74,17 @@ fn a_sheet_is_read_from_sectors_between_others() {
     }
 }
 
+/// The styles of these workbooks are not read, so nobody knows whether a cell with 0.05 shows 5 %.
+#[test]
+fn numbers_in_per_cent_are_refused() {
+    let read = |head: &str, cell| parse(&book(&[label(0, 0, "a"), label(0, 1, head), number(1, 0, 2.0), cell]));
+    let fault = read("y [%]", number(1, 1, 0.05)).unwrap_err();
+    assert_eq!(fault.message, "column `y [%]`: this format of workbook does not say whether 5 % is 5 or 0.05");
+    assert_eq!(fault.hint.as_deref(), Some("save the workbook as xlsx, or the sheet as CSV"));
+    assert_eq!(read("y", number(1, 1, 0.05)).unwrap().columns[1].values, Values::Reals(vec![0.05]));
+    assert!(read("y [%]", label(1, 1, "NA")).is_ok(), "no number is in doubt");
+}
+
 /// Two cells in opposite corners span 4·10⁹, a last row before the first one wraps to as many.
 #[test]
 fn what_would_take_more_memory_than_there_is_is_refused() {
