@@ -129,8 +129,7 @@ impl<'a> Progress<'a> {
         if !stages.contains_key(stage) {
             let bar = self.bar(stage);
             if let Some(bar) = &bar {
-                let whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
-                let [ended, total] = whole.counts(stage);
+                let [ended, total] = self.counts().counts(stage);
                 bar.set_length(total as u64);
                 bar.set_position(ended as u64);
             }
@@ -152,9 +151,13 @@ impl<'a> Progress<'a> {
         }
     }
 
+    fn counts(&self) -> MutexGuard<'_, Whole> {
+        self.whole.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// How far the campaign is, shown on its line where there is one.
     fn whole(&self, change: impl FnOnce(&mut Whole)) -> Option<String> {
-        let mut whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut whole = self.counts();
         change(&mut whole);
         let words = whole.in_words(self.workers);
         if let (Some(line), Some(words)) = (&self.line, &words) {
@@ -254,7 +257,7 @@ impl Watch for Progress<'_> {
             }
             Event::Counted { stage, count, is_done } => {
                 // Nothing is said yet: where all is cached, it is over at once.
-                let mut whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut whole = self.counts();
                 if is_done { whole.close(stage, count) } else { whole.note(stage, count, None) }
             }
             Event::Asked { stage, count, note } => self.asked(stage, count, note),

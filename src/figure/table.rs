@@ -182,8 +182,7 @@ impl Table {
 
     fn markdown_head(&self, c: &Column) -> String {
         let name = match self.symbols.head(c) {
-            // A bar would end the cell, also within mathematics.
-            Some((symbol, word)) => format!("${}${}", symbol.replace('|', "\\vert "), escape::markdown(word)),
+            Some((symbol, word)) => format!("${}${}", without_bar(symbol), escape::markdown(word)),
             None => escape::markdown(&c.key),
         };
         if c.unit.is_empty() { name } else { format!("{name} / {}", escape::markdown(&c.unit)) }
@@ -203,15 +202,18 @@ impl Table {
 
     fn markdown_cell(&self, c: &Column, row: usize) -> String {
         let Some(text) = shown(c, row) else { return "–".into() };
-        // A bar would end the cell, also within mathematics.
-        let symbol = self.symbols.cell(c, &text).map(|symbol| symbol.replace('|', "\\vert "));
-        symbol.unwrap_or_else(|| escape::markdown(&text))
+        self.symbols.cell(c, &text).map(|symbol| without_bar(&symbol)).unwrap_or_else(|| escape::markdown(&text))
     }
 
     /// [`csv`] of the columns.
     pub fn csv(&self) -> String {
         csv(&self.columns)
     }
+}
+
+/// Mathematics for a cell of Markdown, which a bar would end.
+fn without_bar(symbol: &str) -> String {
+    symbol.replace('|', "\\vert ")
 }
 
 fn latex_unit(unit: &str) -> String {

@@ -9,6 +9,7 @@ use super::panel::{Margins, Panel, draw_marker, marker};
 use super::scene::{Anchor, Path, Rect, Scene, Stroke};
 use super::text::Line;
 use super::{Figure, Quantity, Style};
+use math::sample::Moments;
 
 /// One response over all target sets.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -140,18 +141,9 @@ impl Verification {
     }
 }
 
-/// Mean of a sample, and its standard deviation where there are two values or more; `None` of no value.
-fn moments(values: &[f64]) -> Option<(f64, Option<f64>)> {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let square: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-    (n > 0.0).then(|| (mean, (n > 1.0).then(|| (square / (n - 1.0)).sqrt())))
-}
-
 /// Relative error of the mean; `None` without a value, or of a target of 0.
 fn error(values: &[f64], target: f64) -> Option<f64> {
-    let (mean, _) = moments(values)?;
-    Some(mean / target - 1.0).filter(|error| error.is_finite())
+    Some(Moments::of(values).mean / target - 1.0).filter(|error| error.is_finite())
 }
 
 fn draw_check(scene: &mut Scene, panel: &Panel, check: &Check, style: &Style) {
@@ -170,7 +162,10 @@ fn draw_check(scene: &mut Scene, panel: &Panel, check: &Check, style: &Style) {
             let at = [x + half * (0.55 + 0.5 * spread), panel.place_y(v)];
             scene.shape(marker(Marker::Disc, at, 1.0), super::palette::PAPER, Stroke::new(SOFT, 0.2));
         }
-        let Some((mean, deviation)) = moments(runs) else { continue };
+        if runs.is_empty() {
+            continue;
+        }
+        let Moments { mean, deviation, .. } = Moments::of(runs);
         let x = x - 0.25 * half;
         if let Some(deviation) = deviation {
             let [low, high] = [mean - deviation, mean + deviation].map(|y| panel.place_y(y));

@@ -16,7 +16,7 @@
 //! Source: the two-step calibration of a Brazilian disc, doi:10.1038/s41598-024-61410-x, section 5 (steps b and d, eq. 15).
 
 use super::{Interval, Optimiser, Problem, Recommendation, Stop, Trial};
-use math::distribution::t_for_coverage;
+use math::sample::Moments;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -120,9 +120,10 @@ impl Optimiser for Proportional {
             return;
         }
         self.next = match self.slopes.len() {
+            // As published: a mean of one slope would differ in its last digit, and that is another simulation.
             1 => tried * wanted / y,
             _ => {
-                let slope = mean(&self.slopes);
+                let slope = Moments::of(&self.slopes).mean;
                 target.nearest(slope * tried) / slope
             }
         };
@@ -147,11 +148,10 @@ impl Optimiser for Proportional {
     }
 }
 
-/// The mean of the slopes that runs have shown, and their scatter.
+/// The slopes that runs have shown, response per unit of the factor.
 pub struct Slopes {
-    /// Response per unit of the factor.
     mean: f64,
-    /// Half the 95 % interval of the mean, response per unit of the factor.
+    /// Half the 95 % interval of the mean.
     half: f64,
     /// Standard deviation of one slope.
     deviation: f64,
@@ -165,11 +165,8 @@ impl Slopes {
         if slopes.len() < AVERAGED || !one_sign {
             return None;
         }
-        let (mean, free) = (mean(slopes), (slopes.len() - 1) as f64);
-        let squares: f64 = slopes.iter().map(|own| (own - mean) * (own - mean)).sum();
-        let deviation = (squares / free).sqrt();
-        let half = t_for_coverage(0.95, free) * deviation / (slopes.len() as f64).sqrt();
-        Some(Self { mean, half, deviation })
+        let moments = Moments::of(slopes);
+        Some(Self { mean: moments.mean, half: moments.half_interval()?, deviation: moments.deviation? })
     }
 
     /// The mean response to a value of the factor.
@@ -182,10 +179,6 @@ impl Slopes {
     pub fn scatter(&self, value: f64) -> f64 {
         self.deviation * value.abs()
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 #[cfg(test)]

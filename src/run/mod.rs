@@ -289,8 +289,8 @@ impl Loop<'_, '_> {
     /// Reports how many tasks of a stage are known and in the store.
     fn counted(&self, index: usize, is_done: bool) {
         if !self.settings.dry {
-            let StageReport { name, tasks, .. } = self.stages.report(self.workflow, index, &self.board);
-            self.watch.event(Event::Counted { stage: &name, count: tasks, is_done });
+            let (stage, count) = (&self.workflow.stages[index].name, self.stages.count(index, &self.board));
+            self.watch.event(Event::Counted { stage, count, is_done });
         }
     }
 

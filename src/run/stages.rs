@@ -307,6 +307,11 @@ impl Stages {
         }
     }
 
+    /// The tasks that a stage was the first to ask for.
+    pub(super) fn count(&self, index: usize, board: &Board) -> TaskCount {
+        self.entries[index].remembered.as_ref().map_or_else(|| board.count(index), memo::Recalled::count)
+    }
+
     /// The report of a stage, with the tasks that it was the first to ask for.
     pub(super) fn report(&self, workflow: &Workflow, index: usize, board: &Board) -> StageReport {
         let entry = &self.entries[index];
@@ -317,7 +322,7 @@ impl Stages {
                 State::Ended(status) => status.clone(),
                 State::Waiting | State::Asking(_) | State::Finishing(_) | State::Broken(_) => StageStatus::Open,
             },
-            tasks: entry.remembered.as_ref().map_or_else(|| board.count(index), memo::Recalled::count),
+            tasks: self.count(index, board),
             memo: entry.key,
             seconds: board.seconds(index),
         }

@@ -285,9 +285,7 @@ impl Table {
         let response = || context.responses.get(column).map(|r| r.symbol.clone());
         self.symbols.get(column).cloned().or_else(factor).or_else(response).filter(|s| !s.is_empty())
     }
-}
 
-impl Table {
     /// The symbols of this table before those of the workflow: of all names where cells hold names, else of the responses,
     /// which notes on runs name.
     fn signs(&self, context: &Context, in_cells: bool) -> BTreeMap<String, String> {

@@ -20,7 +20,7 @@ use crate::artifact::calibration::{Answer, Prediction, Solution, Summary, Verifi
 use crate::artifact::results::{Results, Verdicts};
 use crate::artifact::validity::NotValid;
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
-use math::distribution::t_for_coverage;
+use math::sample::Moments;
 use optim::misfit::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -295,13 +295,9 @@ fn targets(prediction: &Prediction) -> Vec<Verified> {
 /// Mean, standard deviation, half the 95 % interval of the mean, and number of the values that are not missing.
 fn moments(values: &[f64]) -> (f64, f64, f64, usize) {
     let there: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let n = there.len() as f64;
-    let mean = there.iter().sum::<f64>() / n;
-    if there.len() < 2 {
-        return (mean, f64::NAN, f64::NAN, there.len());
-    }
-    let deviation = (there.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)).sqrt();
-    (mean, deviation, t_for_coverage(0.95, n - 1.0) * deviation / n.sqrt(), there.len())
+    let moments = Moments::of(&there);
+    let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    (moments.mean, known(moments.deviation), known(moments.half_interval()), moments.count)
 }
 
 fn summary(verified: &[Verified]) -> Summary {

@@ -7,6 +7,7 @@
 
 use math::distribution::t_for_coverage;
 use math::elementary::{exp, ln};
+use math::sample::Moments;
 
 /// Agreement of pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,15 +33,13 @@ pub fn agreement(x: &[f64], y: &[f64]) -> Option<Agreement> {
     let mut ratios: Vec<f64> = x.iter().zip(&y).map(|(x, y)| y / x).collect();
     ratios.sort_by(f64::total_cmp);
     let (least, greatest) = (*ratios.first()?, *ratios.last()?);
-    let n = ratios.len() as f64;
-    let mean = ratios.iter().sum::<f64>() / n;
-    let squares: f64 = ratios.iter().map(|r| (r - mean) * (r - mean)).sum();
+    let Moments { count, mean, deviation } = Moments::of(&ratios);
     Some(Agreement {
-        n: ratios.len(),
+        n: count,
         quartiles: [0.25, 0.5, 0.75].map(|share| quantile(&ratios, share)),
         extremes: [least, greatest],
         mean,
-        deviation: (ratios.len() > 1).then(|| (squares / (n - 1.0)).sqrt()),
+        deviation,
         spearman: spearman(&x, &y),
     })
 }

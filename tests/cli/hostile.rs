@@ -266,21 +266,19 @@ fn nothing_that_a_program_starts_outlives_its_run() {
 /// After `kill -9` of the campaign nobody is its parent, and it has hidden itself as well as it can: the next run finds it.
 #[test]
 fn what_a_killed_campaign_left_in_hiding_is_found_by_the_next_run() {
-    let hides = "exec env -i setsid -f sh -c 'cd /; exec >/dev/null 2>&1; echo $$ > PID; exec sleep 600'";
+    let hides = "env -i setsid -f sh -c 'cd /; exec >/dev/null 2>&1; echo $$ > PID; exec sleep 600'; sleep 600\n";
     let space = program(
         "run = [\"sh\", \"run.sh\"]\nfiles = { \"run.sh\" = \"run.sh\" }\nread.y = { file = \"stdout\", pattern = '(.*)' }",
     );
     let pid = space.path("pid");
-    space.write(
-        "run.sh",
-        &format!("{}; sleep 600\n", hides.replace("PID", &pid.display().to_string()).replace("exec env", "env")),
-    );
+    space.write("run.sh", &hides.replace("PID", &pid.display().to_string()));
     // Campaigns of other tests, which run at the same time, sweep as well: one of some tries goes undisturbed.
     let undisturbed = (0..10).any(|_| {
         let _ = std::fs::remove_file(&pid);
         let mut child = space.command(&["run", "w.toml", "--quiet"]).stderr(Stdio::null()).spawn().expect("flow");
         let written = || std::fs::read_to_string(&pid).unwrap_or_default();
         while !written().ends_with('\n') {
+            assert!(child.try_wait().expect("flow").is_none(), "flow ended before its program began");
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
         let hidden = std::path::PathBuf::from(format!("/proc/{}", written().trim()));

@@ -39,6 +39,15 @@ fn said(stage: &str) -> (Option<i32>, String) {
     (output.status.code(), told(&output))
 }
 
+/// The words with which `check` refuses this stage: `table` lacks the column, and these are those that it has.
+fn refused(stage: &str, column: &str, table: &str, columns: &str) -> String {
+    let (code, said) = said(stage);
+    assert_eq!(code, Some(2), "{stage}: {said}");
+    assert!(said.contains(&format!("`{column}` is no column of `{table}`")), "{stage}: {said}");
+    assert!(said.contains(&format!("`{table}` has {columns}")), "{stage}: {said}");
+    said
+}
+
 #[test]
 fn every_kind_of_stage_that_names_a_column_is_told_of_it_before_the_run() {
     for (stage, column) in [
@@ -60,10 +69,7 @@ fn every_kind_of_stage_that_names_a_column_is_told_of_it_before_the_run() {
         ("kind = \"figure\"\nshow = \"histogram\"\nof = \"d\"\nx = \"y\"\nwhere = { u = \"1\" }", "u"),
         ("kind = \"figure\"\nshow = \"points\"\nof = \"d\"\nfactors = [\"a\", \"b\"]", "b"),
     ] {
-        let (code, said) = said(stage);
-        assert_eq!(code, Some(2), "{stage}: {said}");
-        assert!(said.contains(&format!("`{column}` is no column of `d`")), "{stage}: {said}");
-        assert!(said.contains("`d` has sample, a, y"), "{stage}: {said}");
+        let said = refused(stage, column, "d", "sample, a, y");
         assert!(said.contains("--> w.toml:"), "the line is named; {stage}: {said}");
     }
 }
@@ -75,10 +81,7 @@ fn the_columns_of_a_simulator_are_those_of_its_design_and_its_responses() {
         ("kind = \"figure\"\nshow = \"xy\"\nof = \"sim\"\nx = \"a\"\ny = \"sample\"", "sample"),
         ("kind = \"table\"\nof = \"sim\"\ncolumns = [\"z\"]", "z"),
     ] {
-        let (code, said) = said(stage);
-        assert_eq!(code, Some(2), "{stage}: {said}");
-        assert!(said.contains(&format!("`{column}` is no column of `sim`")), "{stage}: {said}");
-        assert!(said.contains("`sim` has a, y"), "{stage}: {said}");
+        refused(stage, column, "sim", "a, y");
     }
     // A response that a simulator does not give is said once.
     let (_, twice) = said("kind = \"anova\"\ntable = \"sim\"\nresponses = [\"z\"]");
