@@ -150,6 +150,7 @@ const SYMBOLS: &[(&str, f64, Dimension, bool)] = &[
     ("deg", std::f64::consts::PI / 180.0, Dimension::NONE, false),
     ("°", std::f64::consts::PI / 180.0, Dimension::NONE, false),
     ("%", 1e-2, Dimension::NONE, false),
+    ("‰", 1e-3, Dimension::NONE, false),
     ("1", 1.0, Dimension::NONE, false),
 ];
 

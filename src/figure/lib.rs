@@ -131,7 +131,8 @@ impl Quantity {
 
     /// A value of it in words: "12.3 MPa", or "0.203".
     pub fn in_words(&self, value: f64) -> String {
-        format!("{} {}", axis::significant(value, 3), self.unit).trim_end().to_owned()
+        let words = format!("{} {}", axis::significant(value, 3), text::unit_markup(&self.unit));
+        text::Line::new(words.trim_end(), 1.0).plain
     }
 
     /// Name, symbol and unit as an axis title.

@@ -3,7 +3,7 @@
 //! Up to six groups differ by colour, marker and dash; more of them by colour from dark to light, in the order of their
 //! values, and by marker, without bands. Measured values are hollow and black.
 
-use super::axis::{Scale, significant};
+use super::axis::{Scale, extent, significant};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
 use super::marks::{self, Band, Span, can_show};
@@ -50,6 +50,10 @@ pub struct Xy {
     pub joined: bool,
     /// Measured points, drawn over the others.
     pub measured: Vec<Cloud>,
+    /// What the bands of the lines are, such as "95 % confidence of the line"; empty without bands.
+    pub band: String,
+    /// What the error bars are, such as "one standard deviation"; empty without bars.
+    pub bars: String,
 }
 
 /// Largest factor by which the axes grow to show the bands.
@@ -138,6 +142,13 @@ impl Xy {
         for (i, cloud) in self.measured.iter().enumerate() {
             entries.push(Entry::new(&cloud.name, Swatch::Hollow(hollow(i))));
         }
+        let has_band = |cloud: &Cloud| cloud.line.as_ref().is_some_and(|line| line.low.iter().any(|l| l.is_finite()));
+        if n <= MOST_BANDS && !self.band.is_empty() && self.clouds.iter().any(has_band) {
+            entries.push(Entry::new(&self.band, Swatch::Band(marks::color(0, n), 0.18)));
+        }
+        if !self.bars.is_empty() {
+            entries.push(Entry::new(format!("bars: {}", self.bars), Swatch::Nothing));
+        }
         entries
     }
 
@@ -181,8 +192,12 @@ impl Xy {
             0 | 1 => String::new(),
             n => format!(" in {n} groups of {}", self.by.words()),
         };
-        let span = |q: &Quantity, s: Span| format!("{} {} to {}", q.words(), significant(s.low, 3), q.in_words(s.high));
-        let reach = format!("{}, {}", span(&self.x, self.span_x()), span(&self.y, self.span_y()));
+        // what the points reach, without the bars and bands about them
+        let span = |q: &Quantity, pick: fn(&Cloud) -> &Vec<f64>| {
+            let (low, high) = extent(self.clouds.iter().flat_map(|c| pick(c).iter().copied()));
+            format!("{} {} to {}", q.words(), significant(low, 3), q.in_words(high))
+        };
+        let reach = format!("{}, {}", span(&self.x, |c| &c.x), span(&self.y, |c| &c.y));
         let measured: usize = self.measured.iter().map(|c| c.x.len()).sum();
         let over = if measured > 0 { format!("; {measured} measured points over them") } else { String::new() };
         super::text::Line::new(&format!("{points} points{groups}: {reach}{over}."), 1.0).plain

@@ -1,8 +1,8 @@
 //! The mean of many curves and how far they scatter about it.
 //!
-//! Curves are read at common abscissae by straight lines between their points. At an abscissa the mean is over the curves that
-//! reach it, as long as at least two and at least half of them do, so that the mean does not end as the one curve that is
-//! longest. Scatter is the standard deviation over these curves. Points at which a curve runs back are left out.
+//! Curves are read at common abscissae by straight lines between their points. The mean is that of all curves, over the abscissae
+//! that all of them reach: where one curve ended, the mean of the others would jump. Scatter is the standard deviation over the
+//! curves. Points at which a curve runs back are left out.
 
 /// Mean and scatter of curves at common abscissae.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,24 +15,25 @@ pub struct MeanCurve {
     pub deviation: Vec<f64>,
 }
 
-/// The mean of curves, each its abscissae and values, at `count` equally spaced abscissae over what they cover.
+/// The mean of curves, each its abscissae and values, at `count` equally spaced abscissae over what all of them cover; empty for
+/// fewer than two curves.
 pub fn mean_curve(curves: &[(&[f64], &[f64])], count: usize) -> MeanCurve {
     let clean: Vec<Vec<[f64; 2]>> = curves.iter().map(|(x, y)| ascending(x, y)).filter(|c| !c.is_empty()).collect();
-    let low = clean.iter().map(|c| c[0][0]).fold(f64::INFINITY, f64::min);
-    let high = clean.iter().map(|c| c[c.len() - 1][0]).fold(f64::NEG_INFINITY, f64::max);
+    let low = clean.iter().map(|c| c[0][0]).fold(f64::NEG_INFINITY, f64::max);
+    let high = clean.iter().map(|c| c[c.len() - 1][0]).fold(f64::INFINITY, f64::min);
     let mut found = MeanCurve::default();
+    if clean.len() < 2 || high < low {
+        return found;
+    }
     let steps = count.saturating_sub(1).max(1) as f64;
-    for x in (0..count).map(|i| low + (high - low) * i as f64 / steps) {
+    for x in (0..count).map(|i| (low + (high - low) * i as f64 / steps).min(high)) {
         let values: Vec<f64> = clean.iter().filter_map(|curve| at(curve, x)).collect();
-        let n = values.len();
-        if n < 2 || 2 * n < clean.len() {
-            continue;
-        }
-        let mean = values.iter().sum::<f64>() / n as f64;
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
         found.x.push(x);
         found.mean.push(mean);
-        found.deviation.push((squares / (n - 1) as f64).sqrt());
+        found.deviation.push((squares / (n - 1.0)).sqrt());
     }
     found
 }
@@ -76,14 +77,16 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_ends_where_half_of_the_curves_do() {
+    fn the_mean_ends_where_the_first_curve_does() {
         let long: Vec<f64> = (0..=10).map(f64::from).collect();
-        let short = [0.0, 1.0, 5.0];
+        let double: Vec<f64> = long.iter().map(|x| 2.0 * x).collect();
         // the third point runs back and is left out
-        let back = [0.0, 5.0, 3.0];
-        let found = mean_curve(&[(&long, &long), (&short, &short), (&back, &[0.0, 5.0, 100.0])], 11);
-        assert_eq!(found.x.last(), Some(&5.0));
-        assert_eq!(found.mean.last(), Some(&5.0));
+        let short = [1.0, 5.0, 3.0];
+        let found = mean_curve(&[(&long, &long), (&long, &double), (&short, &[3.0, 15.0, 100.0])], 11);
+        assert_eq!((found.x[0], found.x[10]), (1.0, 5.0));
+        // no jump: 2x all along, though the others go on
+        assert!(found.x.iter().zip(&found.mean).all(|(x, mean)| (mean - 2.0 * x).abs() < 1e-12), "{found:?}");
         assert_eq!(mean_curve(&[(&long, &long)], 5), MeanCurve::default());
+        assert_eq!(mean_curve(&[(&[0.0, 1.0], &[0.0, 1.0]), (&[2.0, 3.0], &[0.0, 1.0])], 5), MeanCurve::default());
     }
 }

@@ -161,8 +161,13 @@ impl<'a> Pen<'a> {
         self.size *= SCRIPT_SIZE;
         self.slanted = false;
         self.depth += 1;
+        let before = self.plain.len();
         self.plain.push(sign);
         self.atom();
+        if let Some(raised) = (sign == '^').then(|| raised(&self.plain[before + 1..])).flatten() {
+            self.plain.truncate(before);
+            self.plain += &raised;
+        }
         (self.size, self.y, self.slanted, self.depth) = (size, y, slanted, self.depth - 1);
     }
 
@@ -300,4 +305,14 @@ impl<'a> Pen<'a> {
             self.put(c, self.face);
         }
     }
+}
+
+/// A power of digits in raised characters, as people write it in plain text.
+fn raised(power: &str) -> Option<String> {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let one = |c: char| match c {
+        '-' | '−' => Some('⁻'),
+        _ => c.to_digit(10).map(|digit| RAISED[digit as usize]),
+    };
+    power.chars().map(one).collect()
 }

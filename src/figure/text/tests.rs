@@ -22,10 +22,10 @@ fn scripts_stand_over_one_another() {
 
 #[test]
 fn minus_and_units() {
-    assert_eq!(Line::new("$10^{-3}$", 1.0).plain, "10^−3");
+    assert_eq!(Line::new("$10^{-3}$", 1.0).plain, "10⁻³");
     assert_eq!(unit_markup("kg/m^3"), "kg/m$^{3}$");
     assert_eq!(quantity("Density", r"\rho", "kg/m^3"), r"Density $\rho$ / (kg/m$^{3}$)");
-    assert_eq!(Line::new("Density / (kg/m$^3$)", 1.0).plain, "Density / (kg/m^3)");
+    assert_eq!(Line::new("Density / (kg/m$^3$)", 1.0).plain, "Density / (kg/m³)");
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn lines(drawn: &Drawn, x: &Shown, y: &Shown, rows: &[usize]) -> Result<Vec<Stri
         let mine = |at: &&usize| key.is_none_or(|key| by.as_ref().is_some_and(|by| by.values[**at] == key));
         let pick = |column: &Shown| rows.iter().filter(mine).map(|at| column.values[*at]).collect::<Vec<f64>>();
         let (x, y) = (pick(x), pick(y));
-        if x.is_empty() || fitted(fit, &x, &y).is_some() {
+        if x.is_empty() || fitted(drawn.plot, fit, &x, &y).is_some() {
             continue;
         }
         let whose = match (key, &by) {

@@ -10,13 +10,14 @@ use crate::artifact::run::Run;
 use crate::artifact::{Column, Table, Values};
 use crate::unit::Conversion;
 use figure::Quantity;
-use figure::axis::significant;
+use figure::axis::{Scale, significant};
 use figure::boxes::{self, BoxPlot};
 use figure::bundle::{self, Bundle};
 use figure::heatmap::HeatMap;
 use figure::histogram::Histogram;
 use figure::marks::Band;
 use figure::xy::{Cloud, Xy};
+use math::elementary::{log10, pow};
 use stats::band::mean_curve;
 use stats::groups::{groups, pivot};
 use stats::regression::{Regression, Settings, regress};
@@ -35,6 +36,15 @@ pub(super) struct Shown {
 }
 
 impl Shown {
+    /// Refuses words for the key of a plot that needs numbers.
+    fn of_numbers(self, key: &str) -> Result<Self, StageError> {
+        if self.names.is_empty() {
+            return Ok(self);
+        }
+        let message = format!("column `{}` holds words, which have no place on an axis", self.quantity.id());
+        Err(StageError::new(message).hint(format!("name a column of numbers for `{key}`")))
+    }
+
     /// The chosen rows of a column in the unit of its label, or in the field's unit.
     fn of(table: &Table, label: &Label, rows: &[usize]) -> Result<Self, StageError> {
         let column = table.column(&label.key).ok_or_else(|| {
@@ -158,14 +168,8 @@ impl<'a> Drawn<'a> {
 
 pub(super) fn xy(params: &Params, sources: &Sources, job: &Job) -> Result<Xy, Failure> {
     let drawn = Drawn::of(params, sources)?;
-    let (x, y, by) = (drawn.column("x")?, drawn.column("y")?, drawn.by()?);
+    let (x, y, by) = (drawn.column("x")?.of_numbers("x")?, drawn.column("y")?.of_numbers("y")?, drawn.by()?);
     for (shown, direction, key) in [(&x, Direction::X, "x"), (&y, Direction::Y, "y")] {
-        if !shown.names.is_empty() {
-            let message = format!("column `{}` holds words, which have no place on an axis", shown.quantity.id());
-            return Err(StageError::new(message)
-                .hint(format!("name a column of numbers for `{key}`, or show = \"box\""))
-                .into());
-        }
         if drawn.plot.log.contains(&direction) && !shown.values.iter().any(|v| *v > 0.0) {
             let message = format!("column `{}` has no value above zero for a logarithmic axis", shown.quantity.id());
             return Err(StageError::new(message).hint(format!("leave `{key}` out of `log`")).into());
@@ -196,6 +200,8 @@ pub(super) fn xy(params: &Params, sources: &Sources, job: &Job) -> Result<Xy, Fa
         clouds,
         joined: drawn.plot.joined,
         measured: measured.into_iter().collect(),
+        band: drawn.plot.fit.map_or_else(String::new, |_| format!("{} confidence of the line", drawn.plot.percent())),
+        bars: drawn.plot.bars.map_or_else(String::new, |bars| drawn.plot.bars_in_words(bars)),
         x: x.quantity,
         y: y.quantity,
     })
@@ -203,8 +209,8 @@ pub(super) fn xy(params: &Params, sources: &Sources, job: &Job) -> Result<Xy, Fa
 
 /// The points of one group, with the requested line through all of them.
 fn cloud(plot: &Plot, name: String, x: Vec<f64>, y: Vec<f64>) -> Cloud {
-    let (line, note) = match plot.fit.and_then(|fit| fitted(fit, &x, &y)) {
-        Some((fit, found)) => (Some(band(fit, &found, &x, plot.coverage())), told(fit, &found)),
+    let (line, note) = match plot.fit.and_then(|fit| fitted(plot, fit, &x, &y)) {
+        Some(found) => (Some(band(plot, &found, &x)), told(plot, &found)),
         None => (None, String::new()),
     };
     let Some(bars) = plot.bars else {
@@ -225,11 +231,21 @@ fn cloud(plot: &Plot, name: String, x: Vec<f64>, y: Vec<f64>) -> Cloud {
     cloud
 }
 
-/// Least squares of one column on the other; `None` where the points do not determine it.
-pub(super) fn fitted(fit: Fit, x: &[f64], y: &[f64]) -> Option<(Fit, Regression)> {
+/// A straight line on the axes of a plot: the values of a logarithmic axis are fitted by their logarithms.
+pub(super) struct Fitted {
+    fit: Fit,
+    found: Regression,
+}
+
+/// Least squares of one column on the other, as straight on the page as the axes are; `None` where the points do not
+/// determine the line. Points that a logarithmic axis cannot show are not in it.
+pub(super) fn fitted(plot: &Plot, fit: Fit, x: &[f64], y: &[f64]) -> Option<Fitted> {
+    let (along, up) = (plot.scale(Direction::X), plot.scale(Direction::Y));
+    let placed = x.iter().zip(y).map(|(&x, &y)| (on_axis(along, x), on_axis(up, y)));
+    let (x, y): (Vec<f64>, Vec<f64>) = placed.filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
     let sample = Sample {
-        factors: vec![Factor::new("x", x.to_vec())],
-        responses: vec![Response::new("y", y.to_vec())],
+        factors: vec![Factor::new("x", x)],
+        responses: vec![Response::new("y", y)],
         weights: None,
     };
     let slope = Term::power("x", 1);
@@ -237,34 +253,58 @@ pub(super) fn fitted(fit: Fit, x: &[f64], y: &[f64]) -> Option<(Fit, Regression)
         Fit::Line => vec![Term::constant(), slope],
         Fit::ThroughOrigin => vec![slope],
     };
-    regress(&sample, "y", &terms, &Settings::default()).ok().map(|found| (fit, found))
+    let found = regress(&sample, "y", &terms, &Settings::default()).ok()?;
+    Some(Fitted { fit, found })
+}
+
+/// A value where it stands on an axis; not finite for a value that the axis cannot show.
+fn on_axis(scale: Scale, value: f64) -> f64 {
+    match scale {
+        Scale::Linear => value,
+        Scale::Log => log10(value),
+    }
+}
+
+/// The value at a place on an axis.
+fn off_axis(scale: Scale, place: f64) -> f64 {
+    match scale {
+        Scale::Linear => place,
+        Scale::Log => pow(10.0, place),
+    }
 }
 
 /// Points along a drawn line.
 const ALONG: usize = 61;
 
-fn band(fit: Fit, found: &Regression, x: &[f64], coverage: f64) -> Band {
-    let (low, high) = figure::axis::extent(x.iter().copied());
-    let (low, high) = if fit == Fit::ThroughOrigin { (low.min(0.0), high.max(0.0)) } else { (low, high) };
+fn band(plot: &Plot, Fitted { fit, found }: &Fitted, x: &[f64]) -> Band {
+    let (along, up) = (plot.scale(Direction::X), plot.scale(Direction::Y));
+    let (low, high) = figure::axis::extent(x.iter().map(|&x| on_axis(along, x)).filter(|x| x.is_finite()));
+    let (low, high) = if *fit == Fit::ThroughOrigin { (low.min(0.0), high.max(0.0)) } else { (low, high) };
     let at = |i: usize| low + (high - low) * i as f64 / (ALONG - 1) as f64;
     let mut line = Band::default();
     for place in (0..ALONG).map(at) {
-        let said = found.model.predict(&[place], coverage);
+        let said = found.model.predict(&[place], plot.coverage());
         let (below, above) = said.confidence.unwrap_or((f64::NAN, f64::NAN));
-        line.x.push(place);
-        line.y.push(said.value);
-        line.low.push(below);
-        line.high.push(above);
+        line.x.push(off_axis(along, place));
+        line.y.push(off_axis(up, said.value));
+        line.low.push(off_axis(up, below));
+        line.high.push(off_axis(up, above));
     }
     line
 }
 
 /// Slope with its standard error and R², in label markup.
-fn told(fit: Fit, found: &Regression) -> String {
+fn told(plot: &Plot, Fitted { fit, found }: &Fitted) -> String {
     let Some(slope) = found.natural.last() else { return String::new() };
-    let error = slope.std_error.map_or_else(String::new, |e| format!(" ± {}", significant(e, 2)));
-    let kind = if fit == Fit::ThroughOrigin { " about zero" } else { "" };
-    format!("slope {}{error}, $R^2${kind} {}", significant(slope.estimate, 4), figure::axis::fixed(found.fit.r2, 4))
+    let error = slope.std_error.map_or_else(String::new, |e| format!(" (std. error {})", significant(e, 2)));
+    let kind = if *fit == Fit::ThroughOrigin { " about zero" } else { "" };
+    let what = match (plot.scale(Direction::X), plot.scale(Direction::Y)) {
+        (Scale::Linear, Scale::Linear) => "slope",
+        (Scale::Log, Scale::Log) => "exponent",
+        (Scale::Linear, Scale::Log) => "decades per unit",
+        (Scale::Log, Scale::Linear) => "rise per decade",
+    };
+    format!("{what} {}{error}, $R^2${kind} {}", significant(slope.estimate, 4), figure::axis::fixed(found.fit.r2, 4))
 }
 
 /// The user's own columns `x` and `y`, in the units of the plot.
@@ -284,10 +324,12 @@ fn overlay(job: &Job, x: &Quantity, y: &Quantity) -> Result<Option<bundle::Line>
         }
     };
     let read = |column: &Column, q: &Quantity| {
-        // a column without a unit is in that of the plot
-        let own = if column.unit.is_empty() { &q.unit } else { &column.unit };
-        let to = Conversion::between(own, &q.unit);
-        let to = to.map_err(|e| StageError::new(format!("overlay, column `{}`: {e}", column.name)))?;
+        let to = Conversion::between(&column.unit, &q.unit);
+        let to = to.map_err(|e| {
+            let (name, unit) = (&column.name, &q.unit);
+            StageError::new(format!("overlay, column `{name}`: {e}"))
+                .hint(format!("give its unit in the head: `{name} [{unit}]`"))
+        })?;
         Ok::<Vec<f64>, StageError>(to.of_all(numbers(column).0))
     };
     let stem = file.path.file_stem().map(|stem| stem.to_string_lossy().replace('_', " ")).unwrap_or_default();
@@ -343,7 +385,7 @@ fn group_of(params: &Params, input: usize) -> usize {
 }
 
 pub(super) fn histogram(params: &Params, sources: &Sources) -> Result<Histogram, StageError> {
-    let shown = Drawn::of(params, sources)?.column("x")?;
+    let shown = Drawn::of(params, sources)?.column("x")?.of_numbers("x")?;
     let bins = summary::histogram(&shown.values, params.plot.as_ref().and_then(|p| p.bins));
     let summary = Summary::of(&shown.values)
         .ok_or_else(|| StageError::new(format!("column `{}` has no number", shown.quantity.id())))?;
@@ -358,7 +400,7 @@ pub(super) fn histogram(params: &Params, sources: &Sources) -> Result<Histogram,
 
 pub(super) fn boxes(params: &Params, sources: &Sources) -> Result<BoxPlot, StageError> {
     let drawn = Drawn::of(params, sources)?;
-    let (y, by) = (drawn.column("y")?, drawn.by()?);
+    let (y, by) = (drawn.column("y")?.of_numbers("y")?, drawn.by()?);
     let keys: Vec<Option<f64>> = by.as_ref().map_or(vec![None], |b| b.distinct().into_iter().map(Some).collect());
     let group = |key: &Option<f64>| {
         let mine = |i: &usize| key.is_none_or(|key| by.as_ref().is_some_and(|b| b.values[*i] == key));
@@ -378,7 +420,8 @@ pub(super) fn boxes(params: &Params, sources: &Sources) -> Result<BoxPlot, Stage
 
 pub(super) fn heat_map(params: &Params, sources: &Sources) -> Result<HeatMap, StageError> {
     let drawn = Drawn::of(params, sources)?;
-    let (across, down, value) = (drawn.column("x")?, drawn.column("y")?, drawn.column("value")?);
+    let (across, down) = (drawn.column("x")?, drawn.column("y")?);
+    let value = drawn.column("value")?.of_numbers("value")?;
     let found = pivot(&down.values, &across.values, &value.values);
     let several = found.cells.iter().flatten().any(|cell| cell.n > 1);
     let scatter = |cell: &Option<stats::groups::Cell>| cell.and_then(|c| c.deviation).unwrap_or(f64::NAN);

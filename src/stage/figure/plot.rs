@@ -139,6 +139,10 @@ impl Plot {
             let message = "`confidence` has no effect without `fit` or `bars = \"interval\"`";
             found.push(Complaint::new("confidence", message).hint("leave out `confidence`"));
         }
+        if self.fit == Some(Fit::ThroughOrigin) && !self.log.is_empty() {
+            let message = "a logarithmic axis has no origin for `fit = \"through-origin\"`";
+            found.push(Complaint::new("fit", message).hint("fit = \"line\", or leave out `log`"));
+        }
         found.extend(self.confidence.and_then(|c| super::super::columns::check_probability("confidence", c)));
         found.extend(
             self.bins
@@ -154,6 +158,19 @@ impl Plot {
 
     pub(super) fn coverage(&self) -> f64 {
         self.confidence.unwrap_or(0.95)
+    }
+
+    /// The coverage as text: "95 %".
+    pub(super) fn percent(&self) -> String {
+        format!("{} %", figure::axis::significant(100.0 * self.coverage(), 3).trim_end_matches(".0"))
+    }
+
+    /// What the bars are.
+    pub(super) fn bars_in_words(&self, bars: Bars) -> String {
+        match bars {
+            Bars::Deviation => "one standard deviation".to_owned(),
+            Bars::Interval => format!("{} interval of the mean", self.percent()),
+        }
     }
 
     /// Labels of the columns that are drawn.
