@@ -5,9 +5,10 @@ use super::{Exit, complete, message};
 use crate::plan::{self, Overrides, Workflow};
 use crate::report::{duration, moment, quoted};
 use crate::run::commit;
-use crate::store::{Origin, Store};
+use crate::store::{Mark, Origin, Store};
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Once;
 
 /// Which campaign.
 #[derive(Args, Clone, Debug)]
@@ -105,12 +106,22 @@ impl Campaign {
 impl Common {
     /// The store.
     pub(super) fn open(&self) -> Result<Store, Exit> {
+        self.tell_of_mark();
         Store::open(&self.store).map_err(|e| system(&e))
     }
 
     /// The store for a command that only reads: nothing is written into it, and none is made.
     pub(super) fn read(&self) -> Result<Store, Exit> {
+        self.tell_of_mark();
         Store::open_to_read(&self.store).map_err(|e| system(&e))
+    }
+
+    /// Says once why this user's own results are proven again and again.
+    fn tell_of_mark(&self) {
+        static SAID: Once = Once::new();
+        if let Some(fault) = Mark::fault_of_user() {
+            SAID.call_once(|| self.note(&format!("warning: {fault}\n  {}", fault.hint)));
+        }
     }
 
     /// Prints a note, which is no result.

@@ -46,8 +46,9 @@ pub(super) struct Run {
     /// After a failure, continue with tasks that do not depend on it.
     #[arg(long)]
     keep_going: bool,
-    /// Compute this stage again although its results are stored, because a program or file outside its key has changed. May be
-    /// given more than once.
+    /// Compute this stage again although its results are stored, because a program or file outside its key has changed: all of
+    /// its tasks, however long they take, and with a simulator every simulation. What follows runs again only where a result
+    /// differs. May be given more than once.
     #[arg(long, value_name = "STAGE")]
     again: Vec<String>,
     /// Print one JSON document at the end.

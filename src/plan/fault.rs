@@ -53,12 +53,14 @@ pub struct Fault {
     pub hint: Option<String>,
     /// Other locations that belong to it, with a few words each.
     pub also: Vec<(Location, String)>,
+    /// The factor, response, material or column that is not there, if it is about one.
+    pub missing: Option<String>,
 }
 
 impl Fault {
     /// A fault without a location.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { location: None, message: message.into(), label: None, hint: None, also: Vec::new() }
+        Self { location: None, message: message.into(), label: None, hint: None, also: Vec::new(), missing: None }
     }
 
     /// Says where.

@@ -274,7 +274,8 @@ pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageErro
 pub(super) fn check_names(context: &Context, factors: &[String], responses: &[String]) -> Vec<Complaint> {
     let unknown = |name: &String| {
         let known = context.responses.keys().cloned().collect::<Vec<_>>().join(", ");
-        Complaint::new("responses", format!("there is no [response.{name}]")).hint(format!("known are {known}"))
+        let complaint = Complaint::new("responses", format!("there is no [response.{name}]"));
+        complaint.missing(name).hint(format!("known are {known}"))
     };
     let factors = factors.iter().flat_map(|name| super::derived::check(name, context));
     factors.chain(responses.iter().filter(|name| !context.responses.contains_key(*name)).map(unknown)).collect()

@@ -33,7 +33,8 @@ pub(super) fn factors_of_formula(text: &str) -> Option<Vec<String>> {
 /// Complaints about a name in a term that is neither a factor nor a formula of factors.
 pub(super) fn check(name: &str, context: &Context) -> Vec<Complaint> {
     let known = || format!("known are {}", context.factors.keys().cloned().collect::<Vec<_>>().join(", "));
-    let unknown = |name: &str| Complaint::new("factors", format!("there is no [factor.{name}]")).hint(known());
+    let unknown =
+        |name: &str| Complaint::new("factors", format!("there is no [factor.{name}]")).missing(name).hint(known());
     if context.factors.contains_key(name) {
         return Vec::new();
     }

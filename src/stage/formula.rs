@@ -78,7 +78,8 @@ impl Stage for Formula {
                 Ok(formula) => {
                     for unknown in formula.names().iter().filter(|name| !names.contains(name)) {
                         let hint = format!("known are {}", names.join(", "));
-                        found.push(Complaint::new(&at("value"), format!("`{unknown}` is not a value")).hint(hint));
+                        let complaint = Complaint::new(&at("value"), format!("`{unknown}` is not a value"));
+                        found.push(complaint.missing(unknown).hint(hint));
                     }
                 }
             }

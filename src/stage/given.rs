@@ -22,6 +22,7 @@ pub(super) fn check_given<'a>(
             false => format!("`{stage}` gives {}", given.join(", ")),
         });
         Complaint::new(path, format!("`{response}` is no response of {whose}"))
+            .missing(response)
             .hint(gives.collect::<Vec<_>>().join("; "))
     };
     // Another check reports a response that the workflow does not declare.

@@ -264,6 +264,9 @@ pub struct Complaint {
     pub path: Vec<String>,
     /// The `[material.NAME]` that the path lies below instead.
     pub material: Option<String>,
+    /// The factor, response, material or column that is not there, if the complaint is about one: where it was found missing
+    /// already, the complaint is a consequence and is not printed.
+    pub missing: Option<String>,
     /// What was found and what was expected.
     pub message: String,
     /// What to do.
@@ -274,7 +277,14 @@ impl Complaint {
     /// A complaint about the value at `path` (keys separated by dots).
     pub fn new(path: &str, message: impl Into<String>) -> Self {
         let path = path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect();
-        Self { path, material: None, message: message.into(), hint: None }
+        Self { path, material: None, missing: None, message: message.into(), hint: None }
+    }
+
+    /// Says which factor, response, material or column is not there.
+    #[must_use]
+    pub fn missing(mut self, name: &str) -> Self {
+        self.missing = Some(name.to_owned());
+        self
     }
 
     /// Sets the material below which the path lies.

@@ -82,7 +82,7 @@ pub fn check_material(name: Option<&String>, context: &Context) -> Option<Compla
     let name = name.filter(|name| !context.materials.contains_key(*name))?;
     let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
     let hint = if known.is_empty() { "there is none".to_owned() } else { format!("there is {}", known.join(", ")) };
-    Some(Complaint::new("material", format!("there is no [material.{name}]")).hint(hint))
+    Some(Complaint::new("material", format!("there is no [material.{name}]")).missing(name).hint(hint))
 }
 
 /// The complaint about the unit of a simulator's response: it cannot be read, or not be converted to the unit that the

@@ -153,6 +153,34 @@ fn another_user_of_a_store_gets_the_same_and_proves_it_first() {
 }
 
 #[test]
+fn a_damaged_mark_is_said_once_with_a_remedy_that_works() {
+    let space = campaign();
+    let (state, mark) = (space.path("state"), space.path("state/flow/mark"));
+    let run = |arguments: &[&str]| {
+        let output = space.command(arguments).env("XDG_STATE_HOME", &state).output().expect("running flow");
+        assert!(output.status.success(), "{}", told(&output));
+        told(&output)
+    };
+    assert!(!run(&["run", "w.toml"]).contains("warning: your mark"));
+    fs::write(&mark, "short").expect("a mark");
+    let said = run(&["run", "w.toml"]);
+    let (why, hint) =
+        ("flow/mark is damaged: it has not 32 bytes: nothing in a store", "\n  delete it, and flow makes another\n");
+    assert!(said.matches(why).count() == 1 && said.contains(hint), "{said}");
+    assert!(!run(&["run", "w.toml", "--quiet"]).contains(why));
+    fs::remove_file(&mark).expect("a mark");
+    run(&["run", "w.toml"]);
+    assert!(!run(&["show", "w.toml"]).contains("your mark"));
+    let nowhere = space
+        .command(&["run", "w.toml"])
+        .env_remove("XDG_STATE_HOME")
+        .env_remove("HOME")
+        .output()
+        .expect("running flow");
+    assert!(told(&nowhere).contains("neither HOME nor XDG_STATE_HOME names a folder"), "{}", told(&nowhere));
+}
+
+#[test]
 fn a_changed_record_of_a_run_is_refused() {
     let space = campaign();
     let path = space.path("store/runs/1.json");

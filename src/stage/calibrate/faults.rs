@@ -130,7 +130,7 @@ impl Calibrate {
         let mut unknown = |path: String, what: &str, name: &String, known: Vec<&String>| {
             if !known.contains(&name) {
                 let known: Vec<&str> = known.into_iter().map(String::as_str).collect();
-                let complaint = Complaint::new(&path, format!("unknown {what} `{name}`"));
+                let complaint = Complaint::new(&path, format!("unknown {what} `{name}`")).missing(name);
                 found.push(complaint.hint(format!("known are {}", known.join(", "))));
             }
         };

@@ -209,7 +209,7 @@ impl Design {
             false => format!("its factors are {}", known.join(", ")),
         };
         let complaint = |name| Complaint::new("factors", format!("`{name}` is not a factor of this workflow"));
-        unknown.map(|name| complaint(name).hint(&hint)).collect()
+        unknown.map(|name| complaint(name).missing(name).hint(&hint)).collect()
     }
 
     /// Replicates and order of the runs.

@@ -155,7 +155,7 @@ impl Stage for Figure {
         for name in self.response.list().iter().filter(|name| !context.responses.contains_key(*name)) {
             let known: Vec<&str> = context.responses.keys().map(String::as_str).collect();
             let message = format!("there is no [response.{name}]");
-            found.push(Complaint::new("response", message).hint(format!("known: {}", known.join(", "))));
+            found.push(Complaint::new("response", message).missing(name).hint(format!("known: {}", known.join(", "))));
         }
         let of = self.of.list();
         found.extend(check_given(context, "response", &of.iter().collect::<Vec<_>>(), &self.response.list()));
@@ -163,7 +163,7 @@ impl Stage for Figure {
         for (key, name) in factors.filter(|(_, name)| !context.factors.contains_key(*name)) {
             let known: Vec<&str> = context.factors.keys().map(String::as_str).collect();
             let message = format!("there is no [factor.{name}]");
-            found.push(Complaint::new(key, message).hint(format!("known: {}", known.join(", "))));
+            found.push(Complaint::new(key, message).missing(name).hint(format!("known: {}", known.join(", "))));
         }
         for label in self.names.values() {
             if let Err(fault) = text::check(label) {

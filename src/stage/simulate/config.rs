@@ -257,8 +257,8 @@ impl Simulate {
         let (values, unresolved) = material.resolve(&material::Values::new(), &|name| self.factor(context, name));
         faults.extend(unresolved.iter().map(|fault| {
             let complaint = Complaint::new(&fault.path, &fault.why).in_material(&self.material);
-            if fault.factor.is_some() {
-                complaint.hint("let the design of the stage vary it, or give the value itself")
+            if let Some(factor) = &fault.factor {
+                complaint.missing(factor).hint("let the design of the stage vary it, or give the value itself")
             } else {
                 complaint
             }

@@ -105,10 +105,10 @@ impl Table {
             found.push(Complaint::new("classes", "the list needs the bounds of the classes, increasing"));
         }
         for name in self.factors.iter().filter(|name| !context.factors.contains_key(*name)) {
-            found.push(Complaint::new("factors", format!("there is no [factor.{name}]")));
+            found.push(Complaint::new("factors", format!("there is no [factor.{name}]")).missing(name));
         }
         for name in self.materials.iter().filter(|name| !context.materials.contains_key(*name)) {
-            found.push(Complaint::new("materials", format!("there is no [material.{name}]")));
+            found.push(Complaint::new("materials", format!("there is no [material.{name}]")).missing(name));
         }
         found
     }
