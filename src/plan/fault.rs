@@ -1,5 +1,6 @@
 //! Faults of a workflow: what was found, where, what was expected, what to do.
 
+use crate::stage::Missing;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -53,8 +54,8 @@ pub struct Fault {
     pub hint: Option<String>,
     /// Other locations that belong to it, with a few words each.
     pub also: Vec<(Location, String)>,
-    /// The factor, response, material or column that is not there, if it is about one.
-    pub missing: Option<String>,
+    /// What is not there, if it is about that.
+    pub missing: Option<Missing>,
 }
 
 impl Fault {

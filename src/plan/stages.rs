@@ -13,7 +13,7 @@ use crate::stage::beside::Beside;
 use crate::stage::reads;
 use crate::stage::simulate::Simulate;
 use crate::stage::vary::Template;
-use crate::stage::{Class, Complaint, Context, KINDS, Kind, Port, Stage};
+use crate::stage::{Class, Complaint, Context, KINDS, Kind, Missing, Port, Stage};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -109,7 +109,7 @@ fn examine(check: &mut Check<'_>, table: &Table, stages: &[Configured], material
         let Some(own) = table.get(name) else { continue };
         for complaint in stage.check(context) {
             // It is a consequence of a fault that was reported already.
-            if is_lost(check, complaint.missing.as_deref()) {
+            if is_lost(check, complaint.missing.as_ref()) {
                 continue;
             }
             let path = complaint.material.iter().chain(&complaint.path).map(String::as_str);
@@ -156,8 +156,9 @@ fn look_for_columns(
         for complaint in stage.stage.reads().iter().flat_map(|reads| reads.missing(columns)) {
             let fault = located(check, node, complaint);
             // One that is not declared, or that its stage cannot give, was reported there already.
-            let is_said = |other: &Fault| (&other.location, &other.missing) == (&fault.location, &fault.missing);
-            if !is_lost(check, fault.missing.as_deref()) && !check.faults.iter().chain(&looked.absent).any(is_said) {
+            let name = |fault: &Fault| fault.missing.as_ref().map(|missing| missing.name.clone());
+            let is_said = |other: &Fault| other.location == fault.location && name(other) == name(&fault);
+            if !is_lost(check, fault.missing.as_ref()) && !check.faults.iter().chain(&looked.absent).any(is_said) {
                 looked.absent.push(fault);
             }
         }
@@ -165,8 +166,8 @@ fn look_for_columns(
 }
 
 /// Whether this name is declared by a table that could not be read.
-fn is_lost(check: &Check<'_>, missing: Option<&str>) -> bool {
-    missing.is_some_and(|name| check.lost.iter().any(|(_, lost)| lost == name))
+fn is_lost(check: &Check<'_>, missing: Option<&Missing>) -> bool {
+    missing.is_some_and(|missing| check.lost.iter().any(|(section, name)| missing.is(section, name)))
 }
 
 /// A complaint as a fault without its location.

@@ -2,7 +2,7 @@
 
 use super::derived::Derived;
 use super::invalid::Invalid;
-use super::{Complaint, Context, StageError};
+use super::{Complaint, Context, Named, StageError};
 use crate::artifact::groups::Groups;
 use crate::artifact::results::Results;
 use crate::artifact::validity::NotValid;
@@ -275,7 +275,7 @@ pub(super) fn check_names(context: &Context, factors: &[String], responses: &[St
     let unknown = |name: &String| {
         let known = context.responses.keys().cloned().collect::<Vec<_>>().join(", ");
         let complaint = Complaint::new("responses", format!("there is no [response.{name}]"));
-        complaint.missing(name).hint(format!("known are {known}"))
+        complaint.missing(Named::Response, name).hint(format!("known are {known}"))
     };
     let factors = factors.iter().flat_map(|name| super::derived::check(name, context));
     factors.chain(responses.iter().filter(|name| !context.responses.contains_key(*name)).map(unknown)).collect()

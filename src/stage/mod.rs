@@ -257,6 +257,44 @@ pub struct Port {
     pub accepts: Accepts,
 }
 
+/// What has a name in a workflow, or in a table that it reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Named {
+    /// A `[factor.NAME]`.
+    Factor,
+    /// A `[response.NAME]`.
+    Response,
+    /// A `[material.NAME]`.
+    Material,
+    /// A `[stage.NAME]`.
+    Stage,
+    /// A column of a table, which may be that of a factor or of a response.
+    Column,
+}
+
+/// A name of something that is not there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// What would have the name.
+    pub what: Named,
+    /// The name.
+    pub name: String,
+}
+
+impl Missing {
+    /// Whether `[SECTION.NAME]` would declare it.
+    pub fn is(&self, section: &str, name: &str) -> bool {
+        let sections: &[&str] = match self.what {
+            Named::Factor => &["factor"],
+            Named::Response => &["response"],
+            Named::Material => &["material"],
+            Named::Stage => &["stage"],
+            Named::Column => &["factor", "response"],
+        };
+        self.name == name && sections.contains(&section)
+    }
+}
+
 /// A fault in a stage's settings, found before anything runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Complaint {
@@ -264,9 +302,9 @@ pub struct Complaint {
     pub path: Vec<String>,
     /// The `[material.NAME]` that the path lies below instead.
     pub material: Option<String>,
-    /// The factor, response, material or column that is not there, if the complaint is about one: where it was found missing
-    /// already, the complaint is a consequence and is not printed.
-    pub missing: Option<String>,
+    /// What is not there, if the complaint is about that: where it was found missing already, the complaint is a consequence
+    /// and is not printed.
+    pub missing: Option<Missing>,
     /// What was found and what was expected.
     pub message: String,
     /// What to do.
@@ -280,10 +318,10 @@ impl Complaint {
         Self { path, material: None, missing: None, message: message.into(), hint: None }
     }
 
-    /// Says which factor, response, material or column is not there.
+    /// Says what is not there.
     #[must_use]
-    pub fn missing(mut self, name: &str) -> Self {
-        self.missing = Some(name.to_owned());
+    pub fn missing(mut self, what: Named, name: &str) -> Self {
+        self.missing = Some(Missing { what, name: name.to_owned() });
         self
     }
 

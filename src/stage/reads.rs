@@ -4,7 +4,7 @@
 //! of the design, its responses, and the program's own.
 
 use super::derived::factors_of_formula;
-use super::{Complaint, Context, OWN_COLUMNS};
+use super::{Complaint, Context, Named, OWN_COLUMNS};
 use std::collections::BTreeMap;
 
 /// Columns that a stage names under one key.
@@ -44,7 +44,9 @@ impl Reads {
             let has = tables.iter().map(|(stage, columns)| format!("`{stage}` has {}", listed(columns)));
             let alike = tables.iter().find_map(|(_, columns)| look_alike(&column, columns));
             let hint = alike.into_iter().chain(has).collect::<Vec<_>>().join("; ");
-            Complaint::new(&self.path, format!("`{column}` is no column of {whose}")).missing(&column).hint(hint)
+            Complaint::new(&self.path, format!("`{column}` is no column of {whose}"))
+                .missing(Named::Column, &column)
+                .hint(hint)
         };
         lost.into_iter().map(complaint).collect()
     }

@@ -109,6 +109,24 @@ fn a_word_is_no_level_of_a_factor_of_numbers() {
     space.run(&[]);
 }
 
+/// They were one more group, or lost without a word.
+#[test]
+fn runs_without_a_value_to_group_by_are_counted() {
+    let fit = "kind = \"regression\"\ntable = \"d\"\nterms.y = [\"a\"]\nby = [\"g\"]";
+    for (first, second) in [("rock", "soil"), ("1", "2")] {
+        let groups = [first, first, first, second, second, second, "", "NA"];
+        let rows = groups.iter().enumerate().map(|(i, group)| format!("{},{},{group}\n", i + 1, (i * i) % 5));
+        let space = data(&format!("a,y,g\n{}", rows.collect::<String>()), fit);
+        let text = std::fs::read_to_string(space.path("w.toml")).expect("the workflow");
+        space.write("w.toml", &text.replace("levels = [1, 2]", "range = [0, 9]"));
+        space.run(&[]);
+        let notes = space.stdout(&["show", "w.toml", "s", "--table", "notes", "--csv"]);
+        assert!(notes.contains("2 of 8 runs have no `g`, so they are in no group"), "{notes}");
+        let groups = space.stdout(&["show", "w.toml", "s", "--table", "groups", "--csv"]);
+        assert_eq!(groups.lines().count(), 5, "two terms of two groups: {groups}");
+    }
+}
+
 /// They were taken for 0.
 #[test]
 fn numbers_too_small_for_the_machine_are_refused() {

@@ -2,7 +2,7 @@
 
 use super::super::material::{self, Bonding, GivenMaterial, Need};
 use super::super::rows;
-use super::super::{Complaint, Context, Known, Point, StageError};
+use super::super::{Complaint, Context, Known, Named, Point, StageError};
 use super::fissures::FissureConfig;
 use super::speed::PlatenSpeed;
 use crate::expression::Measure;
@@ -258,7 +258,9 @@ impl Simulate {
         faults.extend(unresolved.iter().map(|fault| {
             let complaint = Complaint::new(&fault.path, &fault.why).in_material(&self.material);
             if let Some(factor) = &fault.factor {
-                complaint.missing(factor).hint("let the design of the stage vary it, or give the value itself")
+                complaint
+                    .missing(Named::Factor, factor)
+                    .hint("let the design of the stage vary it, or give the value itself")
             } else {
                 complaint
             }
