@@ -222,7 +222,7 @@ fn a_column_is_spread_over_two_others() {
         .reals_column("estimate", "MPa", "", vec![1.0, 2.0, 3.0]);
     let lacking = Arc::new(Artifact::of(ArtifactKind::GROUPS, Group::new().with("groups", Node::Table(table))));
     let pivot = json!({ "down": "R_min", "across": "ratio", "value": "estimate" });
-    let made = run(json!({ "pivot": pivot }), &[("of", lacking)]).unwrap();
+    let made = run(json!({ "pivot": pivot, "digits": 3 }), &[("of", lacking)]).unwrap();
     let note = "1 of 3 rows have no `R_min` or no `ratio`, so they are in no cell";
     assert!(text(&made, "markdown").contains(note), "{}", text(&made, "markdown"));
     let Err(Failure::Failed(error)) = spread("term") else { panic!("words in cells") };
