@@ -127,7 +127,7 @@ mod tests {
 6 | fil = \"a.csv\"
   | ^^^ did you mean `file`?
   |
-  = help: known keys: `file`, `delimiter`, `decimal`, `encoding`, `missing`, `sheet`, `first_line`
+  = help: known keys: `file`, `delimiter`, `decimal`, `encoding`, `missing`, `sheet`, `first_line`, `rename`
 
 error: 1 fault; nothing was run
 ";

@@ -47,7 +47,7 @@ fn all_faults_are_reported_at_once() {
         "w.toml:2:1: missing key `seed` | `seed` is needed here",
         "w.toml:3:1: unknown key `sed` | did you mean `seed`? | known keys: `title`, `about`, `seed`",
         "w.toml:4:1: missing key `file` | `file` is needed here",
-        "w.toml:5:1: unknown key `fil` | did you mean `file`? | known keys: `file`, `delimiter`, `decimal`, `encoding`, `missing`, `sheet`, `first_line`",
+        "w.toml:5:1: unknown key `fil` | did you mean `file`? | known keys: `file`, `delimiter`, `decimal`, `encoding`, `missing`, `sheet`, `first_line`, `rename`",
     ];
     let found = faults(text);
     assert_eq!(found[..5], expected);

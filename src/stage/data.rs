@@ -9,6 +9,7 @@
 mod below;
 mod cells;
 mod dialect;
+mod rename;
 mod workbook;
 
 use super::beside::Beside;
@@ -25,7 +26,7 @@ pub use dialect::{Decimal, Delimiter, Encoding};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 /// Settings of a `data` stage.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -47,6 +48,10 @@ pub struct Data {
     /// neither empty nor a comment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_line: Option<usize>,
+    /// New names of columns, by their names in the file: `{ "w/z" = "wc", "Festigkeit" = "UCS" }`. A unit may be given where
+    /// the file has none: `{ "Zeit" = "age [d]" }`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub rename: BTreeMap<String, String>,
 }
 
 impl Data {
@@ -58,6 +63,7 @@ impl Data {
             missing: self.missing.clone(),
             sheet: self.sheet.clone(),
             first_line: self.first_line,
+            rename: self.rename.clone(),
         }
     }
 }
@@ -184,11 +190,12 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
         let (sheet, decimal, said) = text(bytes, how)?;
         (sheet, decimal, said, Some(Vec::new()))
     };
-    let how = Cells { decimal, missing: how.missing.as_deref() };
-    let raised = below::raise(&mut sheet, &how);
+    let cells = Cells { decimal, missing: how.missing.as_deref() };
+    let raised = below::raise(&mut sheet, &cells);
+    rename::rename(&mut sheet, &how.rename)?;
     match shares {
         Some(shares) => in_per_cent(&mut sheet, &shares, usize::from(raised))?,
-        None => check_per_cent(&sheet, &how)?,
+        None => check_per_cent(&sheet, &cells)?,
     }
     if raised {
         let units = "detected: units in the row below the names";
@@ -199,7 +206,7 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
     }
     let mut names = HashSet::new();
     // A table that looks for the name of each new column among all others would cost the square of their number.
-    let column = |(head, cells): (&String, _)| cells::column((head, cells), &how, &mut names);
+    let column = |(head, texts): (&String, _)| cells::column((head, texts), &cells, &mut names);
     let columns = sheet.heads.iter().zip(sheet.columns).map(column).collect::<Result<_, StageError>>()?;
     Ok((Table { about: String::new(), columns }, said))
 }

@@ -1,5 +1,6 @@
 //! Faults in the settings of a calibration, found before anything runs.
 
+use super::super::columns::known_are;
 use super::config::{Calibrate, MethodName};
 use super::start::NoStart;
 use crate::stage::given::check_given;
@@ -129,9 +130,8 @@ impl Calibrate {
         let mut found = Vec::new();
         let mut unknown = |path: String, (named, what): (Named, &str), name: &String, known: Vec<&String>| {
             if !known.contains(&name) {
-                let known: Vec<&str> = known.into_iter().map(String::as_str).collect();
                 let complaint = Complaint::new(&path, format!("unknown {what} `{name}`")).missing(named, name);
-                found.push(complaint.hint(format!("known are {}", known.join(", "))));
+                found.push(complaint.hint(known_are(known, what)));
             }
         };
         for name in &self.factors {

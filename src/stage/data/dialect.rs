@@ -5,6 +5,7 @@ use super::super::sheet::below_comments;
 use crate::unit::vanishes;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The delimiter between two cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -67,6 +68,9 @@ pub(super) struct Dialect {
     /// The line or row with the names of the columns, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_line: Option<usize>,
+    /// New names of columns, by their names in the file.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub rename: BTreeMap<String, String>,
 }
 
 impl Dialect {

@@ -34,7 +34,7 @@ impl Pivot {
         };
         let without = (0..table.rows()).filter(|&row| lacks(&self.down, row) || lacks(&self.across, row)).count();
         let words = format!(
-            "{without} of {} rows have no `{}` or no `{}`, so they are in no cell",
+            "{without} of {} rows have no {} or no {}, so they are in no cell",
             table.rows(),
             self.down,
             self.across

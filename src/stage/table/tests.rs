@@ -223,7 +223,7 @@ fn a_column_is_spread_over_two_others() {
     let lacking = Arc::new(Artifact::of(ArtifactKind::GROUPS, Group::new().with("groups", Node::Table(table))));
     let pivot = json!({ "down": "R_min", "across": "ratio", "value": "estimate" });
     let made = run(json!({ "pivot": pivot, "digits": 3 }), &[("of", lacking)]).unwrap();
-    let note = "1 of 3 rows have no `R_min` or no `ratio`, so they are in no cell";
+    let note = r"1 of 3 rows have no R\_min or no ratio, so they are in no cell.";
     assert!(text(&made, "markdown").contains(note), "{}", text(&made, "markdown"));
     let Err(Failure::Failed(error)) = spread("term") else { panic!("words in cells") };
     assert_eq!(error.message, "`pivot` names `term`, which holds words");
