@@ -1,6 +1,6 @@
 //! `flow run`: computes what is missing.
 
-use super::common::{Campaign, fetched, system, workers};
+use super::common::{Campaign, fetched, system, tell_damages, workers};
 use super::notes::notes;
 use super::progress::{Ahead, Progress, task_name};
 use super::site;
@@ -98,9 +98,7 @@ impl Run {
         };
         let report = run(&workflow, &store, &settings, &*watch, &stop);
         drop(watch);
-        for damage in store.take_damages() {
-            err!("warning: {damage}");
-        }
+        tell_damages(&store);
         if let Some(line) = fetched(&store).filter(|_| !self.campaign.common.quiet) {
             err!("{line}");
         }

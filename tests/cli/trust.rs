@@ -361,3 +361,21 @@ fn what_is_not_known_of_a_result_is_said_to_be_unknown() {
     let page = std::fs::read_to_string(space.path("report.html")).expect("the page");
     assert!(!page.contains("1970-"), "the page dates a result");
 }
+
+/// `run` took the results for stored, and `show` said to run first, without a word on why.
+#[test]
+fn a_damaged_result_is_said_by_the_command_that_shows_it() {
+    let space = campaign();
+    let objects = files(&space, "objects");
+    for object in &objects[1..] {
+        fs::remove_file(object).expect("an object");
+        fs::hard_link(&objects[0], object).expect("a link");
+    }
+    let said = told(&space.flow(&["show", "w.toml"]));
+    assert!(said.contains("warning: store/objects/") && said.contains("was set aside as store/aside/"), "{said}");
+    assert!(said.contains("`flow store verify` looks at all results"), "{said}");
+    space.flow(&["store", "verify"]);
+    let fresh = campaign();
+    assert_eq!(space.run(&[]).objects, fresh.run(&[]).objects);
+    assert!(!told(&space.flow(&["show", "w.toml"])).contains("warning"));
+}
