@@ -169,7 +169,7 @@ pub(super) fn tell_damages(store: &Store) {
         err!("warning: {damage}");
     }
     if !damages.is_empty() {
-        err!("  `flow store verify` looks at all results; the next run computes those again that are damaged");
+        err!("  `flow store verify` looks at all results");
     }
 }
 

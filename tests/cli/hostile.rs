@@ -418,3 +418,24 @@ fn a_marker_of_a_remote_that_flow_did_not_write_is_told() {
     space.write("remote/flow.remote", "flow remote 2\n");
     assert!(said().contains("a newer flow made it"), "{}", said());
 }
+
+/// A stack that no memory holds has the system refuse every thread, also to root, whom a limit of processes does not bind.
+#[test]
+fn where_no_thread_can_be_started_it_is_said() {
+    let space = data("a,y\n1,2\n2,3\n1,4\n2,6\n", ANOVA);
+    let starved = |arguments: &[&str]| {
+        let output = space.command(arguments).env("RUST_MIN_STACK", "1000000000000000").output().expect("running flow");
+        let said = told(&output);
+        assert!(!said.contains("panicked"), "{arguments:?}: {said}");
+        (output.status.code(), said)
+    };
+    for arguments in [&["run", "w.toml"][..], &["plan", "w.toml"], &["show", "w.toml"], &["report", "w.toml"]] {
+        let (code, said) = starved(arguments);
+        assert!(code == Some(3) && said.contains("error: the system grants no"), "{arguments:?}: {said}");
+    }
+    space.run(&[]);
+    // Neither needs a thread of its own.
+    let (code, said) = starved(&["store", "verify"]);
+    assert!(code == Some(0) && said.contains("2 results are sound"), "{said}");
+    assert_eq!(starved(&["check", "w.toml"]).0, Some(0));
+}

@@ -371,11 +371,11 @@ fn a_damaged_result_is_said_by_the_command_that_shows_it() {
         fs::remove_file(object).expect("an object");
         fs::hard_link(&objects[0], object).expect("a link");
     }
-    let said = told(&space.flow(&["show", "w.toml"]));
+    let said = told(&space.flow(&["show", "w.toml", "mean"]));
     assert!(said.contains("warning: store/objects/") && said.contains("was set aside as store/aside/"), "{said}");
     assert!(said.contains("`flow store verify` looks at all results"), "{said}");
     space.flow(&["store", "verify"]);
     let fresh = campaign();
     assert_eq!(space.run(&[]).objects, fresh.run(&[]).objects);
-    assert!(!told(&space.flow(&["show", "w.toml"])).contains("warning"));
+    assert!(!told(&space.flow(&["show", "w.toml", "mean"])).contains("warning"));
 }
