@@ -2,7 +2,7 @@
 
 use super::derived::Derived;
 use super::invalid::Invalid;
-use super::{Complaint, Context, Named, StageError};
+use super::{Complaint, Context, Named, StageError, known_are};
 use crate::artifact::groups::Groups;
 use crate::artifact::results::Results;
 use crate::artifact::validity::NotValid;
@@ -268,15 +268,6 @@ pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageErro
     let mut error = refused(faults);
     not_valid.grouped_sentences().iter().for_each(|sentence| error.message += &format!("\n{sentence}"));
     error
-}
-
-/// The hint of an unknown name: those that are known, or that the workflow declares none of this kind.
-pub(super) fn known_are<'a>(names: impl IntoIterator<Item = &'a String>, kind: &str) -> String {
-    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
-    if names.is_empty() {
-        return format!("the workflow declares no {kind}");
-    }
-    format!("known are {}", names.join(", "))
 }
 
 /// Complaints about names that the workflow does not declare.

@@ -3,8 +3,7 @@
 //! A formula is computed in SI units and shown in the unit of a factor of the same dimension (the first in the alphabet),
 //! or in SI units. One that adds quantities of different kinds, or takes the exponential of one, is refused.
 
-use super::columns::known_are;
-use super::{Complaint, Context, Named, StageError};
+use super::{Complaint, Context, Named, StageError, known_are};
 use crate::expression::{Expression, Measure};
 use crate::unit::{Dimension, Unit};
 use serde::{Deserialize, Serialize};

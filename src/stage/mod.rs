@@ -295,6 +295,15 @@ impl Missing {
     }
 }
 
+/// The hint of an unknown name: those that are known, or that the workflow declares none of this kind.
+fn known_are<'a>(names: impl IntoIterator<Item = &'a String>, kind: &str) -> String {
+    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+    if names.is_empty() {
+        return format!("the workflow declares no {kind}");
+    }
+    format!("known are {}", names.join(", "))
+}
+
 /// A fault in a stage's settings, found before anything runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Complaint {

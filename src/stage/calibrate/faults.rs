@@ -1,10 +1,9 @@
 //! Faults in the settings of a calibration, found before anything runs.
 
-use super::super::columns::known_are;
 use super::config::{Calibrate, MethodName};
 use super::start::NoStart;
 use crate::stage::given::check_given;
-use crate::stage::{Complaint, Context, Named};
+use crate::stage::{Complaint, Context, Named, known_are};
 use optim::Error;
 use std::collections::BTreeMap;
 
