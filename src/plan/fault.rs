@@ -55,7 +55,7 @@ pub struct Fault {
     /// Other locations that belong to it, with a few words each.
     pub also: Vec<(Location, String)>,
     /// What is not there, if it is about that.
-    pub missing: Option<Missing>,
+    pub missing: Option<Box<Missing>>,
 }
 
 impl Fault {

@@ -109,7 +109,7 @@ fn examine(check: &mut Check<'_>, table: &Table, stages: &[Configured], material
         let Some(own) = table.get(name) else { continue };
         for complaint in stage.check(context) {
             // It is a consequence of a fault that was reported already.
-            if is_lost(check, complaint.missing.as_ref()) {
+            if is_lost(check, complaint.missing.as_deref()) {
                 continue;
             }
             let path = complaint.material.iter().chain(&complaint.path).map(String::as_str);
@@ -158,7 +158,7 @@ fn look_for_columns(
             // One that is not declared, or that its stage cannot give, was reported there already.
             let name = |fault: &Fault| fault.missing.as_ref().map(|missing| missing.name.clone());
             let is_said = |other: &Fault| other.location == fault.location && name(other) == name(&fault);
-            if !is_lost(check, fault.missing.as_ref()) && !check.faults.iter().chain(&looked.absent).any(is_said) {
+            if !is_lost(check, fault.missing.as_deref()) && !check.faults.iter().chain(&looked.absent).any(is_said) {
                 looked.absent.push(fault);
             }
         }

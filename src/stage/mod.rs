@@ -313,7 +313,7 @@ pub struct Complaint {
     pub material: Option<String>,
     /// What is not there, if the complaint is about that: where it was found missing already, the complaint is a consequence
     /// and is not printed.
-    pub missing: Option<Missing>,
+    pub missing: Option<Box<Missing>>,
     /// What was found and what was expected.
     pub message: String,
     /// What to do.
@@ -330,7 +330,7 @@ impl Complaint {
     /// Says what is not there.
     #[must_use]
     pub fn missing(mut self, what: Named, name: &str) -> Self {
-        self.missing = Some(Missing { what, name: name.to_owned() });
+        self.missing = Some(Box::new(Missing { what, name: name.to_owned() }));
         self
     }
 
