@@ -8,7 +8,7 @@
 mod answer;
 mod page;
 
-use super::common::{Campaign, system, workers};
+use super::common::{Campaign, decided, system, tell_damages, workers};
 use super::progress::Progress;
 use super::run::{ahead, interruption};
 use super::{Exit, complete};
@@ -17,7 +17,7 @@ use crate::artifact::{self, Artifact};
 use crate::exec::cores;
 use crate::export::csv_text;
 use crate::plan::{Workflow, nearest};
-use crate::run::{Report, RunSettings, Silent, StageStatus, Watch, decide, run};
+use crate::run::{Report, RunSettings, Silent, StageStatus, Watch, run};
 use crate::stage::Kind;
 use crate::stage::calibrate::{Calibrate as Calibration, Wanted};
 use crate::stage::verify::Verify;
@@ -174,7 +174,7 @@ impl Calibrate {
     /// Refuses to answer while something that the answer rests on is missing.
     fn finished(&self, asked: &Asked) -> Result<(), Exit> {
         let ours: Vec<String> = std::iter::once(asked.stage.clone()).chain(asked.checks.clone()).collect();
-        let report = decide(&asked.workflow, &asked.store, &ours, true).map_err(|e| system(&e))?;
+        let report = decided(&asked.workflow, &asked.store, &ours, true)?;
         let missing: Vec<&str> = report
             .stages
             .iter()
@@ -238,9 +238,7 @@ impl Asked {
 
     /// The result of a stage, or why there is none.
     fn result(&self, report: &Report, stage: &str) -> Result<Arc<Artifact>, Exit> {
-        for damage in self.store.take_damages() {
-            err!("warning: {damage}");
-        }
+        tell_damages(&self.store);
         match report.stages.iter().find(|found| found.name == stage).map(|found| &found.status) {
             Some(StageStatus::Done(content)) => self.store.get(content).map_err(|e| system(&e)),
             Some(StageStatus::Failed(why)) => {

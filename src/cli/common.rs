@@ -4,10 +4,11 @@ use super::color::Color;
 use super::{Exit, complete, message};
 use crate::plan::{self, Overrides, Workflow};
 use crate::report::{duration, moment, quoted};
-use crate::run::commit;
-use crate::store::{Origin, Store};
+use crate::run::{Report, commit, decide};
+use crate::store::{Mark, Origin, Store};
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Once;
 
 /// Which campaign.
 #[derive(Args, Clone, Debug)]
@@ -105,12 +106,22 @@ impl Campaign {
 impl Common {
     /// The store.
     pub(super) fn open(&self) -> Result<Store, Exit> {
+        self.tell_of_mark();
         Store::open(&self.store).map_err(|e| system(&e))
     }
 
     /// The store for a command that only reads: nothing is written into it, and none is made.
     pub(super) fn read(&self) -> Result<Store, Exit> {
+        self.tell_of_mark();
         Store::open_to_read(&self.store).map_err(|e| system(&e))
+    }
+
+    /// Says once why this user's own results are proven again and again.
+    fn tell_of_mark(&self) {
+        static SAID: Once = Once::new();
+        if let Some(fault) = Mark::fault_of_user() {
+            SAID.call_once(|| self.note(&format!("warning: {fault}\n  {}", fault.hint)));
+        }
     }
 
     /// Prints a note, which is no result.
@@ -142,6 +153,24 @@ pub(super) fn workers(text: &str) -> Result<usize, String> {
 pub(super) fn fetched(store: &Store) -> Option<String> {
     let (count, remote) = store.take_fetched()?;
     Some(format!("{count} {} fetched from {remote}", if count == 1 { "result was" } else { "results were" }))
+}
+
+/// What stands in the store of a workflow; prints what of it was found damaged.
+pub(super) fn decided(workflow: &Workflow, store: &Store, stages: &[String], memos: bool) -> Result<Report, Exit> {
+    let report = decide(workflow, store, stages, memos).map_err(|e| system(&e))?;
+    tell_damages(store);
+    Ok(report)
+}
+
+/// Prints the files of the store that were found damaged since the last call.
+pub(super) fn tell_damages(store: &Store) {
+    let damages = store.take_damages();
+    for damage in &damages {
+        err!("warning: {damage}");
+    }
+    if !damages.is_empty() {
+        err!("  `flow store verify` looks at all results");
+    }
 }
 
 /// Prints what is wrong with the store or the system.

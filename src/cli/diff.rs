@@ -3,10 +3,10 @@
 //! Each side is a workflow file (`c30.toml`), a profile of one (`c30.toml@quick`), or a recorded run (`run 3` is `#3`).
 
 use super::Exit;
-use super::common::{Campaign, Common, provenance, system};
+use super::common::{Campaign, Common, decided, provenance, system};
 use crate::artifact::{Artifact, ContentHash, Table, Values};
 use crate::report::quoted;
-use crate::run::{StageStatus, decide};
+use crate::run::StageStatus;
 use crate::store::{self, Store};
 use clap::Args;
 use serde_json::{Value, json};
@@ -88,7 +88,7 @@ impl Diff {
         };
         let campaign = Campaign::of(PathBuf::from(file), profile, &self.common);
         let workflow = campaign.load(&[])?;
-        let report = decide(&workflow, store, &[], true).map_err(|e| system(&e))?;
+        let report = decided(&workflow, store, &[], true)?;
         let mut sides = Sides::new();
         for (node, stage) in workflow.stages.iter().zip(&report.stages) {
             let object = match stage.status {

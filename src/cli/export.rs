@@ -1,6 +1,6 @@
 //! `flow export`: results as files for people and other programs.
 
-use super::common::{Campaign, system};
+use super::common::{Campaign, decided, system};
 use super::files::Files;
 use super::show::{object, parts};
 use super::{Exit, complete};
@@ -8,7 +8,7 @@ use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, ContentHash};
 use crate::export::{File, files, paraview, particles, pfc, shapes, tables};
 use crate::plan::Workflow;
-use crate::run::{Report, decide};
+use crate::run::Report;
 use crate::stage;
 use crate::stage::specimen::{self, Loaded};
 use crate::stage::units::presented;
@@ -69,7 +69,7 @@ impl Export {
         let store = self.campaign.common.read()?;
         // Single rows are known only when every task is looked up.
         let memos = asked.iter().all(|(_, row)| row.is_none());
-        let report = decide(&workflow, &store, &names, memos).map_err(|e| system(&e))?;
+        let report = decided(&workflow, &store, &names, memos)?;
         let (chosen, missing) = choose(&workflow, &report, &asked);
         std::fs::create_dir_all(&self.folder).map_err(|error| {
             err!("error: {}: {error}", self.folder.display());

@@ -1,9 +1,9 @@
 //! `flow graph`: the stages of a workflow, their inputs, and their progress.
 
 use super::Exit;
-use super::common::{Campaign, system};
+use super::common::{Campaign, decided};
 use crate::plan::{StageNode, Workflow};
-use crate::run::{StageStatus, decide};
+use crate::run::StageStatus;
 use clap::{Args, ValueEnum};
 use figure::dag::{Dag, Stage};
 use figure::{DOUBLE, Figure, Style, svg::svg};
@@ -69,7 +69,7 @@ impl Graph {
         let reports = match self.campaign.common.store.exists() {
             true => {
                 let store = self.campaign.common.read()?;
-                decide(&workflow, &store, &[], true).map_err(|e| system(&e))?.stages
+                decided(&workflow, &store, &[], true)?.stages
             }
             false => Vec::new(),
         };

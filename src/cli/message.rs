@@ -60,6 +60,7 @@ fn clean(fault: &Fault) -> Fault {
         label: fault.label.as_ref().map(words),
         hint: fault.hint.as_ref().map(words),
         also: fault.also.iter().map(|(own, label)| (location(own), on_screen(label))).collect(),
+        missing: fault.missing.clone(),
     }
 }
 

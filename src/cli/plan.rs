@@ -1,10 +1,10 @@
 //! `flow plan`: what `run` would do and why, by the same decisions.
 
-use super::common::Campaign;
+use super::common::{Campaign, decided};
 use super::{Exit, complete};
 use crate::exec::cores;
 use crate::report::duration;
-use crate::run::{Past, Report, StageReport, StageStatus, TaskReport, TaskState, decide, forecasts};
+use crate::run::{Past, Report, StageReport, StageStatus, TaskReport, TaskState, forecasts};
 use crate::stage::forecast::{Forecast, TaskForecast};
 use clap::Args;
 
@@ -46,7 +46,7 @@ impl Plan {
     fn print(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load_to_run(&self.stages)?;
         let store = self.campaign.common.read()?;
-        let report = decide(&workflow, &store, &self.stages, true).map_err(|e| super::common::system(&e))?;
+        let report = decided(&workflow, &store, &self.stages, true)?;
         let past = Past::of(&workflow, &store).map_err(|e| super::common::system(&e))?;
         let open: Vec<TaskReport> = report.tasks().filter(|task| task.state == TaskState::Open).collect();
         let of = |stage: &StageReport| -> Vec<&TaskReport> {

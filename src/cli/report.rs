@@ -1,7 +1,7 @@
 //! `flow report`: a campaign as one page that can be sent to a colleague.
 
 use super::Exit;
-use super::common::{Campaign, fetched, system};
+use super::common::{Campaign, fetched, system, tell_damages};
 use super::files::Files;
 use super::output;
 use super::store::bytes;
@@ -35,9 +35,7 @@ impl Report {
             store: if named == "store" { String::new() } else { named },
         };
         let paper = gather(&workflow, asked, &store).map_err(|e| system(&*e))?;
-        for damage in store.take_damages() {
-            err!("warning: {damage}");
-        }
+        tell_damages(&store);
         if let Some(line) = fetched(&store).filter(|_| !self.campaign.common.quiet) {
             err!("{line}");
         }

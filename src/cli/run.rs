@@ -1,6 +1,6 @@
 //! `flow run`: computes what is missing.
 
-use super::common::{Campaign, fetched, system, workers};
+use super::common::{Campaign, fetched, system, tell_damages, workers};
 use super::notes::notes;
 use super::progress::{Ahead, Progress, task_name};
 use super::site;
@@ -46,8 +46,9 @@ pub(super) struct Run {
     /// After a failure, continue with tasks that do not depend on it.
     #[arg(long)]
     keep_going: bool,
-    /// Compute this stage again although its results are stored, because a program or file outside its key has changed. May be
-    /// given more than once.
+    /// Compute this stage again although its results are stored, because a program or file outside its key has changed: all of
+    /// its tasks, however long they take, and with a simulator every simulation. What follows runs again only where a result
+    /// differs. May be given more than once.
     #[arg(long, value_name = "STAGE")]
     again: Vec<String>,
     /// Print one JSON document at the end.
@@ -97,9 +98,7 @@ impl Run {
         };
         let report = run(&workflow, &store, &settings, &*watch, &stop);
         drop(watch);
-        for damage in store.take_damages() {
-            err!("warning: {damage}");
-        }
+        tell_damages(&store);
         if let Some(line) = fetched(&store).filter(|_| !self.campaign.common.quiet) {
             err!("{line}");
         }

@@ -1,13 +1,13 @@
 //! `flow show`: a result, or one row's run, as a readable table.
 
-use super::common::{Campaign, provenance, system};
+use super::common::{Campaign, decided, provenance, system};
 use super::sheet::text;
 use super::{Exit, complete};
 use crate::artifact::validity::sentences;
 use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::export::csv_text;
 use crate::plan::Workflow;
-use crate::run::{Report, StageReport, StageStatus, decide};
+use crate::run::{Report, StageReport, StageStatus};
 use crate::stage::units::presented;
 use crate::store::{ObjectId, Store};
 use clap::Args;
@@ -49,7 +49,7 @@ impl Show {
     fn list(&self) -> Result<Exit, Exit> {
         let workflow = self.campaign.load(&[])?;
         let store = self.campaign.common.read()?;
-        let report = decide(&workflow, &store, &[], true).map_err(|e| system(&e))?;
+        let report = decided(&workflow, &store, &[], true)?;
         let tables_of = |status: &StageStatus| match status {
             StageStatus::Done(content) => {
                 let artifact = store.get(content).map_err(|e| system(&e))?;
@@ -85,7 +85,7 @@ impl Show {
         let workflow = self.campaign.load(std::slice::from_ref(&stage))?;
         let store = self.campaign.common.read()?;
         // Single rows are known only when every task is looked up.
-        let report = decide(&workflow, &store, std::slice::from_ref(&stage), false).map_err(|e| system(&e))?;
+        let report = decided(&workflow, &store, std::slice::from_ref(&stage), false)?;
         let Some(object) = object(&workflow, &report, &stage, row) else {
             err!("error: {}", self.missing(what, &workflow, &report, (&stage, row)));
             return Err(Exit::BadInput);

@@ -3,10 +3,9 @@
 mod share;
 
 use super::Exit;
-use super::common::{Campaign, Common, system};
+use super::common::{Campaign, Common, decided, system};
 use crate::artifact::Key;
 use crate::report::duration;
-use crate::run::decide;
 use crate::stage::command::leftover;
 use crate::store::{Amount, Store};
 use clap::{Args, Subcommand};
@@ -208,7 +207,7 @@ fn reach(path: &std::path::Path, common: &Common, store: &Store, keys: &mut Hash
             err!("error: {}: {why}\n  what rests on it would count as not needed; nothing was removed", path.display());
             return Err(Exit::Failed);
         }
-        let report = decide(&workflow, store, &[], false).map_err(|e| system(&e))?;
+        let report = decided(&workflow, store, &[], false)?;
         keys.extend(report.objects().map(|object| object.key));
     }
     Ok(())

@@ -20,6 +20,10 @@ pub struct Given {
     pub by_level: bool,
 }
 
+/// What to do with a number that is that of no level.
+const BY_LEVEL: &str =
+    "declare the level, correct the row, or leave `by_level` out and write values instead of numbers of levels";
+
 /// Index of the level numbered `number`, among `count`.
 fn level(number: f64, count: usize) -> Option<usize> {
     (0..count).find(|&i| (i + 1) as f64 == number)
@@ -39,9 +43,9 @@ impl Given {
                     if level(*value, levels.len()).is_some() {
                         return None;
                     }
-                    format!("its levels are numbered 1 to {}", levels.len())
+                    format!("its levels are numbered 1 to {}: {BY_LEVEL}", levels.len())
                 }
-                Domain::Range { .. } if self.by_level => "it has a range; numbers of levels need `levels`".to_string(),
+                Domain::Range { .. } if self.by_level => format!("it has a range and no levels: {BY_LEVEL}"),
                 Domain::Levels(levels) if !levels.contains(value) => {
                     let levels: Vec<String> = levels.iter().map(ToString::to_string).collect();
                     format!("its levels are {}; declare the level or correct the row", levels.join(", "))

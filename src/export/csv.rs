@@ -8,7 +8,8 @@ pub fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
     let heads: Vec<String> = table.columns.iter().map(head).collect();
     // A reader that looks for the delimiter must not take one inside a head for it; where the head has none, it is none.
-    let like_delimiter = |head: &String| head.contains([';', '\t', '|']);
+    // With signs that steer, a head may begin as a workbook does.
+    let like_delimiter = |head: &String| head.contains([';', '\t', '|']) || head.contains(char::is_control);
     let quotes = if heads.iter().any(like_delimiter) { csv::QuoteStyle::Always } else { csv::QuoteStyle::Necessary };
     let mut out = csv::WriterBuilder::new().comment(Some(b'#')).quote_style(quotes).from_writer(Vec::new());
     let written = out.write_record(&heads).and_then(|()| {

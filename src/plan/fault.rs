@@ -1,5 +1,6 @@
 //! Faults of a workflow: what was found, where, what was expected, what to do.
 
+use crate::stage::Missing;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -53,12 +54,14 @@ pub struct Fault {
     pub hint: Option<String>,
     /// Other locations that belong to it, with a few words each.
     pub also: Vec<(Location, String)>,
+    /// What is not there, if it is about that.
+    pub missing: Option<Box<Missing>>,
 }
 
 impl Fault {
     /// A fault without a location.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { location: None, message: message.into(), label: None, hint: None, also: Vec::new() }
+        Self { location: None, message: message.into(), label: None, hint: None, also: Vec::new(), missing: None }
     }
 
     /// Says where.

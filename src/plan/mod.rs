@@ -84,7 +84,7 @@ impl Workflow {
 /// # Errors
 /// All faults of the file at once.
 pub fn load(path: &Path, overrides: &Overrides) -> Result<Workflow, Vec<Fault>> {
-    let text = syntax::read_file(path).map_err(|fault| vec![fault])?;
+    let text = syntax::read_file(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut workflow = check::workflow(&path.display().to_string(), &text, overrides, Some(folder))?;
     path.clone_into(&mut workflow.path);

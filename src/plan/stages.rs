@@ -10,10 +10,10 @@ use super::reader::{Reader, Unread};
 use super::{StageNode, graph};
 use crate::artifact::{Accepts, ArtifactKind};
 use crate::stage::beside::Beside;
-use crate::stage::reads::{self, Missing};
+use crate::stage::reads;
 use crate::stage::simulate::Simulate;
 use crate::stage::vary::Template;
-use crate::stage::{Class, Complaint, Context, KINDS, Kind, Port, Stage};
+use crate::stage::{Class, Complaint, Context, KINDS, Kind, Missing, Port, Stage};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -109,16 +109,13 @@ fn examine(check: &mut Check<'_>, table: &Table, stages: &[Configured], material
         let Some(own) = table.get(name) else { continue };
         for complaint in stage.check(context) {
             // It is a consequence of a fault that was reported already.
-            let names = |(section, lost): &(&str, String)| {
-                [format!("`{lost}`"), format!("[{section}.{lost}]")].iter().any(|name| complaint.message.contains(name))
-            };
-            if check.lost.iter().any(names) {
+            if is_lost(check, complaint.missing.as_deref()) {
                 continue;
             }
-            let fault = Fault { hint: complaint.hint, ..Fault::new(complaint.message) };
             let path = complaint.material.iter().chain(&complaint.path).map(String::as_str);
             let node = materials.filter(|_| complaint.material.is_some()).unwrap_or(own);
-            check.complain(node, &steps(path), fault);
+            let path = steps(path);
+            check.complain(node, &path, fault_of(complaint));
         }
     }
 }
@@ -156,25 +153,32 @@ fn look_for_columns(
             let complaint = columns.get(name).and_then(|own| reads::nothing_to_analyse(port, name, own, context));
             looked.absent.extend(complaint.map(|complaint| located(check, node, complaint)));
         }
-        for Missing { column, complaint } in stage.stage.reads().iter().flat_map(|reads| reads.missing(columns)) {
+        for complaint in stage.stage.reads().iter().flat_map(|reads| reads.missing(columns)) {
             let fault = located(check, node, complaint);
             // One that is not declared, or that its stage cannot give, was reported there already.
-            let is_said = |other: &Fault| {
-                other.location == fault.location
-                    && [format!("`{column}`"), format!(".{column}]")].iter().any(|name| other.message.contains(name))
-            };
-            let is_lost = check.lost.iter().any(|(_, name)| *name == column);
-            if !is_lost && !check.faults.iter().chain(&looked.absent).any(is_said) {
+            let name = |fault: &Fault| fault.missing.as_ref().map(|missing| missing.name.clone());
+            let is_said = |other: &Fault| other.location == fault.location && name(other) == name(&fault);
+            if !is_lost(check, fault.missing.as_deref()) && !check.faults.iter().chain(&looked.absent).any(is_said) {
                 looked.absent.push(fault);
             }
         }
     }
 }
 
+/// Whether this name is declared by a table that could not be read.
+fn is_lost(check: &Check<'_>, missing: Option<&Missing>) -> bool {
+    missing.is_some_and(|missing| check.lost.iter().any(|(section, name)| missing.is(section, name)))
+}
+
+/// A complaint as a fault without its location.
+fn fault_of(complaint: Complaint) -> Fault {
+    Fault { hint: complaint.hint, missing: complaint.missing, ..Fault::new(complaint.message) }
+}
+
 /// A complaint about a stage as a fault with its location.
 fn located(check: &Check<'_>, node: &Node, complaint: Complaint) -> Fault {
     let location = check.sources.location(node.nearest(&steps(complaint.path.iter().map(String::as_str))).span);
-    Fault { hint: complaint.hint, ..Fault::new(complaint.message) }.at(location)
+    fault_of(complaint).at(location)
 }
 
 fn stage_of(kind: &str, reader: Reader<'_>) -> Result<Box<dyn Stage>, Unread> {

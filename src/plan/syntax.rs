@@ -30,33 +30,34 @@ const NOT_DEEP: &str = "no table or list of a workflow is nested deeper than 32 
 const MOST_FAULTS: usize = 20;
 
 /// Reads a workflow file.
-pub(super) fn read_file(path: &Path) -> Result<String, Fault> {
+pub(super) fn read_file(path: &Path) -> Result<String, Vec<Fault>> {
     let name = path.display();
     let unread = |e: std::io::Error| {
         let fault = Fault::new(format!("{name}: cannot be read: {e}"));
-        match e.kind() {
+        vec![match e.kind() {
             std::io::ErrorKind::NotFound => fault.hint("`flow new NAME` writes a workflow to start from"),
             std::io::ErrorKind::IsADirectory => fault.hint("name the workflow file in this folder"),
             _ => fault,
-        }
+        }]
     };
     // Opening a pipe that nobody writes to would wait for ever; a pipe that is handed over is what `/dev/stdin` is.
     if std::fs::metadata(path)
         .is_ok_and(|meta| meta.file_type().is_fifo() && !path.starts_with("/dev") && !path.starts_with("/proc"))
     {
-        return Err(Fault::new(format!("{name}: is a pipe, not a workflow file")));
+        return Err(vec![Fault::new(format!("{name}: is a pipe, not a workflow file"))]);
     }
     let mut bytes = Vec::new();
     File::open(path).and_then(|file| file.take(LARGEST as u64 + 1).read_to_end(&mut bytes)).map_err(unread)?;
     if bytes.len() > LARGEST {
         let message = format!("{name}: the file is larger than {} MiB, which no workflow is", LARGEST >> 20);
-        return Err(Fault::new(message).hint("keep tables in CSV files and name them with `kind = \"data\"`"));
+        let hint = "keep tables in CSV files and name them with `kind = \"data\"`";
+        return Err(vec![Fault::new(message).hint(hint)]);
     }
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         let line = e.as_bytes()[..at].iter().filter(|&&byte| byte == b'\n').count() + 1;
         let message = format!("{name}: not a text file: byte {at}, in line {line}, is not UTF-8");
-        Fault::new(message).hint("a workflow is TOML text in UTF-8")
+        vec![Fault::new(message).hint("a workflow is TOML text in UTF-8")]
     })
 }
 

@@ -2,7 +2,7 @@
 
 use super::derived::Derived;
 use super::invalid::Invalid;
-use super::{Complaint, Context, StageError};
+use super::{Complaint, Context, Named, StageError, known_are};
 use crate::artifact::groups::Groups;
 use crate::artifact::results::Results;
 use crate::artifact::validity::NotValid;
@@ -270,20 +270,11 @@ pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageErro
     error
 }
 
-/// The hint of an unknown name: those that are known, or that the workflow declares none of this kind.
-pub(super) fn known_are<'a>(names: impl IntoIterator<Item = &'a String>, kind: &str) -> String {
-    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
-    if names.is_empty() {
-        return format!("the workflow declares no {kind}");
-    }
-    format!("known are {}", names.join(", "))
-}
-
 /// Complaints about names that the workflow does not declare.
 pub(super) fn check_names(context: &Context, factors: &[String], responses: &[String]) -> Vec<Complaint> {
     let unknown = |name: &String| {
         let known = known_are(context.responses.keys(), "response");
-        Complaint::new("responses", format!("there is no [response.{name}]")).hint(known)
+        Complaint::new("responses", format!("there is no [response.{name}]")).missing(Named::Response, name).hint(known)
     };
     let factors = factors.iter().flat_map(|name| super::derived::check(name, context));
     factors.chain(responses.iter().filter(|name| !context.responses.contains_key(*name)).map(unknown)).collect()

@@ -3,8 +3,7 @@
 //! A formula is computed in SI units and shown in the unit of a factor of the same dimension (the first in the alphabet),
 //! or in SI units. One that adds quantities of different kinds, or takes the exponential of one, is refused.
 
-use super::columns::known_are;
-use super::{Complaint, Context, StageError};
+use super::{Complaint, Context, Named, StageError, known_are};
 use crate::expression::{Expression, Measure};
 use crate::unit::{Dimension, Unit};
 use serde::{Deserialize, Serialize};
@@ -34,7 +33,9 @@ pub(super) fn factors_of_formula(text: &str) -> Option<Vec<String>> {
 /// Complaints about a name in a term that is neither a factor nor a formula of factors.
 pub(super) fn check(name: &str, context: &Context) -> Vec<Complaint> {
     let known = || known_are(context.factors.keys(), "factor");
-    let unknown = |name: &str| Complaint::new("factors", format!("there is no [factor.{name}]")).hint(known());
+    let unknown = |name: &str| {
+        Complaint::new("factors", format!("there is no [factor.{name}]")).missing(Named::Factor, name).hint(known())
+    };
     if context.factors.contains_key(name) {
         return Vec::new();
     }

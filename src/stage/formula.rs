@@ -9,7 +9,8 @@
 use super::forecast::{Ahead, Forecast, TaskForecast};
 use super::rows::{self, GATHER};
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Point, Port, Sketch, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Named, Point, Port, Sketch, Stage, StageError, Step, Task,
+    Work,
 };
 use crate::artifact::run::{Responses, Run};
 use crate::artifact::{Accepts, Artifact, ArtifactKind};
@@ -78,7 +79,8 @@ impl Stage for Formula {
                 Ok(formula) => {
                     for unknown in formula.names().iter().filter(|name| !names.contains(name)) {
                         let hint = format!("known are {}", names.join(", "));
-                        found.push(Complaint::new(&at("value"), format!("`{unknown}` is not a value")).hint(hint));
+                        let complaint = Complaint::new(&at("value"), format!("`{unknown}` is not a value"));
+                        found.push(complaint.missing(Named::Factor, unknown).hint(hint));
                     }
                 }
             }

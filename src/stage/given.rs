@@ -1,6 +1,6 @@
 //! Checks of responses before anything runs: `check` refuses a response that none of the named stages can give.
 
-use super::{Complaint, Context};
+use super::{Complaint, Context, Named};
 
 /// Complaints about responses at `path` that no stage among `stages` gives. The responses of a data file, or of a stage that
 /// passes on the results of others, are not known before the run and are not checked.
@@ -22,6 +22,7 @@ pub(super) fn check_given<'a>(
             false => format!("`{stage}` gives {}", given.join(", ")),
         });
         Complaint::new(path, format!("`{response}` is no response of {whose}"))
+            .missing(Named::Response, response)
             .hint(gives.collect::<Vec<_>>().join("; "))
     };
     // Another check reports a response that the workflow does not declare.

@@ -257,6 +257,53 @@ pub struct Port {
     pub accepts: Accepts,
 }
 
+/// What has a name in a workflow, or in a table that it reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Named {
+    /// A `[factor.NAME]`.
+    Factor,
+    /// A `[response.NAME]`.
+    Response,
+    /// A `[material.NAME]`.
+    Material,
+    /// A `[stage.NAME]`.
+    Stage,
+    /// A column of a table, which may be that of a factor or of a response.
+    Column,
+}
+
+/// A name of something that is not there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// What would have the name.
+    pub what: Named,
+    /// The name.
+    pub name: String,
+}
+
+impl Missing {
+    /// Whether `[SECTION.NAME]` would declare it.
+    pub fn is(&self, section: &str, name: &str) -> bool {
+        let sections: &[&str] = match self.what {
+            Named::Factor => &["factor"],
+            Named::Response => &["response"],
+            Named::Material => &["material"],
+            Named::Stage => &["stage"],
+            Named::Column => &["factor", "response"],
+        };
+        self.name == name && sections.contains(&section)
+    }
+}
+
+/// The hint of an unknown name: those that are known, or that the workflow declares none of this kind.
+fn known_are<'a>(names: impl IntoIterator<Item = &'a String>, kind: &str) -> String {
+    let names: Vec<&str> = names.into_iter().map(String::as_str).collect();
+    if names.is_empty() {
+        return format!("the workflow declares no {kind}");
+    }
+    format!("known are {}", names.join(", "))
+}
+
 /// A fault in a stage's settings, found before anything runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Complaint {
@@ -264,6 +311,9 @@ pub struct Complaint {
     pub path: Vec<String>,
     /// The `[material.NAME]` that the path lies below instead.
     pub material: Option<String>,
+    /// What is not there, if the complaint is about that: where it was found missing already, the complaint is a consequence
+    /// and is not printed.
+    pub missing: Option<Box<Missing>>,
     /// What was found and what was expected.
     pub message: String,
     /// What to do.
@@ -274,7 +324,14 @@ impl Complaint {
     /// A complaint about the value at `path` (keys separated by dots).
     pub fn new(path: &str, message: impl Into<String>) -> Self {
         let path = path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect();
-        Self { path, material: None, message: message.into(), hint: None }
+        Self { path, material: None, missing: None, message: message.into(), hint: None }
+    }
+
+    /// Says what is not there.
+    #[must_use]
+    pub fn missing(mut self, what: Named, name: &str) -> Self {
+        self.missing = Some(Box::new(Missing { what, name: name.to_owned() }));
+        self
     }
 
     /// Sets the material below which the path lies.

@@ -4,7 +4,7 @@
 //! of the design, its responses, and the program's own.
 
 use super::derived::factors_of_formula;
-use super::{Complaint, Context, OWN_COLUMNS};
+use super::{Complaint, Context, Named, OWN_COLUMNS};
 use std::collections::BTreeMap;
 
 /// Columns that a stage names under one key.
@@ -25,8 +25,8 @@ impl Reads {
         Self { path: path.to_owned(), stages: vec![stage.to_owned()], columns }
     }
 
-    /// Columns that none of the tables has, where the columns of all are known.
-    pub fn missing(&self, known: &BTreeMap<String, Vec<String>>) -> Vec<Missing> {
+    /// Complaints about columns that none of the tables has, where the columns of all are known.
+    pub fn missing(&self, known: &BTreeMap<String, Vec<String>>) -> Vec<Complaint> {
         let tables = self.stages.iter().map(|stage| Some((stage, known.get(stage)?)));
         let Some(tables) = tables.collect::<Option<Vec<_>>>().filter(|all| !all.is_empty()) else {
             return Vec::new();
@@ -44,20 +44,12 @@ impl Reads {
             let has = tables.iter().map(|(stage, columns)| format!("`{stage}` has {}", listed(columns)));
             let alike = tables.iter().find_map(|(_, columns)| look_alike(&column, columns));
             let hint = alike.into_iter().chain(has).collect::<Vec<_>>().join("; ");
-            let complaint = Complaint::new(&self.path, format!("`{column}` is no column of {whose}"));
-            Missing { column, complaint: complaint.hint(hint) }
+            Complaint::new(&self.path, format!("`{column}` is no column of {whose}"))
+                .missing(Named::Column, &column)
+                .hint(hint)
         };
         lost.into_iter().map(complaint).collect()
     }
-}
-
-/// A column that is missing, and what to say of it.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Missing {
-    /// Its name.
-    pub column: String,
-    /// What was found, and the columns that there are.
-    pub complaint: Complaint,
 }
 
 /// Names of columns, as many as a person reads.
@@ -129,7 +121,7 @@ mod tests {
     fn said(stages: &[&str], columns: &[&str]) -> Vec<String> {
         let all = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
         let reads = Reads { path: "x".to_owned(), stages: all(stages), columns: all(columns) };
-        let text = |own: Missing| format!("{}; {}", own.complaint.message, own.complaint.hint.unwrap_or_default());
+        let text = |own: Complaint| format!("{}; {}", own.message, own.hint.unwrap_or_default());
         reads.missing(&known()).into_iter().map(text).collect()
     }
 

@@ -219,7 +219,7 @@ impl Kind for Regression {
     const ABOUT: &'static str = "linear regression of responses on factors, from one table";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::SURFACES, ArtifactKind::GROUPS];
     const CLASS: Class = Class::Statistics;
-    // 4: what all responses have in common costs no digits; one level through the origin. Groups 3: a group without a fit says how many of its runs are missing. 3, of groups 2: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
+    // Groups 5: runs without a value to group by are counted, and in no group. 4: what all responses have in common costs no digits; one level through the origin. Groups 3: a group without a fit says how many of its runs are missing. 3, of groups 2: runs that are not valid are left out. 2: notes; what rounding leaves of an exact fit is no error
     const WORKS: &'static [Work] =
-        &[Work { name: "fit", version: 4, run: fit }, Work { name: "groups", version: 4, run: grouped::fit }];
+        &[Work { name: "fit", version: 4, run: fit }, Work { name: "groups", version: 5, run: grouped::fit }];
 }

@@ -10,7 +10,8 @@ pub use points::DesignRows;
 use super::cached::{CachedRuns, RunSummaries};
 use super::material::{self, Material};
 use super::{
-    Complaint, Context, Failure, Input, Job, Known, Parameter, Point, Source, Stage, StageError, Step, Task, Work, vary,
+    Complaint, Context, Failure, Input, Job, Known, Named, Parameter, Point, Source, Stage, StageError, Step, Task,
+    Work, vary,
 };
 use crate::artifact::design::Design;
 use crate::artifact::results::{Results, Verdicts};
@@ -82,7 +83,7 @@ pub fn check_material(name: Option<&String>, context: &Context) -> Option<Compla
     let name = name.filter(|name| !context.materials.contains_key(*name))?;
     let known: Vec<&str> = context.materials.keys().map(String::as_str).collect();
     let hint = if known.is_empty() { "there is none".to_owned() } else { format!("there is {}", known.join(", ")) };
-    Some(Complaint::new("material", format!("there is no [material.{name}]")).hint(hint))
+    Some(Complaint::new("material", format!("there is no [material.{name}]")).missing(Named::Material, name).hint(hint))
 }
 
 /// The complaint about the unit of a simulator's response: it cannot be read, or not be converted to the unit that the

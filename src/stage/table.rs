@@ -302,8 +302,8 @@ impl Kind for Table {
     const ABOUT: &'static str = "a table of other stages' results for people";
     const GIVES: &'static [ArtifactKind] = &[ArtifactKind::TABLE];
     const CLASS: Class = Class::Presentation;
-    /// 8: names in cells and notes are printed by their symbols; quantities that the workflow does not declare are in the units of the field. 7: the notes of a published table stand in the last column. 6: names in what is stated below the table keep their letters. 5: runs that are not valid are marked, which is stated below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
-    const WORKS: &'static [Work] = &[Work { name: "table", version: 8, run: print }];
+    /// 9: rows without a cell of a pivot table are counted. 8: names in cells and notes are printed by their symbols; quantities that the workflow does not declare are in the units of the field. 7: the notes of a published table stand in the last column. 6: names in what is stated below the table keep their letters. 5: runs that are not valid are marked, which is stated below the table. 4: text stays text in LaTeX and Markdown; why a single run gave no result. 3: the main table of a result when none is named, and not the first by its name; one arithmetic of conversion: last digits of values told row by row. 2: lengths told row by row in millimetres, whole numbers among them without decimals.
+    const WORKS: &'static [Work] = &[Work { name: "table", version: 9, run: print }];
 }
 
 /// The table of this name, or the artifact's main one.

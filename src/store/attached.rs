@@ -5,7 +5,7 @@
 //! proven and stored when it is first read. What is not what it should be is refused, reported, and computed again. What the
 //! remote has got since is seen when it is attached again.
 
-use super::mark::Mark;
+use super::mark::{self, Mark};
 use super::remote::{self, Address, Place, RemoteError, Trust, Untaken};
 use super::{Aside, Damage, ObjectId, Record, Store, StoreError, locked};
 use crate::artifact::{ContentHash, Key};
@@ -168,7 +168,8 @@ impl Store {
         let Ok(bytes) = folder.read(&file_name(&self.mark), MOST) else { return Ok(None) };
         let text = String::from_utf8(bytes).unwrap_or_default();
         let Some((mark, text)) = text.split_once('\n') else { return Ok(None) };
-        if mark != blake3::Hash::from_bytes(self.mark.note(b"attached", text.as_bytes())).to_hex().as_str() {
+        let own = blake3::Hash::from_bytes(self.mark.note(b"attached", text.as_bytes())).to_hex();
+        if !mark::same(mark.as_bytes(), own.as_bytes()) {
             return Ok(None);
         }
         let far = |why: String| StoreError::Far { why };

@@ -5,7 +5,7 @@
 
 use super::disk::Disk;
 use super::folder::{Folder, Strange};
-use super::mark::Mark;
+use super::mark::{self, Mark};
 use super::{Origin, StoreError};
 use serde::{Deserialize, Serialize};
 
@@ -127,6 +127,7 @@ pub(super) fn read(disk: &Disk, mark: &Mark, number: u64) -> Result<Option<Campa
     };
     let Ok(campaign) = serde_json::from_slice::<Campaign>(&bytes) else { return Ok(None) };
     let text = String::from_utf8_lossy(&bytes);
-    let own = campaign.mark == marked(mark, number, &with_mark(&text, &campaign.mark, ""));
+    let marked = marked(mark, number, &with_mark(&text, &campaign.mark, ""));
+    let own = mark::same(campaign.mark.as_bytes(), marked.as_bytes());
     Ok(Some(Campaign { number, own, ..campaign }))
 }

@@ -1,4 +1,4 @@
-//! What holds for any bytes in a journal, an object or a memo: for the tests, and for `cargo fuzz`.
+//! What holds for any bytes in a journal, an object or a memo: for the tests, and for `fuzz/`.
 //!
 //! Each reader gets bytes; an assertion fails if they make it panic, take memory on their word, or believe what was never
 //! written.

@@ -4,8 +4,8 @@
 //! listing carries a mark: a keyed blake3 under a secret of 32 bytes that lies outside of every store, in
 //! the user's own state folder (`$XDG_STATE_HOME/flow/mark`, else `~/.local/state/flow/mark`), readable by the user
 //! alone. A file with the user's own mark is believed. Any other is proven from the objects (`prove.rs`) or counts as
-//! missing. Without a home folder the secret lasts as long as the process: the next one believes nothing and proves all
-//! objects again, which costs time only.
+//! missing. Without a home folder, or with a damaged file, the secret lasts as long as the process: the next one believes
+//! nothing and proves all objects again, which costs time only; [`Mark::fault_of_user`] says so.
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -14,6 +14,18 @@ use std::sync::OnceLock;
 
 /// Length of the mark in a record, bytes.
 pub(super) const SHORT: usize = 16;
+
+/// Why a user has no mark that lasts.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "{why}: nothing in a store counts as written by you, so each command proves again what it reads, which takes time"
+)]
+pub struct MarkFault {
+    /// What was found.
+    pub why: String,
+    /// What to do.
+    pub hint: &'static str,
+}
 
 /// The keys with which marks are made.
 #[derive(Clone)]
@@ -26,11 +38,15 @@ pub struct Mark {
 impl Mark {
     /// The mark of the user who runs this process.
     pub fn of_user() -> Self {
-        static SECRET: OnceLock<[u8; 32]> = OnceLock::new();
-        Self::of(SECRET.get_or_init(|| {
-            let kept = folder().and_then(|folder| secret(&folder).ok());
-            kept.unwrap_or_else(fresh)
+        Self::of(of_user().as_ref().unwrap_or_else(|_| {
+            static PASSING: OnceLock<[u8; 32]> = OnceLock::new();
+            PASSING.get_or_init(fresh)
         }))
+    }
+
+    /// Why the user has no mark that lasts, and what to do.
+    pub fn fault_of_user() -> Option<&'static MarkFault> {
+        of_user().as_ref().err()
     }
 
     /// The mark that a secret makes.
@@ -68,6 +84,34 @@ impl Mark {
     }
 }
 
+/// Whether two marks are equal, after as much time for any two: how long a comparison takes would tell how much of a forged
+/// mark is right.
+pub(super) fn same(one: &[u8], other: &[u8]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).fold(0, |unlike, (a, b)| unlike | (a ^ b)) == 0
+}
+
+/// The secret of the user who runs this process.
+fn of_user() -> &'static Result<[u8; 32], MarkFault> {
+    static SECRET: OnceLock<Result<[u8; 32], MarkFault>> = OnceLock::new();
+    SECRET.get_or_init(|| {
+        let Some(folder) = folder() else {
+            let why = "neither HOME nor XDG_STATE_HOME names a folder for your mark".to_owned();
+            return Err(MarkFault { why, hint: "set one of them to a folder that lasts" });
+        };
+        secret(&folder).map_err(|error| {
+            let path = folder.join("mark");
+            let (what, hint) = match error.kind() {
+                ErrorKind::InvalidData => (error.to_string(), "delete it, and flow makes another"),
+                _ => (
+                    format!("cannot be read or made: {error}"),
+                    "make it readable, or set XDG_STATE_HOME to another folder",
+                ),
+            };
+            MarkFault { why: format!("your mark {} {what}", path.display()), hint }
+        })
+    })
+}
+
 /// The folder of the user's state.
 fn folder() -> Option<PathBuf> {
     let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
@@ -98,11 +142,13 @@ fn read(path: &Path) -> io::Result<[u8; 32]> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt};
     let data = fs::symlink_metadata(path)?;
     let own = data.uid() == rustix::process::geteuid().as_raw();
-    if !data.is_file() || !own || data.permissions().mode() & 0o077 != 0 || data.len() != 32 {
-        return Err(ErrorKind::InvalidData.into());
+    let fault = |what: &str| Err(io::Error::new(ErrorKind::InvalidData, what));
+    match () {
+        () if !data.is_file() => fault("is no plain file"),
+        () if !own => fault("belongs to another user"),
+        () if data.permissions().mode() & 0o077 != 0 => fault("can be read or changed by others"),
+        () => fs::read(path)?.try_into().or_else(|_| fault("is damaged: it has not 32 bytes")),
     }
-    let bytes = fs::read(path)?;
-    bytes.try_into().map_err(|_| ErrorKind::InvalidData.into())
 }
 
 /// Bytes that nobody can guess: from the system's random source, or from the seeds of hash maps where that cannot be opened.
@@ -133,10 +179,14 @@ mod tests {
         let path = state.join("mark");
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
         fs::set_permissions(&path, fs::Permissions::from_mode(0o644)).unwrap();
-        assert!(secret(&state).is_err());
+        let fault = || secret(&state).unwrap_err().to_string();
+        assert_eq!(fault(), "can be read or changed by others");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+        fs::write(&path, &first[1..]).unwrap();
+        assert_eq!(fault(), "is damaged: it has not 32 bytes");
         fs::remove_file(&path).unwrap();
         std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
-        assert!(secret(&state).is_err());
+        assert_eq!(fault(), "is no plain file");
     }
 
     #[test]
@@ -146,5 +196,7 @@ mod tests {
         assert_ne!(a.note(b"n", b"x"), b.note(b"n", b"x"));
         assert_ne!(a.note(b"n", b"x"), a.note(b"nx", b""));
         assert_ne!(a.record(b"x")[..], a.note(b"", b"x")[..SHORT]);
+        assert!(same(&a.record(b"x"), &a.record(b"x")) && !same(&a.record(b"x"), &b.record(b"x")));
+        assert!(!same(b"x", b"xy") && !same(b"xz", b"xy") && !same(b"zy", b"xy"));
     }
 }

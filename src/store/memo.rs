@@ -15,7 +15,7 @@
 
 use super::disk::Disk;
 use super::folder::Strange;
-use super::mark::Mark;
+use super::mark::{self, Mark};
 use super::object::{ObjectId, is_hex};
 use super::{StoreError, folder};
 use crate::artifact::{ContentHash, Key};
@@ -90,7 +90,7 @@ pub(super) fn pack(mark: &Mark, key: &Key, memo: &Memo) -> Vec<u8> {
 
 pub(super) fn unpack(mark: &Mark, key: &Key, bytes: &[u8]) -> Option<Memo> {
     let (body, check) = bytes.split_last_chunk::<32>()?;
-    if mark.note(&key.0, body) != *check {
+    if !mark::same(&mark.note(&key.0, body), check) {
         return None;
     }
     let rest = body.strip_prefix(MAGIC)?;

@@ -62,7 +62,7 @@ pub use error::{Aside, Damage, StoreError};
 pub use hdf5::Hdf5Error;
 pub use located::Located;
 pub use lock::{Guard, Holder, Waiting};
-pub use mark::Mark;
+pub use mark::{Mark, MarkFault};
 pub use memo::Memo;
 pub use object::ObjectId;
 pub use origin::Origin;

@@ -16,7 +16,7 @@
 use super::StoreError;
 use super::disk::Disk;
 use super::folder::Folder;
-use super::mark::Mark;
+use super::mark::{self, Mark};
 use super::object::{self, ObjectId, is_hex};
 use crate::artifact::{FirstBytes, Key};
 use rustix::fs::Stat;
@@ -189,7 +189,7 @@ fn pack(mark: &Mark, shards: &[Shard<'_>]) -> Vec<u8> {
 
 fn unpack(mark: &Mark, bytes: &[u8]) -> Option<Known> {
     let (body, check) = bytes.split_last_chunk::<32>()?;
-    if mark.note(MAGIC, body) != *check {
+    if !mark::same(&mark.note(MAGIC, body), check) {
         return None;
     }
     let (words, []) = body.strip_prefix(MAGIC)?.as_chunks::<8>() else { return None };

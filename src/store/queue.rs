@@ -25,6 +25,7 @@ pub use report::ReportFile;
 use super::disk::Disk;
 use super::folder::{self, Folder};
 use super::lock::Held;
+use super::mark;
 use super::{Store, StoreError};
 use std::io::ErrorKind;
 use std::path::PathBuf;
@@ -194,7 +195,9 @@ impl Queue {
         };
         let text = String::from_utf8(bytes).unwrap_or_default();
         match text.split_once('\n') {
-            Some((seal, text)) if seal == self.seal(&name, text) => Ok(Some(text.to_owned())),
+            Some((seal, text)) if mark::same(seal.as_bytes(), self.seal(&name, text).as_bytes()) => {
+                Ok(Some(text.to_owned()))
+            }
             _ => Err(StoreError::Strange {
                 doing: "read",
                 path: self.disk.path(&self.inside, &name),

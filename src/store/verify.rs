@@ -3,6 +3,7 @@
 use super::object::{self, ObjectId};
 use super::{Amount, Damage, Record, Store, StoreError, contents, locked, memo, prove};
 use crate::artifact::{ContentHash, Key};
+use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -38,6 +39,14 @@ impl Verdict {
     }
 }
 
+/// The results of a check of each item, on all cores; on the thread of the caller where the system grants no other.
+fn each<'a, T: Sync, R: Send>(items: &'a [T], check: impl Fn(&'a T) -> R + Sync + Send) -> Vec<R> {
+    match ThreadPoolBuilder::new().build() {
+        Ok(pool) => pool.install(|| items.par_iter().map(check).collect()),
+        Err(_) => items.iter().map(check).collect(),
+    }
+}
+
 impl Store {
     /// Reads every object and compares it with its record, its name and its task. Damaged ones are set aside; sound
     /// ones that no record knows (their journal was lost) are recorded again.
@@ -49,8 +58,7 @@ impl Store {
         let mut verdict = Verdict { lost_records: locked(self.index()?).damaged(), ..Verdict::default() };
         let records = self.records()?;
         // Only the seals stay in memory: all results of a store together may be larger than it.
-        let check = |record| (record, self.read(record).map(|proven| proven.seal));
-        let checked: Vec<_> = records.par_iter().map(check).collect();
+        let checked = each(&records, |record| (record, self.read(record).map(|proven| proven.seal)));
         let (mut sound, mut lost): (Vec<ObjectId>, Vec<Key>) = Default::default();
         for (record, result) in checked {
             match result {
@@ -93,9 +101,7 @@ impl Store {
                 strays.push(name.to_owned());
             }
         })?;
-        let check = |name: &String| prove::named(&self.disk, name).map(|proven| (proven.id, proven.seal));
-        let checked: Vec<_> = strays.par_iter().map(check).collect();
-        for result in checked {
+        for result in each(&strays, |name| prove::named(&self.disk, name).map(|proven| (proven.id, proven.seal))) {
             match result {
                 Ok((id, seal)) => {
                     verdict.adopted.push(self.record_again(&id, seal).key);

@@ -109,6 +109,24 @@ fn a_word_is_no_level_of_a_factor_of_numbers() {
     space.run(&[]);
 }
 
+/// They were one more group, or lost without a word.
+#[test]
+fn runs_without_a_value_to_group_by_are_counted() {
+    let fit = "kind = \"regression\"\ntable = \"d\"\nterms.y = [\"a\"]\nby = [\"g\"]";
+    for (first, second) in [("rock", "soil"), ("1", "2")] {
+        let groups = [first, first, first, second, second, second, "", "NA"];
+        let rows = groups.iter().enumerate().map(|(i, group)| format!("{},{},{group}\n", i + 1, (i * i) % 5));
+        let space = data(&format!("a,y,g\n{}", rows.collect::<String>()), fit);
+        let text = std::fs::read_to_string(space.path("w.toml")).expect("the workflow");
+        space.write("w.toml", &text.replace("levels = [1, 2]", "range = [0, 9]"));
+        space.run(&[]);
+        let notes = space.stdout(&["show", "w.toml", "s", "--table", "notes", "--csv"]);
+        assert!(notes.contains("2 of 8 runs have no `g`, so they are in no group"), "{notes}");
+        let groups = space.stdout(&["show", "w.toml", "s", "--table", "groups", "--csv"]);
+        assert_eq!(groups.lines().count(), 5, "two terms of two groups: {groups}");
+    }
+}
+
 /// They were taken for 0.
 #[test]
 fn numbers_too_small_for_the_machine_are_refused() {
@@ -399,4 +417,25 @@ fn a_marker_of_a_remote_that_flow_did_not_write_is_told() {
     std::fs::remove_file(&marker).expect("removing a pipe");
     space.write("remote/flow.remote", "flow remote 2\n");
     assert!(said().contains("a newer flow made it"), "{}", said());
+}
+
+/// A stack that no memory holds has the system refuse every thread, also to root, whom a limit of processes does not bind.
+#[test]
+fn where_no_thread_can_be_started_it_is_said() {
+    let space = data("a,y\n1,2\n2,3\n1,4\n2,6\n", ANOVA);
+    let starved = |arguments: &[&str]| {
+        let output = space.command(arguments).env("RUST_MIN_STACK", "1000000000000000").output().expect("running flow");
+        let said = told(&output);
+        assert!(!said.contains("panicked"), "{arguments:?}: {said}");
+        (output.status.code(), said)
+    };
+    for arguments in [&["run", "w.toml"][..], &["plan", "w.toml"], &["show", "w.toml"], &["report", "w.toml"]] {
+        let (code, said) = starved(arguments);
+        assert!(code == Some(3) && said.contains("error: the system grants no"), "{arguments:?}: {said}");
+    }
+    space.run(&[]);
+    // Neither needs a thread of its own.
+    let (code, said) = starved(&["store", "verify"]);
+    assert!(code == Some(0) && said.contains("2 results are sound"), "{said}");
+    assert_eq!(starved(&["check", "w.toml"]).0, Some(0));
 }

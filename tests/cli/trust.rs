@@ -153,6 +153,34 @@ fn another_user_of_a_store_gets_the_same_and_proves_it_first() {
 }
 
 #[test]
+fn a_damaged_mark_is_said_once_with_a_remedy_that_works() {
+    let space = campaign();
+    let (state, mark) = (space.path("state"), space.path("state/flow/mark"));
+    let run = |arguments: &[&str]| {
+        let output = space.command(arguments).env("XDG_STATE_HOME", &state).output().expect("running flow");
+        assert!(output.status.success(), "{}", told(&output));
+        told(&output)
+    };
+    assert!(!run(&["run", "w.toml"]).contains("warning: your mark"));
+    fs::write(&mark, "short").expect("a mark");
+    let said = run(&["run", "w.toml"]);
+    let (why, hint) =
+        ("flow/mark is damaged: it has not 32 bytes: nothing in a store", "\n  delete it, and flow makes another\n");
+    assert!(said.matches(why).count() == 1 && said.contains(hint), "{said}");
+    assert!(!run(&["run", "w.toml", "--quiet"]).contains(why));
+    fs::remove_file(&mark).expect("a mark");
+    run(&["run", "w.toml"]);
+    assert!(!run(&["show", "w.toml"]).contains("your mark"));
+    let nowhere = space
+        .command(&["run", "w.toml"])
+        .env_remove("XDG_STATE_HOME")
+        .env_remove("HOME")
+        .output()
+        .expect("running flow");
+    assert!(told(&nowhere).contains("neither HOME nor XDG_STATE_HOME names a folder"), "{}", told(&nowhere));
+}
+
+#[test]
 fn a_changed_record_of_a_run_is_refused() {
     let space = campaign();
     let path = space.path("store/runs/1.json");
@@ -332,4 +360,22 @@ fn what_is_not_known_of_a_result_is_said_to_be_unknown() {
     space.stdout(&["report", "w.toml"]);
     let page = std::fs::read_to_string(space.path("report.html")).expect("the page");
     assert!(!page.contains("1970-"), "the page dates a result");
+}
+
+/// `run` took the results for stored, and `show` said to run first, without a word on why.
+#[test]
+fn a_damaged_result_is_said_by_the_command_that_shows_it() {
+    let space = campaign();
+    let objects = files(&space, "objects");
+    for object in &objects[1..] {
+        fs::remove_file(object).expect("an object");
+        fs::hard_link(&objects[0], object).expect("a link");
+    }
+    let said = told(&space.flow(&["show", "w.toml", "mean"]));
+    assert!(said.contains("warning: store/objects/") && said.contains("was set aside as store/aside/"), "{said}");
+    assert!(said.contains("`flow store verify` looks at all results"), "{said}");
+    space.flow(&["store", "verify"]);
+    let fresh = campaign();
+    assert_eq!(space.run(&[]).objects, fresh.run(&[]).objects);
+    assert!(!told(&space.flow(&["show", "w.toml", "mean"])).contains("warning"));
 }

@@ -1,11 +1,11 @@
 //! Sharing results: push, pull, mirror, audit.
 
 use super::super::Exit;
-use super::super::common::{Campaign, Common, system};
+use super::super::common::{Campaign, Common, decided, system};
 use super::super::progress::task_name;
 use super::super::run::interruption;
 use crate::exec::cores;
-use crate::run::{Audited, audit, decide};
+use crate::run::{Audited, audit};
 use crate::store::{Address, RemoteError, Signing, Trust, mirror};
 use clap::Args;
 use std::collections::BTreeMap;
@@ -190,7 +190,7 @@ impl Audit {
         let workflow = campaign.load(&[])?;
         let store = campaign.open()?;
         let stop = interruption(None);
-        let report = decide(&workflow, &store, &[], false).map_err(|e| system(&e))?;
+        let report = decided(&workflow, &store, &[], false)?;
         let mut exit = Exit::Done;
         let audited = audit(&report, &store, self.sample, cores(), &stop);
         let audited = audited.map_err(|why| system(&std::io::Error::other(why)))?;

@@ -1,10 +1,9 @@
 //! Faults in the settings of a calibration, found before anything runs.
 
-use super::super::columns::known_are;
 use super::config::{Calibrate, MethodName};
 use super::start::NoStart;
 use crate::stage::given::check_given;
-use crate::stage::{Complaint, Context};
+use crate::stage::{Complaint, Context, Named, known_are};
 use optim::Error;
 use std::collections::BTreeMap;
 
@@ -128,17 +127,17 @@ impl Calibrate {
     /// Names that the workflow does not declare, or that are none of the calibrated factors.
     fn unknown_names(&self, context: &Context) -> Vec<Complaint> {
         let mut found = Vec::new();
-        let mut unknown = |path: String, what: &str, name: &String, known: Vec<&String>| {
+        let mut unknown = |path: String, (named, what): (Named, &str), name: &String, known: Vec<&String>| {
             if !known.contains(&name) {
-                let complaint = Complaint::new(&path, format!("unknown {what} `{name}`"));
+                let complaint = Complaint::new(&path, format!("unknown {what} `{name}`")).missing(named, name);
                 found.push(complaint.hint(known_are(known, what)));
             }
         };
         for name in &self.factors {
-            unknown("factors".to_owned(), "factor", name, context.factors.keys().collect());
+            unknown("factors".to_owned(), (Named::Factor, "factor"), name, context.factors.keys().collect());
         }
         for name in self.targets.iter().flat_map(BTreeMap::keys) {
-            unknown("targets".to_owned(), "response", name, context.responses.keys().collect());
+            unknown("targets".to_owned(), (Named::Response, "response"), name, context.responses.keys().collect());
         }
         let simulators = self.simulators();
         let givers: Vec<&String> =
@@ -155,14 +154,14 @@ impl Calibrate {
         for (key, names) in [("weights", self.weights.keys().collect::<Vec<_>>()), ("from", self.from.keys().collect())]
         {
             for name in names {
-                unknown(key.to_owned(), "response", name, context.responses.keys().collect());
+                unknown(key.to_owned(), (Named::Response, "response"), name, context.responses.keys().collect());
             }
         }
         for name in self.from.values() {
-            unknown("from".to_owned(), "simulator", name, simulators.iter().collect());
+            unknown("from".to_owned(), (Named::Stage, "simulator"), name, simulators.iter().collect());
         }
         for name in self.held.iter().flat_map(BTreeMap::keys) {
-            unknown("held".to_owned(), "factor", name, context.factors.keys().collect());
+            unknown("held".to_owned(), (Named::Factor, "factor"), name, context.factors.keys().collect());
         }
         for (key, names) in [
             ("ranges", self.ranges.keys().collect::<Vec<_>>()),
@@ -172,11 +171,11 @@ impl Calibrate {
             ("constraints", self.constraints.iter().flat_map(|c| c.terms.keys()).collect()),
         ] {
             for name in names {
-                unknown(key.to_owned(), "calibrated factor", name, self.factors.iter().collect());
+                unknown(key.to_owned(), (Named::Factor, "calibrated factor"), name, self.factors.iter().collect());
             }
         }
         if let Some(material) = &self.material {
-            unknown("material".to_owned(), "material", material, context.materials.keys().collect());
+            unknown("material".to_owned(), (Named::Material, "material"), material, context.materials.keys().collect());
         }
         found.extend(lacking);
         found

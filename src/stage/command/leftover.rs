@@ -107,16 +107,16 @@ impl Abandoned {
             let _ = fs::remove_file(&self.record);
         }
         let processes = match ended {
-            0 => "no process".to_owned(),
-            1 => "a process, which was ended".to_owned(),
-            many => format!("{many} processes, which were ended"),
+            0 => String::new(),
+            1 => "a process of a program, which was ended; ".to_owned(),
+            many => format!("{many} processes of a program, which were ended; "),
         };
         let folder = match (there, removed) {
-            (false, _) => "its folder is gone".to_owned(),
-            (true, true) => format!("its folder {} was removed", self.folder.display()),
-            (true, false) => format!("its folder {} cannot be removed", self.folder.display()),
+            (false, _) => "the record of a program, whose folder is gone".to_owned(),
+            (true, true) => format!("the folder {} of a program, which was removed", self.folder.display()),
+            (true, false) => format!("the folder {} of a program, which cannot be removed", self.folder.display()),
         };
-        format!("a campaign that was killed left {processes}, of a program it ran; {folder}")
+        format!("a campaign that was killed left {processes}{folder}")
     }
 }
 

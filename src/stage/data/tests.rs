@@ -3,6 +3,8 @@
 use super::*;
 use std::io::Write;
 
+mod binary;
+
 #[test]
 fn units_numbers_and_missing_cells_are_read() {
     let table = parse(b"run,Ec [GPa],remark\n1,20,a\n2,,b\n").unwrap();
@@ -178,12 +180,12 @@ fn numbers_that_a_sheet_holds_as_text_have_one_decimal_sign() {
 }
 
 /// An archive of these parts.
-fn archive_of(parts: &[(&str, &str)]) -> Vec<u8> {
+fn archive_of<T: AsRef<[u8]>>(parts: &[(&str, T)]) -> Vec<u8> {
     let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
     for (name, text) in parts {
         let how = if *name == "mimetype" { zip::CompressionMethod::Stored } else { zip::CompressionMethod::Deflated };
         archive.start_file(*name, zip::write::SimpleFileOptions::default().compression_method(how)).unwrap();
-        archive.write_all(text.as_bytes()).unwrap();
+        archive.write_all(text.as_ref()).unwrap();
     }
     archive.finish().unwrap().into_inner()
 }

@@ -4,6 +4,7 @@ mod archive;
 mod ods;
 mod remarks;
 mod xls;
+mod xlsb;
 
 use super::super::StageError;
 use super::super::sheet::Sheet;
@@ -82,6 +83,7 @@ fn cells(bytes: &[u8], sheet: Option<&str>) -> Result<Cells, StageError> {
                 return Err(StageError::new(message).hint("open the workbook in a spreadsheet program and save it"));
             }
             cells.mark(&remarks.shares);
+            cells.merge(&xlsb::merged(archive, &name)?);
         }
     }
     Ok(cells)

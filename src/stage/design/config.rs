@@ -1,7 +1,7 @@
 //! The table of a `design` stage: `method`, the options of every method, and their combinations.
 
 use super::valid::InvalidRows;
-use crate::stage::{Complaint, Context};
+use crate::stage::{Complaint, Context, Named};
 use design::box_behnken::BoxBehnken;
 use design::central_composite::{Alpha, CentralComposite, Corners, Extent};
 use design::factorial::FullFactorial;
@@ -209,7 +209,7 @@ impl Design {
             false => format!("its factors are {}", known.join(", ")),
         };
         let complaint = |name| Complaint::new("factors", format!("`{name}` is not a factor of this workflow"));
-        unknown.map(|name| complaint(name).hint(&hint)).collect()
+        unknown.map(|name| complaint(name).missing(Named::Factor, name).hint(&hint)).collect()
     }
 
     /// Replicates and order of the runs.

@@ -51,7 +51,8 @@ use super::given::check_given;
 use super::invalid::Invalid;
 use super::reads::Reads;
 use super::{
-    Class, Complaint, Context, Failure, Job, Kind, Known, Outline, Port, Progress, Stage, StageError, Step, Task, Work,
+    Class, Complaint, Context, Failure, Job, Kind, Known, Named, Outline, Port, Progress, Stage, StageError, Step,
+    Task, Work,
 };
 use crate::artifact::presentation::Picture as Stored;
 use crate::artifact::{Accepts, Artifact, ArtifactKind, Table};
@@ -155,7 +156,11 @@ impl Stage for Figure {
         for name in self.response.list().iter().filter(|name| !context.responses.contains_key(*name)) {
             let known: Vec<&str> = context.responses.keys().map(String::as_str).collect();
             let message = format!("there is no [response.{name}]");
-            found.push(Complaint::new("response", message).hint(format!("known: {}", known.join(", "))));
+            found.push(
+                Complaint::new("response", message)
+                    .missing(Named::Response, name)
+                    .hint(format!("known: {}", known.join(", "))),
+            );
         }
         let of = self.of.list();
         found.extend(check_given(context, "response", &of.iter().collect::<Vec<_>>(), &self.response.list()));
@@ -163,7 +168,9 @@ impl Stage for Figure {
         for (key, name) in factors.filter(|(_, name)| !context.factors.contains_key(*name)) {
             let known: Vec<&str> = context.factors.keys().map(String::as_str).collect();
             let message = format!("there is no [factor.{name}]");
-            found.push(Complaint::new(key, message).hint(format!("known: {}", known.join(", "))));
+            found.push(
+                Complaint::new(key, message).missing(Named::Factor, name).hint(format!("known: {}", known.join(", "))),
+            );
         }
         for label in self.names.values() {
             if let Err(fault) = text::check(label) {

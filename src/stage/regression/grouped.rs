@@ -76,7 +76,7 @@ pub(super) fn fit(job: &Job) -> Result<Artifact, Failure> {
     let stored = Groups {
         groups: group_table(&found, &by, &params),
         residuals: residual_table(&found, &by),
-        notes: notes(&found, &by, &not_valid).table(),
+        notes: notes(&found, &by, &params.fittings, &not_valid).table(),
         not_valid: not_valid.some(),
     };
     Ok(stored.to_artifact())
@@ -89,7 +89,7 @@ fn by_column<'a>(table: &'a Table, name: &str) -> Result<By<'a>, StageError> {
     })?;
     let (values, labels) = match &column.values {
         Values::Texts(texts) => {
-            let mut labels = texts.clone();
+            let mut labels: Vec<String> = texts.iter().filter(|text| !text.is_empty()).cloned().collect();
             labels.sort();
             labels.dedup();
             let place = |text: &String| labels.iter().position(|l| l == text).map_or(f64::NAN, |i| i as f64);
@@ -204,8 +204,15 @@ fn residual_table(found: &[Found], by: &[By]) -> Table {
     with_key(residuals.to_table(), by, &all, |(f, _)| &f.group)
 }
 
-fn notes<'a>(found: &[Found], by: &[By], not_valid: &'a NotValid) -> Notes<'a> {
+fn notes<'a>(found: &[Found], by: &[By], fittings: &[Fitting], not_valid: &'a NotValid) -> Notes<'a> {
     let mut notes = Notes::of(not_valid);
+    for (fitting, by) in fittings.iter().flat_map(|fitting| by.iter().map(move |by| (fitting, by))) {
+        let without = by.values.iter().filter(|value| value.is_nan()).count();
+        if without > 0 {
+            let (all, name) = (by.values.len(), by.name);
+            notes.add(&fitting.response, format!("{without} of {all} runs have no `{name}`, so they are in no group"));
+        }
+    }
     let failed: Vec<&Found> = found.iter().filter(|f| f.fit.is_err()).collect();
     for found in &failed {
         let why = found.fit.as_ref().err().cloned().unwrap_or_default();

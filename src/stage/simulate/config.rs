@@ -2,7 +2,7 @@
 
 use super::super::material::{self, Bonding, GivenMaterial, Need};
 use super::super::rows;
-use super::super::{Complaint, Context, Known, Point, StageError};
+use super::super::{Complaint, Context, Known, Named, Point, StageError};
 use super::fissures::FissureConfig;
 use super::speed::PlatenSpeed;
 use crate::expression::Measure;
@@ -257,8 +257,10 @@ impl Simulate {
         let (values, unresolved) = material.resolve(&material::Values::new(), &|name| self.factor(context, name));
         faults.extend(unresolved.iter().map(|fault| {
             let complaint = Complaint::new(&fault.path, &fault.why).in_material(&self.material);
-            if fault.factor.is_some() {
-                complaint.hint("let the design of the stage vary it, or give the value itself")
+            if let Some(factor) = &fault.factor {
+                complaint
+                    .missing(Named::Factor, factor)
+                    .hint("let the design of the stage vary it, or give the value itself")
             } else {
                 complaint
             }

@@ -1,6 +1,6 @@
 //! Lists of declarations of the workflow: its factors, its materials, the aggregate of a specimen, ranges.
 
-use super::super::{Complaint, Context, Known, StageError};
+use super::super::{Complaint, Context, Known, Named, StageError};
 use super::Table;
 use crate::artifact::surfaces::Surfaces;
 use crate::artifact::{self, Artifact};
@@ -105,10 +105,12 @@ impl Table {
             found.push(Complaint::new("classes", "the list needs the bounds of the classes, increasing"));
         }
         for name in self.factors.iter().filter(|name| !context.factors.contains_key(*name)) {
-            found.push(Complaint::new("factors", format!("there is no [factor.{name}]")));
+            found.push(Complaint::new("factors", format!("there is no [factor.{name}]")).missing(Named::Factor, name));
         }
         for name in self.materials.iter().filter(|name| !context.materials.contains_key(*name)) {
-            found.push(Complaint::new("materials", format!("there is no [material.{name}]")));
+            found.push(
+                Complaint::new("materials", format!("there is no [material.{name}]")).missing(Named::Material, name),
+            );
         }
         found
     }

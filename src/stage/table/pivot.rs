@@ -1,7 +1,7 @@
 //! A column of a table spread over two others: one row for each value of the one, one column for each value of the other.
 
 use super::{Params, chosen_rows, column_of, shown};
-use crate::artifact;
+use crate::artifact::{self, validity::Statement};
 use crate::stage::StageError;
 use figure::column::{Column, Values};
 use schemars::JsonSchema;
@@ -24,6 +24,22 @@ impl Pivot {
     /// The columns that it reads.
     pub(super) fn names(&self) -> [&String; 3] {
         [&self.down, &self.across, &self.value]
+    }
+
+    /// How many rows of a table are in no cell, because they lack the value that says in which.
+    pub(super) fn unplaced(&self, table: &artifact::Table) -> Option<Statement> {
+        let lacks = |name: &String, row: usize| {
+            let values = table.column(name).map(|column| &column.values);
+            values.is_some_and(|values| matches!(values, artifact::Values::Reals(reals) if reals[row].is_nan()))
+        };
+        let without = (0..table.rows()).filter(|&row| lacks(&self.down, row) || lacks(&self.across, row)).count();
+        let words = format!(
+            "{without} of {} rows have no {} or no {}, so they are in no cell",
+            table.rows(),
+            self.down,
+            self.across
+        );
+        (without > 0).then(|| words.into())
     }
 }
 

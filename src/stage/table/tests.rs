@@ -215,6 +215,16 @@ fn a_column_is_spread_over_two_others() {
     assert_eq!(text(&made, "csv"), "R_min [mm],ratio 2 [MPa],ratio 10 [MPa]\n0.1,,3\n0.4,0.75,\n");
     let markdown = text(&made, "markdown");
     assert!(markdown.starts_with(r"| R\_min / mm | $\rho = 2$ / MPa | $\rho = 10$ / MPa |"), "{markdown}");
+    assert!(!markdown.contains("in no cell"));
+    let table = Data::default()
+        .reals_column("R_min", "m", "", vec![1e-4, f64::NAN, 4e-4])
+        .ints_column("ratio", "", vec![2, 2, 2])
+        .reals_column("estimate", "MPa", "", vec![1.0, 2.0, 3.0]);
+    let lacking = Arc::new(Artifact::of(ArtifactKind::GROUPS, Group::new().with("groups", Node::Table(table))));
+    let pivot = json!({ "down": "R_min", "across": "ratio", "value": "estimate" });
+    let made = run(json!({ "pivot": pivot, "digits": 3 }), &[("of", lacking)]).unwrap();
+    let note = r"1 of 3 rows have no R\_min or no ratio, so they are in no cell.";
+    assert!(text(&made, "markdown").contains(note), "{}", text(&made, "markdown"));
     let Err(Failure::Failed(error)) = spread("term") else { panic!("words in cells") };
     assert_eq!(error.message, "`pivot` names `term`, which holds words");
 }

@@ -3,7 +3,7 @@
 use super::{Params, chosen, chosen_rows, find, named};
 use crate::artifact::results::Results;
 use crate::artifact::validity::{Statement, faults, of_runs};
-use crate::artifact::{Artifact, ArtifactKind};
+use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::stage::StageError;
 use crate::stage::invalid::Invalid;
 use figure::column::Column;
@@ -17,6 +17,12 @@ const MARK: &str = "validity";
 /// There is no such table or column, or a run is refused because it is not valid.
 pub(super) fn printed(artifact: &Artifact, params: &Params) -> Result<(Vec<Column>, Vec<Statement>), StageError> {
     let table = find(artifact, params.table.as_deref())?;
+    let (columns, mut said) = judged(artifact, table, params)?;
+    said.extend(params.pivot.as_ref().and_then(|pivot| pivot.unplaced(table)));
+    Ok((columns, said))
+}
+
+fn judged(artifact: &Artifact, table: &Table, params: &Params) -> Result<(Vec<Column>, Vec<Statement>), StageError> {
     if artifact.is(ArtifactKind::RUN) {
         let (shown, said) = params.invalid.of_run(artifact, "the run")?;
         let columns = if shown { chosen(table, params, &|_| true)? } else { Vec::new() };

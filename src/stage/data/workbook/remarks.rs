@@ -125,9 +125,14 @@ fn part_of(archive: &mut Archive, sheet: &str) -> Result<Option<String>, StageEr
             id = attribute(element, "r:id");
         }
     })?;
+    id.map_or(Ok(None), |id| target(archive, "xl/_rels/workbook.xml.rels", &id))
+}
+
+/// The part that a list of relations names so.
+pub(super) fn target(archive: &mut Archive, relations: &str, id: &str) -> Result<Option<String>, StageError> {
     let mut target = None;
-    elements(archive, "xl/_rels/workbook.xml.rels", |element| {
-        if id.is_some() && attribute(element, "Id") == id {
+    elements(archive, relations, |element| {
+        if attribute(element, "Id").as_deref() == Some(id) {
             target = attribute(element, "Target");
         }
     })?;
