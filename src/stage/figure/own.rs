@@ -243,11 +243,7 @@ pub(super) fn fitted(plot: &Plot, fit: Fit, x: &[f64], y: &[f64]) -> Option<Fitt
     let (along, up) = (plot.scale(Direction::X), plot.scale(Direction::Y));
     let placed = x.iter().zip(y).map(|(&x, &y)| (on_axis(along, x), on_axis(up, y)));
     let (x, y): (Vec<f64>, Vec<f64>) = placed.filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
-    let sample = Sample {
-        factors: vec![Factor::new("x", x)],
-        responses: vec![Response::new("y", y)],
-        weights: None,
-    };
+    let sample = Sample { factors: vec![Factor::new("x", x)], responses: vec![Response::new("y", y)], weights: None };
     let slope = Term::power("x", 1);
     let terms = match fit {
         Fit::Line => vec![Term::constant(), slope],
