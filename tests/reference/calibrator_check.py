@@ -94,13 +94,21 @@ def form(page, model):
     knob = page.locator(".knob").first
     field, slide = knob.locator(".value"), knob.locator(".slide")
     parameter = model["parameters"][0]
-    shown = page.evaluate("() => [...document.querySelectorAll('.knob')].map((k) => [k.querySelector('.value').valueAsNumber, k.querySelector('.hold input').checked])")
+    shown = page.evaluate("() => [...document.querySelectorAll('.knob')].map((k) => [Number(k.querySelector('.value').value || NaN), k.querySelector('.hold input').checked])")
     wanted = [own["held"] for own in model["parameters"]]
     check(all(number == number for number, _ in shown) and [held for _, held in shown] == wanted, f"every parameter has a number, and is held as the workflow says: {shown}")
     value = lambda: float(field.input_value())
     field.fill(str(parameter["high"] * 10))
     field.press("Tab")
     check(near(value(), parameter["high"], 1e-9) and "ends at" in page.locator(".said").inner_text(), "a value beyond its range is brought to its end, and said")
+    inside = 0.5 * (parameter["low"] + parameter["high"])
+    field.fill(f"{inside:.4f}".replace(".", ","))
+    field.press("Tab")
+    check(near(value(), float(f"{inside:.4f}"), 1e-5), f"a decimal comma is read: {value()}")
+    field.fill("1,500")
+    field.press("Tab")
+    said = page.locator(".said").inner_text()
+    check("1,500" in said and near(value(), float(f"{inside:.4f}"), 1e-5), f"what may be a separator of thousands is refused, and changes nothing: {said}")
     slide.focus()
     page.keyboard.press("Home")
     check(near(value(), parameter["low"], 1e-9), "the slider moves by keys")

@@ -4,6 +4,16 @@ const Calibrator = (() => {
   const shown = Charts.shown;
   const withUnit = (text, unit) => unit ? text + " " + unit : text;
 
+  // A number as people type it: a comma may be the decimal sign, but before three digits it may part thousands.
+  const read = (field) => {
+    const text = field.value.trim();
+    const commas = text.split(",").length - 1, thousands = /,\d{3}(?!\d)/.test(text);
+    const x = text === "" || commas > 1 || thousands || (commas && text.includes(".")) ? NaN : Number(text.replace(",", "."));
+    field.setAttribute("aria-invalid", String(text !== "" && !Number.isFinite(x)));
+    return x;
+  };
+  const refused = (field) => `“${field.value.trim()}” is not read as a number: write it with a decimal point and without separators.`;
+
   const start = (root) => {
     const model = JSON.parse(root.querySelector(".instrument").textContent);
     const find = (what) => root.querySelector(what);
@@ -24,8 +34,7 @@ const Calibrator = (() => {
     // Targets.
     const readAim = (row, response) => {
       const mode = row.querySelector(".mode").value;
-      const number = (input) => input.value.trim() === "" ? NaN : Number(input.value);
-      const low = number(row.querySelector(".low")), high = number(row.querySelector(".high"));
+      const low = read(row.querySelector(".low")), high = read(row.querySelector(".high"));
       const tolerance = state.tolerances?.[response] ?? null;
       if (mode === "between") return Number.isFinite(low) || Number.isFinite(high) ? { response, low: Number.isFinite(low) ? low : -Infinity, high: Number.isFinite(high) ? high : Infinity, tolerance } : null;
       if (!Number.isFinite(low)) return null;
@@ -115,7 +124,7 @@ const Calibrator = (() => {
       else if (!missed.length) add("All targets are met within their tolerance, not exactly.");
       else {
         if (!out.length) add("Each target can be met by itself, all together cannot.");
-        const nearest = found.aims.map(({ response }, k) => [sign.response(response), ` = ${withUnit(shown(found.values[k]), responses[response].unit)}${Math.abs(found.deviations[k]) > 5e-4 ? " (" + shown(100 * found.deviations[k], 3) + " %)" : ""}`]);
+        const nearest = found.aims.map(({ response }, k) => [sign.response(response), ` = ${withUnit(shown(found.values[k]), responses[response].unit)}${Math.abs(found.deviations[k]) > 5e-4 ? " (" + (found.deviations[k] > 0 ? "+" : "") + shown(100 * found.deviations[k], 3) + " %)" : ""}`]);
         add("The nearest that can: ", ...joined(nearest, ", "), ".");
       }
       if (found.free > 0) add(`Not unique: ${found.free} direction${found.free > 1 ? "s" : ""} stay${found.free > 1 ? "" : "s"} free; this is the solution nearest the ${parameters.some((p) => p.preferred !== null) ? "preferred point" : "middle of the ranges"}.`);
@@ -155,7 +164,8 @@ const Calibrator = (() => {
       setTimeout(next, 30, 0);
     };
     const seek = () => {
-      const list = aims(), fault = faultOf(list);
+      const list = aims(), wrong = all(".aim .low, .aim .high", root).find((field) => !field.hidden && field.getAttribute("aria-invalid") === "true");
+      const fault = wrong ? [refused(wrong)] : faultOf(list);
       forget();
       if (fault) { find(".verdict").replaceChildren(make("p", {}, ...fault)); find(".verdict").classList.add("unmet"); charts.update(state.point, []); return; }
       const broken = Box.domain(model, state.point, state.held).broken;
@@ -172,9 +182,17 @@ const Calibrator = (() => {
     knobs.forEach((knob, i) => {
       knob.querySelector(".slide").addEventListener("input", (event) => move(i, Box.natural(parameters[i], Number(event.target.value))));
       const field = knob.querySelector(".value");
-      const typed = () => { const x = Number(field.value); if (field.value.trim() !== "" && Number.isFinite(x)) move(i, x); };
-      field.addEventListener("input", () => { const x = Number(field.value); if (field.value.trim() !== "" && x >= parameters[i].low && x <= parameters[i].high) typed(); });
-      field.addEventListener("change", () => { typed(); field.value = Number(state.point[i].toPrecision(6)); });
+      const typed = () => {
+        const x = read(field);
+        if (Number.isFinite(x)) move(i, x);
+        else if (field.value.trim() !== "") find(".said").replaceChildren(refused(field));
+      };
+      field.addEventListener("input", () => { const x = read(field); if (x >= parameters[i].low && x <= parameters[i].high) typed(); });
+      field.addEventListener("change", () => {
+        typed();
+        field.value = Number(state.point[i].toPrecision(6));
+        field.setAttribute("aria-invalid", "false");
+      });
       knob.querySelector(".hold input").addEventListener("change", (event) => { state.held[i] = event.target.checked; reachAnew(); });
     });
     const set = find(".set");

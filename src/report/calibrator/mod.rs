@@ -171,8 +171,8 @@ fn aim(shown: &Shown, context: &Context, index: usize, response: &Surface) -> Ma
             select.mode aria-label={ (response.name) ": what is wanted" } {
                 option value="exactly" { "=" } option value="at-least" { "≥" } option value="at-most" { "≤" } option value="between" { "from … to" }
             }
-            input.low id=(id) type="number" step="any" inputmode="decimal";
-            input.high type="number" step="any" inputmode="decimal" hidden aria-label={ (response.name) ": greatest value" };
+            input.low id=(id) type="text" inputmode="decimal" autocomplete="off";
+            input.high type="text" inputmode="decimal" autocomplete="off" hidden aria-label={ (response.name) ": greatest value" };
             (unit(&response.unit))
             span.reach {}
         }
@@ -186,7 +186,7 @@ fn knob(shown: &Shown, context: &Context, index: usize, parameter: &Parameter) -
         div.knob data-parameter=(index) {
             label.head for=(id) { (name(context, &parameter.name)) }
             input.slide type="range" min="0" max="1" step="0.002" aria-label={ (parameter.name) " by slider" };
-            input.value id=(id) type="number" step="any" inputmode="decimal" min=(low) max=(high);
+            input.value id=(id) type="text" inputmode="decimal" autocomplete="off";
             (unit(own))
             span.ends { (low) " … " (high) }
             label.hold { input type="checkbox" checked[parameter.held]; " hold" }

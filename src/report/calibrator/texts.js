@@ -9,8 +9,12 @@ const Texts = (() => {
                rad: 1, deg: Math.PI / 180, "°": Math.PI / 180, "%": 0.01 };
 
   const toml = (model, point, words) => {
-    const lines = [comment("#", "Found with the calibrator of " + model.title + ": " + words + "."),
-                   comment("#", "Add these lines to " + model.file + " and run it with --profile calibrated."), ""];
+    const sets = model.parameters.some((parameter) => parameter.sets.length);
+    const how = sets
+      ? ["Add these lines to " + model.file + " and run it with --profile calibrated.",
+         "A stage whose design varies these parameters stays at the values of its design; a test without a design has these."]
+      : ["These parameters set nothing in the workflow: they are values of a formula or a table."];
+    const lines = [comment("#", "Found with the calibrator of " + model.title + ": " + words + "."), ...how.map((line) => comment("#", line)), ""];
     const tables = new Map();
     const put = (table, key, i) => tables.set(table, [...(tables.get(table) ?? []), [key, i]]);
     model.parameters.forEach((parameter, i) => {
