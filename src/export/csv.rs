@@ -3,6 +3,9 @@
 use crate::artifact::{Column, Table, Values};
 use math::text::typed;
 
+/// The first cell of a row without any value: an empty line may be none at all to a reader.
+const MISSING: &str = "NA";
+
 /// A table as CSV, with units in the first line and all digits.
 pub fn csv_text(table: &Table) -> String {
     let columns: Vec<Vec<String>> = table.columns.iter().map(|column| cells(&column.values)).collect();
@@ -13,7 +16,15 @@ pub fn csv_text(table: &Table) -> String {
     let quotes = if heads.iter().any(like_delimiter) { csv::QuoteStyle::Always } else { csv::QuoteStyle::Necessary };
     let mut out = csv::WriterBuilder::new().comment(Some(b'#')).quote_style(quotes).from_writer(Vec::new());
     let written = out.write_record(&heads).and_then(|()| {
-        (0..table.rows()).try_for_each(|row| out.write_record(columns.iter().map(|column| &column[row])))
+        (0..table.rows()).try_for_each(|row| {
+            let mut record: Vec<&str> = columns.iter().map(|column| column[row].as_str()).collect();
+            if record.iter().all(|cell| cell.is_empty())
+                && let Some(first) = record.first_mut()
+            {
+                *first = MISSING;
+            }
+            out.write_record(record)
+        })
     });
     match (written, out.into_inner()) {
         (Ok(()), Ok(bytes)) => String::from_utf8_lossy(&bytes).into_owned(),

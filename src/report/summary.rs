@@ -47,8 +47,9 @@ fn sentence(paper: &Paper) -> Markup {
         @if runs > 0 { ": " (some(runs, "run")) " of the model, " } @else { ": " }
         (some(count(PrintedTable::NAME), "table")) " and " (some(count(Picture::NAME), "figure")) ", from seed " (paper.context.seed) ". "
         @if let Some((first, last)) = cost.span {
-            (some(cost.tasks, "task")) " took " (duration(cost.seconds)) " of computing between "
-            (time(first)) " and " (time(last)) " UTC."
+            (some(cost.tasks, "task")) " took " (duration(cost.seconds)) " of computing "
+            @if moment(first) == moment(last) { "at " (time(first)) } @else { "between " (time(first)) " and " (time(last)) }
+            " UTC."
         }
     }
 }

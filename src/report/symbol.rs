@@ -4,6 +4,7 @@
 //! pictures read the same notation.
 
 use crate::stage::Context;
+use crate::stage::units::symbol_of_test;
 use figure::font::Face;
 use figure::text::{self, Line};
 use maud::{Markup, PreEscaped, html};
@@ -73,11 +74,15 @@ pub(super) fn of(context: &Context, name: &str) -> Option<Markup> {
     Some(label(&format!("${symbol}$")))
 }
 
-/// The symbol of a factor or response in the notation of labels.
+/// The symbol of a factor or response in the notation of labels; of a name that the workflow does not declare, the one that a
+/// test or a fit has for it.
 pub(super) fn raw<'a>(context: &'a Context, name: &str) -> Option<&'a str> {
     let factor = context.factors.get(name).map(|factor| factor.symbol.as_str());
     let response = || context.responses.get(name).map(|response| response.symbol.as_str());
-    factor.or_else(response).filter(|symbol| !symbol.is_empty())
+    factor
+        .or_else(response)
+        .map_or_else(|| symbol_of_test(name).or((name == "r2").then_some("R^2")), Some)
+        .filter(|symbol| !symbol.is_empty())
 }
 
 /// A term such as `Ec*mu^2` with the symbols of its factors; nothing when none of its parts has one.
@@ -155,6 +160,14 @@ mod tests {
         assert_eq!(set(r"$R^2$"), "<i>R</i><sup>2</sup>");
         assert_eq!(set("a < b & c"), "a &lt; b &amp; c");
         assert_eq!(unit("kg/m^3").into_string(), "kg/m<sup>3</sup>");
+    }
+
+    #[test]
+    fn what_a_test_gives_has_its_symbol_without_a_declaration() {
+        let context = Context::default();
+        assert_eq!(raw(&context, "sigma_ci"), Some(r"\sigma_{ci}"));
+        assert_eq!(raw(&context, "r2"), Some("R^2"));
+        assert_eq!(raw(&context, "cement"), None);
     }
 
     #[test]

@@ -8,6 +8,13 @@ use super::Context;
 use crate::artifact::run::Run;
 use crate::artifact::{Artifact, ArtifactKind, Column, Group, Node, Table, Values};
 use crate::unit::Conversion;
+use dem::loading::kind::KINDS;
+
+/// The symbol that a test gives to a response, in the notation of labels, for pages where the workflow declares none.
+pub fn symbol_of_test(name: &str) -> Option<&'static str> {
+    let mut responses = KINDS.iter().flat_map(|kind| kind.responses());
+    responses.find(|response| response.name == name).map(|response| response.symbol)
+}
 
 /// The unit of the field for a column whose largest value is `largest` in `unit`.
 pub(super) fn field_unit(unit: &str, largest: f64) -> String {

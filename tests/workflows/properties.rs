@@ -36,10 +36,6 @@ pub(crate) fn table(text: &str) {
     let Ok(table) = data::parse(text.as_bytes()) else { return };
     assert!(table.rows() > 0 && table.columns.iter().all(|column| column.values.len() == table.rows()));
     let written = flow::export::csv_text(&table);
-    // A row of words for missing values is a line without any value, which the reader refuses.
-    if written.lines().any(|line| line.chars().all(|c| matches!(c, ',' | '"'))) {
-        return;
-    }
     let again = data::parse(written.as_bytes()).unwrap_or_else(|e| panic!("{e}: {written:?}"));
     assert_eq!(again.columns, table.columns, "{written:?}");
 }
