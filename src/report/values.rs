@@ -308,7 +308,7 @@ mod tests {
             .reals_column("value", "%", "", vec![31.25, 2.0])
             .reals_column("published", "%", "", vec![f64::NAN, 3.0]);
         let value = of("pareto", &bars, &Context::default()).unwrap();
-        assert_eq!(value["panels"][0]["words"], json!(["E_c · μ: 31.25 %", "nu: 2.000 %, published 3.000 %"]));
+        assert_eq!(value["panels"][0]["words"], json!(["E_c · μ: 31.25 %", "ν: 2.000 %, published 3.000 %"]));
         assert_eq!((&value["panels"][0]["y"], &value["cells"]), (&json!([0.0, 1.0]), &json!(true)));
         let runs = Table::default()
             .texts_column("response", "", words(&["E", "E", "E", "nu"]))
@@ -320,7 +320,7 @@ mod tests {
         assert_eq!((&value["panels"][0]["x"], &value["panels"][0]["y"]), (&json!([0.0, 1.0]), &json!([29.5, 21.0])));
         assert_eq!(value["panels"][0]["words"][0], json!("set 1: E, mean of 2 runs 29.50 GPa, target 30.00 GPa"));
         assert_eq!(value["panels"][0]["words"][1], json!("set 2: E, the only run gives 21.00 GPa, target 20.00 GPa"));
-        assert_eq!(value["panels"][1]["words"], json!(["set 1: nu, the only run gives 0.2100, target 0.2000"]));
+        assert_eq!(value["panels"][1]["words"], json!(["set 1: ν, the only run gives 0.2100, target 0.2000"]));
     }
 
     #[test]

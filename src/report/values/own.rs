@@ -133,8 +133,8 @@ mod tests {
             .reals_column("high", "MPa", "", vec![22.0, f64::NAN]);
         let found = series(&data, &Context::default()).unwrap();
         let words = &found["panels"][0]["words"];
-        assert_eq!(words[0], "dry, age = 7.000 d, UCS = 20.00 MPa (18.00 to 22.00)");
-        assert_eq!(words[1], "dry, line, age = 28.00 d, UCS = 30.00 MPa");
+        assert_eq!(words[0], "dry, age = 7.000 d, σ_u = 20.00 MPa (18.00 to 22.00)");
+        assert_eq!(words[1], "dry, line, age = 28.00 d, σ_u = 30.00 MPa");
     }
 
     #[test]
@@ -181,7 +181,7 @@ mod tests {
             .ints_column("count", "", vec![1, 4]);
         let found = bins(&data, &Context::default()).unwrap();
         assert_eq!(found["panels"][0]["x"], json!([15.0, 25.0]));
-        assert_eq!(found["panels"][0]["words"][1], "UCS 20.00 to 30.00 MPa: 4 runs");
+        assert_eq!(found["panels"][0]["words"][1], "σ_u 20.00 to 30.00 MPa: 4 runs");
         let five = ["low", "first_quartile", "median", "third_quartile", "high", "mean"];
         let data = Table::default().texts_column("group", "", vec!["a".to_owned()]).ints_column("n", "", vec![5]);
         let data = five.iter().zip(1..).fold(data, |t, (name, v)| t.reals_column(name, "MPa", "", vec![f64::from(v)]));
