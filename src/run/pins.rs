@@ -180,18 +180,18 @@ data 4
 design 3
 effort 1
 envelope 1
-figure 17
+figure 18
 fit 4
 formula 2
 gather 2
-groups 4
+groups 5
 mix 1
 range 3
 screening 5
 shapes 1
 simulate 4
 specimen 2
-table 8
+table 9
 verify 4
 ";
 

@@ -349,7 +349,7 @@ fn labels_of_ticks_are_short_and_whole() {
     space.stdout(&["export", "w.toml", "--quiet"]);
     let drawn = |name: &str| std::fs::read_to_string(space.path(&format!("export/{name}.svg"))).expect("a figure");
     let labels = |svg: &str| svg.matches("aria-label=\"").count();
-    for (name, common) in [("me", "near / MPa (+100000)"), ("co", "+100000.2"), ("obs", "neg (×10^9)")] {
+    for (name, common) in [("me", "near / MPa (+100000)"), ("co", "+100000.2"), ("obs", "neg (×10⁹)")] {
         let svg = drawn(name);
         assert!(svg.contains(common) && labels(&svg) > 5, "{name}: {svg}");
         let long = |label: &&str| label.chars().filter(char::is_ascii_digit).count() > 7;

@@ -389,7 +389,9 @@ impl Kind for Figure {
     /// load acts along y. 15: cylinders and thick discs in space have a round frame; cells of a matrix say where they are.
     /// 16: the scatter of a single run in a verification is unknown, not zero. 17: titles, descriptions and the sentences
     /// below a picture use the declared symbols.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 17, run: draw }];
+    /// 18: overlays keep their own units; lines are straight on logarithmic axes; the mean of curves ends where the first does;
+    /// bands and bars are named; powers are raised in plain words.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 18, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {
