@@ -6,6 +6,7 @@ use crate::report::duration;
 use crate::run::{Event, StageReport, StageStatus, TaskCount, Watch};
 use crate::stage::forecast::Forecast;
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::IsTerminal;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -67,8 +68,13 @@ impl Live {
     /// Counts a task that ended. Returns the mean seconds of those that ran here.
     fn count_ended(&mut self, row: Option<usize>, failed: usize) -> Option<f64> {
         (self.ended, self.failed) = (self.ended + 1, failed);
-        if let Some(begun) = self.running.get_mut(&row).and_then(Vec::pop) {
-            self.timed = (self.timed.0 + 1, self.timed.1 + begun.elapsed().as_secs_f64());
+        if let Entry::Occupied(mut running) = self.running.entry(row) {
+            if let Some(begun) = running.get_mut().pop() {
+                self.timed = (self.timed.0 + 1, self.timed.1 + begun.elapsed().as_secs_f64());
+            }
+            if running.get().is_empty() {
+                running.remove();
+            }
         }
         (self.timed.0 > 0).then(|| self.timed.1 / self.timed.0 as f64)
     }
@@ -311,6 +317,17 @@ mod tests {
         assert_eq!(kind_of("no number"), "no number");
         assert_eq!(kind_of("2 of 27 polygons hold no ball: drop the class"), "… of … polygons hold no ball");
         assert_eq!(kind_of("only 1938 balls; the peak is stable from 2000 on"), "only … balls");
+    }
+
+    #[test]
+    fn a_task_that_ended_takes_no_room() {
+        let mut live = Live::new(None);
+        let row = Some(3);
+        live.running.insert(row, vec![Instant::now(); 2]);
+        assert!(live.count_ended(row, 0).is_some() && live.running.len() == 1, "another task of the row still runs");
+        live.count_ended(row, 0);
+        live.count_ended(Some(4), 0);
+        assert_eq!((live.running.len(), live.timed.0, live.ended), (0, 2, 3));
     }
 
     #[test]

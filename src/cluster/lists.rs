@@ -7,7 +7,30 @@ use crate::store::{Queue, StoreError};
 use std::ops::Range;
 
 /// A submitter puts at most so many tasks into a list.
-pub const MOST_LINES: usize = 10_000;
+const MOST_LINES: usize = 10_000;
+/// A list with more bytes than this is full.
+const MOST_BYTES: usize = 2 << 20;
+
+/// The lines of a list that is being made.
+#[derive(Default)]
+pub struct Draft {
+    text: String,
+    count: usize,
+}
+
+impl Draft {
+    /// Adds the line of a task.
+    pub fn add(&mut self, line: &str) {
+        self.text.push_str(line);
+        self.text.push('\n');
+        self.count += 1;
+    }
+
+    /// Whether the list is to be written.
+    pub fn is_full(&self) -> bool {
+        self.count >= MOST_LINES || self.text.len() >= MOST_BYTES
+    }
+}
 
 /// The lists that were written or read so far.
 #[derive(Default)]
@@ -48,14 +71,13 @@ impl Lists {
         self.ends.last().copied().unwrap_or(0)
     }
 
-    /// Writes the next list; `lines` are the texts of its tasks.
+    /// Writes the next list.
     ///
     /// # Errors
     /// The store cannot be written.
-    pub fn write(&mut self, queue: &Queue, lines: &[String]) -> Result<(), StoreError> {
-        let text = lines.iter().flat_map(|line| [line.as_str(), "\n"]).collect::<String>();
-        queue.put_list(self.count() + 1, &text)?;
-        self.ends.push(self.tasks() + lines.len());
+    pub fn write(&mut self, queue: &Queue, list: &Draft) -> Result<(), StoreError> {
+        queue.put_list(self.count() + 1, &list.text)?;
+        self.ends.push(self.tasks() + list.count);
         Ok(())
     }
 
@@ -104,12 +126,28 @@ mod tests {
     use crate::store::{Mark, Store};
 
     #[test]
+    fn a_list_is_full_by_its_lines_or_by_its_bytes() {
+        let full = |line: &str| {
+            let mut draft = Draft::default();
+            while !draft.is_full() {
+                draft.add(line);
+            }
+            draft.count
+        };
+        assert_eq!((full("short"), full(&"x".repeat(MOST_BYTES / 4))), (MOST_LINES, 4));
+    }
+
+    #[test]
     fn a_task_of_any_list_is_found_by_its_number() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open_as(&folder.path().join("store"), Mark::of(&[1; 32])).unwrap();
         let queue = store.make_queue("q-1").unwrap();
         let mut written = Lists::default();
-        let lines = |tasks: Range<usize>| tasks.map(|task| format!("line {task}")).collect::<Vec<_>>();
+        let lines = |tasks: Range<usize>| {
+            let mut draft = Draft::default();
+            tasks.for_each(|task| draft.add(&format!("line {task}")));
+            draft
+        };
         for tasks in [0..3, 3..4, 4..9] {
             written.write(&queue, &lines(tasks)).unwrap();
         }

@@ -1,6 +1,6 @@
 //! One queue as its submitter sees it: the tasks in its lists, its workers, and their reports.
 
-use super::lists::Lists;
+use super::lists::{Draft, Lists};
 use super::message::Message;
 use super::scheduler::Scheduler;
 use super::site::{Needs, Site};
@@ -63,7 +63,9 @@ pub struct Post {
     pub queue: Queue,
     /// The needs of its tasks.
     pub needs: Needs,
+    /// The tasks from number `before` on; those before it have all ended.
     entries: Vec<Entry>,
+    before: usize,
     /// Tasks that have not ended.
     open: usize,
     lists: Lists,
@@ -104,6 +106,7 @@ impl Post {
             queue,
             needs,
             entries: Vec::new(),
+            before: 0,
             open: 0,
             lists: Lists::default(),
             rounds: Vec::new(),
@@ -171,25 +174,25 @@ impl Post {
         }
     }
 
-    /// Lists tasks, each by its key and the text of its line; returns the number of the first one.
+    /// Lists tasks, by their keys and lines; returns the number of the first one.
     ///
     /// # Errors
     /// The store cannot be written.
-    pub fn list(&mut self, keys: impl IntoIterator<Item = Key>, lines: &[String]) -> Result<usize, StoreError> {
-        let first = self.entries.len();
-        self.lists.write(&self.queue, lines)?;
+    pub fn list(&mut self, keys: impl IntoIterator<Item = Key>, list: &Draft) -> Result<usize, StoreError> {
+        let first = self.before + self.entries.len();
+        self.lists.write(&self.queue, list)?;
         self.enter(keys);
         Ok(first)
     }
 
-    /// Keys of the tasks, by their numbers.
+    /// Keys of the tasks by their numbers, as long as some have not ended.
     pub fn keys(&self) -> impl Iterator<Item = Key> {
         self.entries.iter().map(|entry| entry.key)
     }
 
-    /// Key of a task.
+    /// Key of a task that has not ended.
     pub fn key(&self, task: usize) -> Key {
-        self.entries[task].key
+        self.entries[task - self.before].key
     }
 
     /// The text of the line that lists a task.
@@ -201,7 +204,8 @@ impl Post {
     }
 
     fn is_open(&self, task: usize) -> bool {
-        self.entries.get(task).is_some_and(|entry| entry.open)
+        let entry = task.checked_sub(self.before).and_then(|task| self.entries.get(task));
+        entry.is_some_and(|entry| entry.open)
     }
 
     /// Numbers of the jobs.
@@ -231,8 +235,13 @@ impl Post {
 
     /// Marks a task as ended.
     pub fn over(&mut self, task: usize) {
-        if std::mem::replace(&mut self.entries[task].open, false) {
+        let entry = task.checked_sub(self.before).and_then(|task| self.entries.get_mut(task));
+        if entry.is_some_and(|entry| std::mem::replace(&mut entry.open, false)) {
             self.open -= 1;
+        }
+        if self.open == 0 {
+            self.before += self.entries.len();
+            self.entries = Vec::new();
         }
     }
 

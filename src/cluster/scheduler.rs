@@ -3,8 +3,10 @@
 use super::script::{self, Order};
 use super::site::{Commands, Kind, Site};
 use std::collections::HashMap;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// The three questions to a scheduler.
@@ -67,48 +69,48 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// Runs a program to its end; returns its output, or why there is none.
 fn run(words: &[String]) -> Result<String, String> {
     let [program, arguments @ ..] = words else { return Err("no program".to_owned()) };
+    let unread = |error: std::io::Error| format!("the answer of `{program}` cannot be read: {error}");
+    // Files in memory take any length, and nobody must read them meanwhile.
+    let (mut out, mut err) = (in_memory().map_err(unread)?, in_memory().map_err(unread)?);
     let mut command = Command::new(program);
-    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.args(arguments).stdin(Stdio::null());
+    command.stdout(out.try_clone().map_err(unread)?).stderr(err.try_clone().map_err(unread)?);
     // Ctrl-C in a terminal reaches the whole group; cancelling must still be done then.
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let mut child = command.spawn().map_err(|error| format!("`{program}` cannot be run: {error}"))?;
     let started = Instant::now();
-    // What these programs print fits into a pipe, but for the list of a large array.
-    let output = std::thread::scope(|scope| {
-        let (out, err) = (child.stdout.take(), child.stderr.take());
-        let out = scope.spawn(move || read(out));
-        let err = scope.spawn(move || read(err));
-        let status = loop {
-            match child.try_wait() {
-                Ok(Some(status)) => break Ok(status),
-                Ok(None) if started.elapsed() > PATIENCE => {
-                    let _ = child.kill();
-                    let _ = child.wait();
-                    break Err(format!("`{program}` does not answer"));
-                }
-                Ok(None) => std::thread::sleep(Duration::from_millis(5)),
-                Err(error) => break Err(format!("`{program}`: {error}")),
+    let status = loop {
+        match child.try_wait() {
+            Ok(Some(status)) => break status,
+            Ok(None) if started.elapsed() > PATIENCE => {
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(format!("`{program}` does not answer"));
             }
-        };
-        let (stdout, stderr) = (out.join().unwrap_or_default(), err.join().unwrap_or_default());
-        status.map(|status| Output { status, stdout, stderr })
-    })?;
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
-    match output.status.success() {
-        true => Ok(text(&output.stdout)),
-        false => {
-            let answer = [text(&output.stderr), text(&output.stdout)].into_iter().find(|text| !text.is_empty());
-            let answer = answer.unwrap_or_else(|| output.status.to_string());
-            Err(format!("`{program}` says: {}", answer.lines().collect::<Vec<_>>().join("; ")))
+            Ok(None) => std::thread::sleep(Duration::from_millis(5)),
+            Err(error) => return Err(format!("`{program}`: {error}")),
         }
+    };
+    let stdout = text(&mut out).map_err(unread)?;
+    if status.success() {
+        return Ok(stdout);
     }
+    let answer = [text(&mut err).map_err(unread)?, stdout].into_iter().find(|text| !text.is_empty());
+    let answer = answer.unwrap_or_else(|| status.to_string());
+    Err(format!("`{program}` says: {}", answer.lines().collect::<Vec<_>>().join("; ")))
 }
 
-fn read(source: Option<impl std::io::Read>) -> Vec<u8> {
+/// A file in memory.
+fn in_memory() -> std::io::Result<File> {
+    Ok(rustix::fs::memfd_create("flow", rustix::fs::MemfdFlags::CLOEXEC)?.into())
+}
+
+/// What was written into a file.
+fn text(file: &mut File) -> std::io::Result<String> {
     let mut bytes = Vec::new();
-    // After an error, the output is what was read before it.
-    let _ = source.map(|mut source| source.read_to_end(&mut bytes));
-    bytes
+    file.seek(SeekFrom::Start(0))?;
+    file.read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).trim().to_owned())
 }
 
 fn words(words: &[&str]) -> Vec<String> {
@@ -266,5 +268,11 @@ mod tests {
         let refused = run(&words(&["sh", "-c", "echo 'error: QOSMaxSubmitJobPerUserLimit' >&2; exit 1"]));
         assert_eq!(refused, Err("`sh` says: error: QOSMaxSubmitJobPerUserLimit".to_owned()));
         assert!(run(&words(&["flow-no-such-program"])).unwrap_err().contains("cannot be run"));
+    }
+
+    #[test]
+    fn an_answer_longer_than_a_pipe_is_read_whole() {
+        let long = run(&words(&["sh", "-c", "head -c 300000 /dev/zero | tr '\\0' x; echo warning >&2"])).unwrap();
+        assert!(long.len() == 300_000 && long.bytes().all(|byte| byte == b'x'), "{} bytes", long.len());
     }
 }

@@ -42,14 +42,52 @@ impl Slices {
         self.slices[self.own].push_front(task);
     }
 
-    /// Forgets the tasks that others have begun.
-    pub fn forget(&mut self, begun: &std::collections::HashSet<usize>) {
+    /// Forgets the tasks that others have begun; returns how many.
+    pub fn forget(&mut self, begun: &std::collections::HashSet<usize>) -> usize {
+        let before = self.left();
         self.slices.iter_mut().for_each(|slice| slice.retain(|task| !begun.contains(task)));
+        before - self.left()
+    }
+
+    fn left(&self) -> usize {
+        self.slices.iter().map(VecDeque::len).sum()
     }
 
     /// Tasks that are left outside of the own slice.
     pub fn has_own(&self) -> bool {
         !self.slices[self.own].is_empty()
+    }
+}
+
+/// When a worker lists the tasks that are begun, instead of trying a hundred thousand one by one: after a few misses in a
+/// row. A shared disk may show late what others have begun, so after a look that found nothing it waits twice as long.
+pub struct Patience {
+    missed: usize,
+    most: usize,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self { missed: 0, most: MISSES }
+    }
+}
+
+/// Tasks in a row that others had begun before a worker looks which are.
+const MISSES: usize = 8;
+
+impl Patience {
+    /// Another worker had begun the task that was wanted; whether it is time to look.
+    pub fn miss(&mut self) -> bool {
+        self.missed += 1;
+        self.missed >= self.most
+    }
+
+    /// A look after misses found this many tasks that are begun.
+    pub fn looked(&mut self, found: usize) {
+        self.missed = 0;
+        if found == 0 {
+            self.most *= 2;
+        }
     }
 }
 
@@ -81,12 +119,24 @@ mod tests {
                 let mut slices = Slices::new(index, of);
                 slices.add(0..17);
                 slices.add(17..20);
-                slices.forget(&[3, 18].into());
+                assert_eq!((slices.forget(&[3, 18].into()), slices.forget(&[3].into())), (2, 0));
                 let mut tasks = all(slices);
                 tasks.sort_unstable();
                 let wanted: Vec<usize> = (0..20).filter(|task| ![3, 18].contains(task)).collect();
                 assert_eq!(tasks, wanted);
             }
         }
+    }
+
+    #[test]
+    fn patience_grows_only_with_looks_that_find_nothing() {
+        let mut patience = Patience::default();
+        let misses = |patience: &mut Patience| (1..).find(|_| patience.miss());
+        let mut looks = Vec::new();
+        for found in [3, 1, 0, 5, 0, 2] {
+            looks.extend(misses(&mut patience));
+            patience.looked(found);
+        }
+        assert_eq!(looks, [8, 8, 8, 16, 16, 32]);
     }
 }

@@ -74,7 +74,7 @@ pub fn audit(
     let audited = found.into_iter().filter_map(|(node, computed)| {
         let TaskState::Done { content, .. } = board.state(node) else { return None };
         let (stage, row) = (board.stage(node), board.row(node));
-        Some(Audited { stage, row, stored: *content, computed: computed.map_err(words) })
+        Some(Audited { stage, row, stored: content, computed: computed.map_err(words) })
     });
     Ok(audited.collect())
 }

@@ -1,7 +1,7 @@
 //! Tasks that workers on other machines compute, as the run loop sees them: by key, whichever queue they are in.
 
 use crate::artifact::{ContentHash, FirstBytes, Key};
-use crate::cluster::lists::MOST_LINES;
+use crate::cluster::lists::Draft;
 use crate::cluster::post::Reports;
 use crate::cluster::scheduler::{self, Alive};
 use crate::cluster::site::Needs;
@@ -52,7 +52,7 @@ struct Tries {
 struct Fresh {
     needs: Needs,
     tasks: Vec<(Key, Tries)>,
-    lines: Vec<String>,
+    list: Draft,
 }
 
 /// What happens to the workers when the run ends.
@@ -166,21 +166,21 @@ impl<'a> Far<'a> {
     /// # Errors
     /// The store cannot be written.
     pub(super) fn put(&mut self, stage: &str, key: Key, line: &Line) -> Result<(), StoreError> {
-        self.collect(self.site.needs(stage), key, Tries::default(), line.to_text())
+        self.collect(self.site.needs(stage), key, Tries::default(), &line.to_text())
     }
 
-    fn collect(&mut self, needs: Needs, key: Key, tries: Tries, line: String) -> Result<(), StoreError> {
+    fn collect(&mut self, needs: Needs, key: Key, tries: Tries, line: &str) -> Result<(), StoreError> {
         let number = match self.fresh.iter().position(|fresh| fresh.needs == needs) {
             Some(number) => number,
             None => {
-                self.fresh.push(Fresh { needs, tasks: Vec::new(), lines: Vec::new() });
+                self.fresh.push(Fresh { needs, tasks: Vec::new(), list: Draft::default() });
                 self.fresh.len() - 1
             }
         };
         let fresh = &mut self.fresh[number];
         fresh.tasks.push((key, tries));
-        fresh.lines.push(line);
-        if fresh.lines.len() < MOST_LINES {
+        fresh.list.add(line);
+        if !fresh.list.is_full() {
             return Ok(());
         }
         let full = self.fresh.swap_remove(number);
@@ -198,7 +198,7 @@ impl<'a> Far<'a> {
                 self.posts.len() - 1
             }
         };
-        let first = self.posts[number].list(fresh.tasks.iter().map(|(key, _)| *key), &fresh.lines)?;
+        let first = self.posts[number].list(fresh.tasks.iter().map(|(key, _)| *key), &fresh.list)?;
         for ((key, tries), task) in fresh.tasks.into_iter().zip(first..) {
             self.handed.insert(key, Handed { post: number as u32, task: task as u32, tries });
         }
@@ -338,7 +338,7 @@ impl<'a> Far<'a> {
         let line = post.line(task)?;
         post.over(task);
         let needs = needs(&post.needs);
-        self.collect(needs, key, tries, line)
+        self.collect(needs, key, tries, &line)
     }
 
     /// Asks the scheduler at most once a minute which jobs exist, and reads its answer when there is one.
@@ -368,11 +368,16 @@ impl<'a> Far<'a> {
         let (answers, inbox) = channel();
         let (scheduler, post) = (Arc::clone(&self.scheduler), &self.posts[number]);
         let (queue, jobs) = (post.queue.name().to_owned(), post.jobs());
-        std::thread::spawn(move || {
+        let asking = std::thread::Builder::new().spawn(move || {
             // Nobody waits for it when the run has ended.
             let _ = answers.send((number, scheduler.alive(&queue, &jobs)));
         });
-        self.asked = Some(inbox);
+        match asking {
+            Ok(_) => self.asked = Some(inbox),
+            Err(error) => heard.push(Heard::Word(format!(
+                "the scheduler cannot be asked which jobs exist ({error}); it is asked again in a minute"
+            ))),
+        }
         Ok(())
     }
 
@@ -405,6 +410,10 @@ impl<'a> Far<'a> {
         self.reported.remove(key);
         if let Some(handed) = self.handed.remove(key) {
             self.posts[handed.post as usize].over(handed.task as usize);
+        }
+        // A map does not become smaller by itself, and what is gathered next needs the room.
+        if self.handed.is_empty() {
+            self.handed = HashMap::default();
         }
     }
 

@@ -39,7 +39,7 @@ impl Loop<'_, '_> {
             let Some(key) = self.board.key_of(node) else {
                 panic!("BUG: a task was ready before its inputs were known")
             };
-            self.far_nodes.insert(key, node);
+            self.board.hand_over(node);
             if self.far.as_ref().is_some_and(|far| far.has(&key)) {
                 continue;
             }
@@ -110,18 +110,21 @@ impl Loop<'_, '_> {
     }
 
     fn hears(&mut self, heard: Heard) {
-        let stage_and_row = |node: NodeId, run: &Self| (run.board.stage(node), run.board.row(node));
+        let stage_and_row = |key: &Key, run: &Self| {
+            let node = run.board.away(key)?;
+            Some((run.workflow.stages[run.board.stage(node)].name.as_str(), run.board.row(node)))
+        };
         match heard {
             Heard::Word(text) => self.watch.event(Event::Word { text: &text }),
-            Heard::Begun(key) | Heard::Stands(key, _) if !self.far_nodes.contains_key(&key) => {}
             Heard::Begun(key) => {
-                let (stage, row) = stage_and_row(self.far_nodes[&key], self);
-                self.watch.event(Event::Started { stage: &self.workflow.stages[stage].name, row });
+                if let Some((stage, row)) = stage_and_row(&key, self) {
+                    self.watch.event(Event::Started { stage, row });
+                }
             }
             Heard::Stands(key, progress) => {
-                let (stage, row) = stage_and_row(self.far_nodes[&key], self);
-                let stage = &self.workflow.stages[stage].name;
-                self.watch.event(Event::Progress { stage, row, progress: &progress });
+                if let Some((stage, row)) = stage_and_row(&key, self) {
+                    self.watch.event(Event::Progress { stage, row, progress: &progress });
+                }
             }
             Heard::Done(key, seconds) => match self.store.find(&key) {
                 Ok(Some(record)) => {
@@ -136,14 +139,14 @@ impl Loop<'_, '_> {
             },
             Heard::Failed(key, why) => self.is_over(&key, Err(StageError::new(why).into())),
             Heard::Open(key) => {
-                let node = self.far_nodes.remove(&key);
                 self.far.iter_mut().for_each(|far| far.forget(&key));
-                match (node, self.store.claim(&key)) {
-                    (None, _) => {}
-                    (Some(node), Ok(Claim::Theirs(waiting))) => self.elsewhere.put(node, waiting),
-                    (Some(node), Ok(Claim::Mine(_) | Claim::Done(_))) => self.settle(node),
-                    (_, Err(error)) => {
-                        self.fatal.get_or_insert(error);
+                while let Some(node) = self.board.take_back(&key) {
+                    match self.store.claim(&key) {
+                        Ok(Claim::Theirs(waiting)) => self.elsewhere.put(node, waiting),
+                        Ok(Claim::Mine(_) | Claim::Done(_)) => self.settle(node),
+                        Err(error) => {
+                            self.fatal.get_or_insert(error);
+                        }
                     }
                 }
             }
@@ -159,8 +162,12 @@ impl Loop<'_, '_> {
     /// A task that was handed over has ended.
     fn is_over(&mut self, key: &Key, result: Result<task::Outcome, Failure>) {
         self.far.iter_mut().for_each(|far| far.forget(key));
-        if let Some(node) = self.far_nodes.remove(key) {
+        if let Some(node) = self.board.take_back(key) {
             self.take(Answer { node, result });
+        }
+        // What others with the same key wait for is known now.
+        while let Some(node) = self.board.take_back(key) {
+            self.settle(node);
         }
     }
 

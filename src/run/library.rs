@@ -54,7 +54,7 @@ impl Library for Shelf<'_> {
     fn outcome(&self, task: &Task) -> Option<Outcome> {
         let node = self.board.find(task)?;
         match self.board.state(node) {
-            TaskState::Done { content, .. } => Some(Outcome::Done(*content)),
+            TaskState::Done { content, .. } => Some(Outcome::Done(content)),
             TaskState::Failed(_) | TaskState::Skipped => {
                 Some(Outcome::Failed(self.board.cause(node).map_or_else(String::new, |(_, why)| why.to_owned())))
             }

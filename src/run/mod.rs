@@ -51,7 +51,7 @@ use crate::exec::{Threads, with_threads};
 use crate::plan::Workflow;
 use crate::stage::{Failure, Progress, StageError};
 use crate::store::{Store, StoreError};
-use board::{Board, ByKey, NodeId};
+use board::{Board, NodeId};
 use campaigns::RowSeconds;
 use elsewhere::Elsewhere;
 use far::Far;
@@ -88,7 +88,6 @@ pub fn run(workflow: &Workflow, store: &Store, settings: &RunSettings, watch: &d
             elsewhere: Elsewhere::default(),
             licences: Licences::default(),
             far,
-            far_nodes: ByKey::default(),
             past: OnceCell::new(),
             row_seconds: HashMap::new(),
             most_seconds: HashMap::new(),
@@ -170,7 +169,6 @@ struct Loop<'pool, 'env> {
     licences: Licences,
     /// Tasks that workers on other machines compute.
     far: Option<Far<'env>>,
-    far_nodes: ByKey,
     /// Earlier runs, read when something is to be started: long tasks go first, a worker learns how long one may take.
     past: OnceCell<Option<Past<'env>>>,
     /// By stage: seconds that the tasks of each row took in earlier runs.
@@ -186,7 +184,7 @@ struct Loop<'pool, 'env> {
     untold: Vec<usize>,
     /// The store cannot be read: nothing more is started.
     fatal: Option<StoreError>,
-    /// Tasks that were run, and why those failed that did: what is decided anew knows them.
+    /// Tasks that were run before all was decided anew, and why those failed that did; the board knows the later ones.
     ended: HashMap<Key, Option<String>>,
     /// Results that could not be read.
     lost: HashSet<ContentHash>,
@@ -319,9 +317,10 @@ impl Loop<'_, '_> {
         let mut open = vec![first];
         while let Some(node) = open.pop() {
             let Some(key) = self.board.key(node) else { continue };
-            let ended = self.ended.get(&key);
+            let before = self.ended.get(&key).map(|why| why.as_deref());
+            let ended = before.or_else(|| self.board.ended(&key)).map(|why| why.map(str::to_owned));
             if let Some(Some(why)) = ended {
-                self.board.failed(node, why);
+                self.board.failed(node, &why);
                 continue;
             }
             if ended.is_none() && self.forced(node) {
@@ -352,7 +351,7 @@ impl Loop<'_, '_> {
         self.rank();
         while self.running < self.pool.count() {
             let Some(node) = self.elsewhere.next(&mut self.ready) else { return };
-            if !self.licences.admits(node, self.board.task(node).at_once.as_ref()) {
+            if !self.licences.admits(node, self.board.task(node).at_once.as_deref()) {
                 continue;
             }
             let again = self.forced(node);
@@ -389,8 +388,8 @@ impl Loop<'_, '_> {
         self.ready = Queue::default();
         self.elsewhere.clear();
         self.licences.clear();
-        self.far_nodes.clear();
-        self.board = Board::default();
+        let board = std::mem::take(&mut self.board);
+        self.ended.extend(board.all_ended());
         self.stages = Stages::new(self.workflow, &self.settings.targets, false);
     }
 
@@ -417,7 +416,7 @@ impl Loop<'_, '_> {
         if self.board.is_running(node) {
             self.running -= 1;
         }
-        let free = self.licences.release(node, self.board.task(node).at_once.as_ref());
+        let free = self.licences.release(node, self.board.task(node).at_once.as_deref());
         free.into_iter().for_each(|node| self.ready.put(node));
         let failure = match answer.result {
             Ok(task::Outcome::Elsewhere(waiting)) => {
@@ -429,9 +428,6 @@ impl Loop<'_, '_> {
                 self.board.took(node, finished.seconds);
                 if let Some(summary) = &finished.summary {
                     self.streamed.put(finished.content, summary);
-                }
-                if let Some(key) = self.board.key_of(node).filter(|_| !finished.shared) {
-                    self.ended.insert(key, None);
                 }
                 for next in self.board.done(node, finished.content, finished.shared) {
                     self.settle(next);
@@ -445,7 +441,6 @@ impl Loop<'_, '_> {
             Err(Failure::Failed(error)) => {
                 self.failed = true;
                 let text = stages::in_words(error);
-                self.ended.extend(self.board.key_of(node).map(|key| (key, Some(text.clone()))));
                 self.board.failed(node, &text);
                 Some(text)
             }

@@ -101,6 +101,7 @@ impl RunMemo {
         let Some((objects, summaries)) = objects(store, streamed, board, gather, &runs) else { return };
         let mut data: Vec<u8> = rows.words().iter().flat_map(|word| word.to_le_bytes()).collect();
         data.extend(summaries.to_bytes());
+        drop(summaries);
         // Without a memo the next campaign looks at every task, and gets the same result.
         let note = Note { files: files.clone(), factors: rows.factors().to_vec() };
         let note = serde_json::to_string(&note).unwrap_or_default();

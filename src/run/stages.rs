@@ -1,6 +1,6 @@
 //! Where each stage of the workflow stands.
 
-use super::board::{Board, ByKey, NodeId, TaskCount, TaskState};
+use super::board::{Board, NodeId, TaskCount, TaskState};
 use super::files::Files;
 use super::library::{Lookups, Shelf};
 use super::memo::{self, Base};
@@ -128,10 +128,9 @@ impl Stages {
 
     /// Wanted stages that can be asked for their next step.
     pub(super) fn due(&self, workflow: &Workflow, board: &Board) -> Vec<usize> {
-        let settled = |node: &NodeId| !matches!(board.state(*node), TaskState::Open | TaskState::Running);
         let due = |index: &usize| match &self.entries[*index].state {
             State::Waiting => workflow.stages[*index].inputs.iter().all(|&(_, input)| self.content(input).is_some()),
-            State::Asking(nodes) => nodes.iter().all(settled),
+            State::Asking(nodes) => nodes.iter().all(|&node| board.is_settled(node)),
             State::Finishing(_) | State::Broken(_) | State::Ended(_) => false,
         };
         (0..self.entries.len()).filter(|&index| self.entries[index].wanted).filter(due).collect()
@@ -189,7 +188,7 @@ impl Stages {
             return Err(Box::new(lost));
         }
         let (mut new, mut stands) = (Vec::new(), None);
-        let mut put = |task| board.put(&Arc::new(task), index, &mut new);
+        let mut put = |task| board.put(Arc::new(task), index, &mut new);
         let state = match step {
             Ok(Step::Finish(task)) => State::Finishing(put(task)),
             Ok(Step::Ask(tasks, note)) => {
@@ -198,6 +197,7 @@ impl Stages {
             }
             Err(error) => State::Broken(in_words(error)),
         };
+        board.forget_addresses();
         let entry = &mut self.entries[index];
         match &state {
             State::Finishing(node) => entry.asked.push(*node),
@@ -298,7 +298,7 @@ impl Stages {
                 })
             }
             State::Finishing(node) => match board.state(*node) {
-                TaskState::Done { content, .. } => Some(StageStatus::Done(*content)),
+                TaskState::Done { content, .. } => Some(StageStatus::Done(content)),
                 TaskState::Failed(_) | TaskState::Skipped => Some(StageStatus::Failed(cause(board, *node))),
                 TaskState::Open | TaskState::Running => None,
             },
@@ -331,8 +331,6 @@ impl Stages {
     /// The reports of all wanted stages. A task that several stages share counts for the first of them in the workflow, so
     /// that counts do not depend on timing.
     pub(super) fn reports(&self, workflow: &Workflow, board: &Board) -> Vec<StageReport> {
-        let recalled = self.entries.iter().any(|entry| entry.remembered.is_some());
-        let by_key = if recalled { board.by_key() } else { ByKey::default() };
         let mut keys: HashSet<Key, BuildHasherDefault<FirstBytes>> = HashSet::default();
         let mut nodes = vec![false; board.len()];
         let wanted = (0..self.entries.len()).filter(|&index| self.entries[index].wanted);
@@ -342,8 +340,8 @@ impl Stages {
                 let mut tasks = TaskCount::default();
                 for object in entry.remembered.iter().flat_map(|known| &known.objects) {
                     if keys.insert(object.key) {
-                        let node = by_key.get(&object.key).inspect(|&&node| nodes[node] = true);
-                        tasks = tasks + node.map_or(TaskCount::CACHED, |&node| board.count_of(node));
+                        let node = board.of_key(&object.key).last().inspect(|&node| nodes[node] = true);
+                        tasks = tasks + node.map_or(TaskCount::CACHED, |node| board.count_of(node));
                     }
                 }
                 for node in board.closure(&entry.asked) {

@@ -6,7 +6,7 @@
 use super::{panicked, stages, task};
 use crate::artifact::Artifact;
 use crate::cluster::lists::Lists;
-use crate::cluster::slices::Slices;
+use crate::cluster::slices::{Patience, Slices};
 use crate::cluster::{Cause, Line, Message};
 use crate::exec::{Share, Threads, with_threads};
 use crate::stage::{Failure, Progress};
@@ -51,8 +51,6 @@ pub struct Worked {
 const LOOK_EACH: Duration = Duration::from_millis(200);
 /// Pause between two reports of where a task stands.
 const STANDS_EACH: Duration = Duration::from_secs(5);
-/// Tasks in a row that others had begun before a worker looks which are.
-const PATIENCE: usize = 8;
 /// Part of a worker's life that is left for ending it, and the most that is.
 const ENDING: (f64, f64) = (0.05, 60.0);
 /// A task that begins within this first part of a worker's life counts as having had all of it.
@@ -94,8 +92,7 @@ impl Worker {
                 running: HashMap::new(),
                 lasted: HashMap::new(),
                 begun: 0,
-                missed: 0,
-                patience: PATIENCE,
+                patience: Patience::default(),
                 worked: Worked::default(),
             }
             .go(&inbox)
@@ -138,10 +135,7 @@ struct Loop<'pool, 'env> {
     /// By stage: the longest duration of a task so far, seconds.
     lasted: HashMap<String, f64>,
     begun: usize,
-    /// Tasks in a row that others had begun.
-    missed: usize,
-    /// After this many, the worker lists the tasks that are begun instead of trying a hundred thousand one by one.
-    patience: usize,
+    patience: Patience,
     worked: Worked,
 }
 
@@ -189,15 +183,13 @@ impl Loop<'_, '_> {
             self.slices.add(tasks);
         }
         // Workers of a later round skip the tasks that are begun.
-        if first < self.lists.tasks() { self.forget_begun() } else { Ok(()) }
+        if first < self.lists.tasks() { self.forget_begun().map(drop) } else { Ok(()) }
     }
 
-    /// Forgets what others have begun. A shared disk may show that late, so the next look comes after twice as many misses.
-    fn forget_begun(&mut self) -> Result<(), String> {
+    /// Forgets what others have begun; returns how many tasks that are.
+    fn forget_begun(&mut self) -> Result<usize, String> {
         let begun = self.queue.begun().map_err(|error| error.to_string())?;
-        self.slices.forget(&begun.into_iter().collect());
-        (self.missed, self.patience) = (0, 2 * self.patience);
-        Ok(())
+        Ok(self.slices.forget(&begun.into_iter().collect()))
     }
 
     /// Seconds that are left for tasks.
@@ -220,13 +212,13 @@ impl Loop<'_, '_> {
                 return Ok(());
             }
             if !self.queue.begin(task).map_err(|error| error.to_string())? {
-                self.missed += 1;
-                if self.missed >= self.patience {
-                    self.forget_begun()?;
+                if self.patience.miss() {
+                    let found = self.forget_begun()?;
+                    self.patience.looked(found);
                 }
                 continue;
             }
-            (self.missed, self.patience) = (0, PATIENCE);
+            self.patience = Patience::default();
             tell(self.report, &Message::Begun { task }).map_err(|error| error.to_string())?;
             self.begun += 1;
             self.running.insert(task, (self.started.elapsed().as_secs_f64(), line.stage.clone()));

@@ -173,78 +173,143 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
         .find(|(name, _)| name == "cached")
         .map(|(_, cached)| RunSummaries::of_artifact(cached))
         .transpose()?;
-    let results = all_responses(job, cached.as_ref())?;
     let mut table = Table { about: "one row per run".to_owned(), columns: Vec::new() };
     for name in &params.factors {
         let column = design.column(name).ok_or_else(|| StageError::new(format!("the design lost factor `{name}`")))?;
         table.columns.push(column.clone());
     }
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _, _) in results.iter().flat_map(|found| &found.responses) {
-        if !names.contains(name) {
-            names.push(name);
-        }
-    }
-    for name in names {
-        table = response_column(table, name, params.units.get(name), &results)?;
-    }
-    let each = |pick: fn(&Outcome<'_>) -> String| results.iter().map(pick).collect::<Vec<_>>();
-    let checked = results.iter().any(|found| found.validity.is_some()).then(|| {
-        let validity = each(|found| found.validity.as_deref().unwrap_or_default().to_owned());
-        (validity, each(|found| found.cautions.as_ref().to_owned()))
-    });
-    let verdicts = Verdicts { failures: each(|found| found.failure.to_owned()), checked };
-    Ok(Results::of(table, verdicts).to_artifact())
+    let mut found = Gathered::default();
+    each_outcome(job, cached.as_ref(), &mut |outcome| found.add(outcome, &params.units))?;
+    Ok(found.results(table).to_artifact())
 }
 
-/// The summary of every run, loaded or cached, in the order of the rows.
-fn all_responses<'a>(job: &'a Job, cached: Option<&'a (&[i64], RunSummaries)>) -> Result<Vec<Outcome<'a>>, StageError> {
+/// Calls `add` with the outcome of every run, loaded or cached, in the order of the rows.
+fn each_outcome(
+    job: &Job,
+    cached: Option<&(&[i64], RunSummaries)>,
+    add: &mut dyn FnMut(Outcome<'_>) -> Result<(), StageError>,
+) -> Result<(), StageError> {
     let (indices, summaries) = cached.map_or((&[][..], None), |(indices, summaries)| (*indices, Some(summaries)));
     let mut old = indices.iter().enumerate().peekable();
     let mut new = job.inputs.iter().filter(|(name, _)| name == RUN);
-    let mut all = Vec::with_capacity(indices.len() + job.inputs.len());
     // The first input of a gathering task is the design.
     for index in 1.. {
         match old.next_if(|(_, cached)| **cached == index) {
             Some((run, _)) => {
                 let summary = summaries.and_then(|summaries| summaries.get(run));
-                all.push(summary.ok_or_else(|| StageError::new("a cached run has no summary"))?.responses());
+                add(summary.ok_or_else(|| StageError::new("a cached run has no summary"))?.responses())?;
             }
             None => match new.next() {
-                Some((_, run)) => all.push(Run::outcome(run)?),
+                Some((_, run)) => add(Run::outcome(run)?)?,
                 None => break,
             },
         }
     }
-    Ok(all)
+    Ok(())
 }
 
-fn response_column(
-    table: Table,
-    name: &str,
-    shown: Option<&String>,
-    results: &[Outcome<'_>],
-) -> Result<Table, StageError> {
-    let mut last = None;
-    let mut all = results.iter().flat_map(|found| &found.responses);
-    let own = all.find(|(n, _, _)| *n == name).map_or("", |(_, _, unit)| unit);
-    let unit = shown.map_or(own, String::as_str);
-    let mut values = Vec::with_capacity(results.len());
-    for Outcome { failure, responses, .. } in results {
-        let value = responses.iter().find(|(n, _, _)| *n == name);
-        values.push(match value {
-            Some((_, value, from)) if failure.is_empty() => {
-                // The unit is nearly always that of the previous row.
-                let (_, conversion) = match &last {
-                    Some((text, conversion)) if text == from => (*text, *conversion),
-                    _ => *last.insert((*from, conversion(name, from, unit)?)),
-                };
-                conversion.of(*value)
-            }
-            Some(_) | None => f64::NAN,
-        });
+/// The columns of a table of runs, which grow run by run.
+#[derive(Default)]
+struct Gathered {
+    rows: usize,
+    /// Whether a run was checked.
+    checked: bool,
+    failures: Texts,
+    validities: Texts,
+    cautions: Texts,
+    /// In the order of their first mention.
+    responses: Vec<ResponseColumn>,
+}
+
+/// A text for each run, up to the last run that has one.
+#[derive(Default)]
+struct Texts(Vec<String>);
+
+impl Texts {
+    /// Adds the text of a row.
+    fn add(&mut self, row: usize, text: &str) {
+        if !text.is_empty() {
+            self.0.resize(row, String::new());
+            self.0.push(text.to_owned());
+        }
     }
-    Ok(table.reals_column(name, unit, "", values))
+
+    /// The texts of all rows.
+    fn all(mut self, rows: usize) -> Vec<String> {
+        self.0.resize(rows, String::new());
+        self.0
+    }
+}
+
+/// A response of all runs so far.
+struct ResponseColumn {
+    name: String,
+    /// The unit that it is shown in.
+    unit: String,
+    /// The last unit that it came in, and the conversion of that one: it is nearly always the same.
+    last: Option<(String, Conversion)>,
+    values: Vec<f64>,
+}
+
+impl Gathered {
+    /// Adds a run. `units` are those in which responses are shown, where that is not the unit of the runs.
+    fn add(&mut self, outcome: Outcome<'_>, units: &BTreeMap<String, String>) -> Result<(), StageError> {
+        let Outcome { failure, validity, cautions, responses } = outcome;
+        let row = self.rows;
+        for (name, value, from) in responses {
+            let column = match self.responses.iter().position(|column| column.name == name) {
+                Some(number) => &mut self.responses[number],
+                None => {
+                    let unit = units.get(name).map_or(from, String::as_str);
+                    self.responses.push(ResponseColumn::new(name, unit, row));
+                    let last = self.responses.len() - 1;
+                    &mut self.responses[last]
+                }
+            };
+            // Of a response that a run names twice the first value counts.
+            if column.values.len() == row {
+                let value = if failure.is_empty() { column.shown(value, from)? } else { f64::NAN };
+                column.values.push(value);
+            }
+        }
+        self.responses.iter_mut().for_each(|column| column.values.resize(row + 1, f64::NAN));
+        self.checked |= validity.is_some();
+        self.failures.add(row, failure);
+        self.validities.add(row, &validity.unwrap_or_default());
+        self.cautions.add(row, &cautions);
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// The table behind the columns of the factors.
+    fn results(self, mut table: Table) -> Results {
+        for ResponseColumn { name, unit, values, .. } in self.responses {
+            table = table.reals_column(&name, &unit, "", values);
+        }
+        let checked = self.checked.then(|| (self.validities.all(self.rows), self.cautions.all(self.rows)));
+        Results::of(table, Verdicts { failures: self.failures.all(self.rows), checked })
+    }
+}
+
+impl ResponseColumn {
+    /// A column without values in the first `rows` rows.
+    fn new(name: &str, unit: &str, rows: usize) -> Self {
+        Self { name: name.to_owned(), unit: unit.to_owned(), last: None, values: vec![f64::NAN; rows] }
+    }
+
+    /// A value in the unit of the column.
+    fn shown(&mut self, value: f64, from: &str) -> Result<f64, StageError> {
+        let known = self.last.as_ref().filter(|(unit, _)| unit == from).map(|(_, conversion)| *conversion);
+        let conversion = match known {
+            Some(conversion) => conversion,
+            None => {
+                let found = conversion(&self.name, from, &self.unit)?;
+                self.last = Some((from.to_owned(), found));
+                found
+            }
+        };
+        Ok(conversion.of(value))
+    }
 }
 
 fn conversion(name: &str, from: &str, unit: &str) -> Result<Conversion, StageError> {

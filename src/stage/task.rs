@@ -30,7 +30,7 @@ pub struct Task {
     /// Seconds after which an external program is ended; not part of its key.
     pub time_limit: Option<f64>,
     /// Bound on how many tasks of its program run at once; not part of its key.
-    pub at_once: Option<AtOnce>,
+    pub at_once: Option<Arc<AtOnce>>,
     /// Those of its inputs whose summaries are cached, so that they need not be read; not part of its key.
     pub cached: Option<Arc<CachedRuns>>,
 }
@@ -96,6 +96,29 @@ pub enum Source {
     Content(ContentHash),
     /// The result of another task.
     Task(Arc<Task>),
+    /// The result of a task that the runner took out of here: it knows which.
+    Placed,
+}
+
+impl Source {
+    /// The task that makes it.
+    pub fn task(&self) -> Option<&Arc<Task>> {
+        match self {
+            Self::Task(task) => Some(task),
+            Self::Content(_) | Self::Placed => None,
+        }
+    }
+
+    /// Takes out the task that makes it.
+    pub fn take_task(&mut self) -> Option<Arc<Task>> {
+        match std::mem::replace(self, Self::Placed) {
+            Self::Task(task) => Some(task),
+            other => {
+                *self = other;
+                None
+            }
+        }
+    }
 }
 
 /// A file that a task reads: the content is in its key, the path is not.

@@ -172,6 +172,7 @@ fn finished(laboratory: &Laboratory, task: &Task) -> Result<Artifact, String> {
                 other => panic!("{other:?}"),
             },
             crate::stage::Source::Content(content) => (name.to_string(), laboratory.load(content).unwrap()),
+            crate::stage::Source::Placed => panic!("no runner took it"),
         })
         .collect();
     let (stop, say) = (std::sync::atomic::AtomicBool::new(false), |_: Progress| ());

@@ -47,6 +47,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Arc;
 use verdict::ReadText;
 
 /// Settings of a `command` stage.
@@ -239,7 +240,7 @@ impl Stage for Command {
             }
         }
         task.time_limit = self.time_limit.map(unit::Quantity::get);
-        task.at_once = self.at_once.map(|most| AtOnce { program: self.run[0].clone(), most });
+        task.at_once = self.at_once.map(|most| Arc::new(AtOnce { program: self.run[0].clone(), most }));
         Ok(task)
     }
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Names of the levels of categories, by factor.
 type Names = BTreeMap<String, Vec<String>>;
 
-/// As [`artifact`], with the rows of the `whole` table that were left out and the rules that they break.
+/// The artifact of a design, with the rows of the `whole` table that were left out and the rules that they break.
 pub(super) fn shortened(
     table: &DesignTable,
     report: &Report,
@@ -33,12 +33,8 @@ pub(super) fn shortened(
     Ok(Design { left_out: Some(left), ..stored(table, report, names)? }.to_artifact())
 }
 
-/// The storable form.
-pub(super) fn artifact(table: &DesignTable, report: &Report, names: &Names) -> Result<Artifact, StageError> {
-    Ok(stored(table, report, names)?.to_artifact())
-}
-
-fn stored(table: &DesignTable, report: &Report, names: &Names) -> Result<Design, StageError> {
+/// What is stored of a design.
+pub(super) fn stored(table: &DesignTable, report: &Report, names: &Names) -> Result<Design, StageError> {
     let design = design(table, names)?;
     Ok(Design { design, coded: coded(table), report: lines(table, report), left_out: None })
 }

@@ -1,6 +1,7 @@
 //! The journals as read so far.
 
 mod numbers;
+mod records;
 
 use super::record::{CONTENT, KEY, RECORD, from_version_1, pack, unpack};
 use super::{FOLDER, HEAD, MOST, Segments, is_name, read_head, writer_of};
@@ -11,6 +12,7 @@ use crate::store::lock::is_alive;
 use crate::store::mark::Mark;
 use crate::store::{Origin, Record, StoreError};
 use numbers::Numbers;
+use records::Records;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom};
@@ -31,7 +33,7 @@ const BLOCK: usize = RECORD << 13;
 /// The journals as read so far. Records stay as the bytes they are; each is checked when it is asked for.
 pub(in crate::store) struct Index {
     mark: Mark,
-    records: Vec<[u8; RECORD]>,
+    records: Records,
     /// The records from this number on have this origin.
     made: Vec<(usize, u32)>,
     origins: Vec<Arc<Origin>>,
@@ -74,7 +76,7 @@ impl Index {
     pub(in crate::store) fn new(mark: Mark, machine: &str) -> Self {
         Self {
             mark,
-            records: Vec::new(),
+            records: Records::default(),
             made: Vec::new(),
             origins: Vec::new(),
             by_key: Numbers::default(),
@@ -187,13 +189,9 @@ impl Index {
             };
             let filled = rest + count;
             let (whole, torn) = block[..filled].as_chunks::<RECORD>();
-            if self.records.capacity() - self.records.len() < whole.len() {
-                // An eighth at a time: doubling would leave up to half of the room unused.
-                self.records.reserve_exact(whole.len() + self.records.len() / 8);
-            }
             match seen.version {
-                1 => self.records.extend(whole.iter().map(from_version_1)),
-                _ => self.records.extend_from_slice(whole),
+                1 => whole.iter().for_each(|record| self.records.extend(&[from_version_1(record)])),
+                _ => self.records.extend(whole),
             }
             rest = torn.len();
             block.copy_within(filled - rest..filled, 0);
@@ -219,7 +217,7 @@ impl Index {
             self.origins.len() - 1
         }) as u32;
         let first = self.records.len();
-        self.records.push(pack(record));
+        self.records.extend(&[pack(record)]);
         self.note_origin(first, origin);
     }
 
@@ -267,7 +265,7 @@ impl Index {
     /// The record of this number, unless it is damaged.
     fn record(&self, number: usize) -> Option<Record> {
         let made = self.made.partition_point(|(from, _)| *from <= number) - 1;
-        unpack(&self.mark, &self.records[number], &self.origins[self.made[made].1 as usize])
+        unpack(&self.mark, self.records.get(number), &self.origins[self.made[made].1 as usize])
     }
 }
 

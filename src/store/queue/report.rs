@@ -11,7 +11,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Bytes of a report that are read at once.
-const MOST_NEWS: u64 = 1 << 22;
+const MOST_NEWS: u64 = 1 << 20;
+/// The longest output of a job that is read for its last line, bytes.
+const MOST_LOG: u64 = 1 << 22;
 /// Room that a report has from the start, so that it can say that the disk is full.
 const ROOM: u64 = 1 << 14;
 
@@ -92,7 +94,7 @@ impl Queue {
 
     /// The last line of what a job has printed, for the reader of an error.
     pub fn last_words(&self, log: &str) -> Option<String> {
-        let text = self.folder().ok()?.read(log, MOST_NEWS).ok()?;
+        let text = self.folder().ok()?.read(log, MOST_LOG).ok()?;
         let text = String::from_utf8_lossy(&text);
         text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(|line| line.chars().take(300).collect())
     }

@@ -153,9 +153,13 @@ impl Place {
             done
         };
         let mut done: Vec<(usize, Result<R, E>)> = std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-            let joined = threads.into_iter().map(|thread| thread.join());
-            joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+            // Where the system grants fewer threads, those that there are do it all, this one at the least.
+            let spawned = (1..threads).map_while(|_| std::thread::Builder::new().spawn_scoped(scope, work).ok());
+            let spawned: Vec<_> = spawned.collect();
+            let mut done = work();
+            let joined = spawned.into_iter().map(|thread| thread.join());
+            done.extend(joined.flat_map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))));
+            done
         });
         done.sort_unstable_by_key(|(index, _)| *index);
         done.into_iter().map(|(_, result)| result).collect()

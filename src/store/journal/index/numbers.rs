@@ -1,7 +1,8 @@
 //! Records by the first bytes of a hash.
 
+use super::records::Records;
 use crate::artifact::FirstBytes;
-use crate::store::journal::record::{RECORD, word};
+use crate::store::journal::record::word;
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
@@ -15,11 +16,11 @@ pub(super) struct Numbers {
 
 impl Numbers {
     /// Takes in the records that are new; their hashes begin at byte `place`.
-    pub(super) fn update(&mut self, records: &[[u8; RECORD]], place: usize) {
+    pub(super) fn update(&mut self, records: &Records, place: usize) {
         self.last.reserve(records.len() - self.before.len());
         for number in self.before.len()..records.len() {
             let number = number as u32;
-            let before = self.last.insert(word(&records[number as usize], place), number);
+            let before = self.last.insert(word(records.get(number as usize), place), number);
             self.before.push(before.unwrap_or(number));
         }
     }
