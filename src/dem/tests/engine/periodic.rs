@@ -71,7 +71,7 @@ fn between(x: [f64; 2], y: [f64; 2], edge: f64) -> f64 {
         let d = (x[k] - y[k]).abs() % edge;
         d.min(edge - d)
     });
-    a.hypot(b)
+    (a * a + b * b).sqrt()
 }
 
 fn engine(packed: &Packed, law: Interaction) -> Engine<D2> {
