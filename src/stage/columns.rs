@@ -232,14 +232,14 @@ fn labels(values: &Values) -> Vec<String> {
 }
 
 /// The first cell that is not a number, with its row from 0. One such cell makes the reader return the whole column as text.
-pub(super) fn first_word(values: &Values) -> Option<(usize, &str)> {
+fn first_word(values: &Values) -> Option<(usize, &str)> {
     let Values::Texts(texts) = values else { return None };
     let is_word = |text: &str| !text.is_empty() && !text.parse().is_ok_and(f64::is_finite);
     texts.iter().map(String::as_str).enumerate().find(|(_, text)| is_word(text))
 }
 
 /// A factor whose levels are numbers has a word in a table.
-pub(super) fn not_a_level(factor: &str, row: usize, word: &str) -> StageError {
+fn not_a_level(factor: &str, row: usize, word: &str) -> StageError {
     let message = format!("row {}: `{factor}` is `{word}`, and the levels of [factor.{factor}] are numbers", row + 1);
     StageError::new(message).hint(format!("correct the cell, or name the levels: `levels = [\"{word}\", …]`"))
 }

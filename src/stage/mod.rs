@@ -371,6 +371,13 @@ impl StageError {
         self.hint = Some(hint.into());
         self
     }
+
+    /// Adds another thing to do.
+    #[must_use]
+    pub fn or(mut self, other: &str) -> Self {
+        self.hint = Some(self.hint.map_or_else(|| other.to_owned(), |hint| format!("{hint}; {other}")));
+        self
+    }
 }
 
 impl From<Unread> for StageError {
