@@ -76,7 +76,9 @@ impl Show {
                 StageStatus::Done(_) => tables.join(", "),
                 status => format!("no result yet ({})", status.word()),
             };
-            out!("{:width$}  {:16}  {what}", stage.name, stage.kind);
+            let title = workflow.position(&stage.name).and_then(|index| workflow.stages[index].title.as_deref());
+            let title = title.map_or_else(String::new, |title| format!("  ({title})"));
+            out!("{:width$}  {:16}  {what}{title}", stage.name, stage.kind);
         }
         Ok(Exit::Done)
     }

@@ -26,8 +26,8 @@ pub(super) fn section(paper: &Paper, index: usize, members: &[usize], glyphs: &m
     let found = warnings(part);
     html! {
         section.stage id={ "stage-" (part.name) } aria-labelledby=(head) {
-            h2 id=(head) { (part.words()) " " span.kind { (part.kind) } }
-            p.about { (capital(&part.about)) "." }
+            h2 id=(head) { (part.words()) " " span.kind title={ "kind = \"" (part.kind) "\", [stage." (part.name) "]" } { (part.kind_in_words()) } }
+            p.about { (capital(&part.about)) "." @if part.title.is_some() { " Stage " code { (part.name) } "." } }
             @match &part.state {
                 State::Done { .. } => (facts(paper, part)),
                 State::Missing | State::Broken(_) => (missing(paper, part)),
@@ -62,7 +62,7 @@ fn facts(paper: &Paper, part: &Part) -> Markup {
                     @for (i, input) in inputs(part).into_iter().enumerate() {
                         @if i > 0 { ", " }
                         @let maker = &paper.parts[input];
-                        a href={ "#stage-" (maker.name) } { (maker.name) }
+                        a href={ "#stage-" (maker.name) } { (maker.words()) }
                     }
                 } }
             }
@@ -130,7 +130,13 @@ fn names(tables: &[&&(String, &Table)]) -> String {
 }
 
 fn artifact_about(name: &str, table: &Table) -> Markup {
-    html! { b { (name.replace('_', " ")) } @if !table.about.is_empty() { " " (table.about) } }
+    let name = name.replace('_', " ");
+    // "quality: quality of the specimen" says a word twice.
+    let about = match table.about.strip_prefix(&name) {
+        Some(rest) if rest.starts_with([' ', ',', ';']) => rest.trim_start(),
+        _ => &table.about,
+    };
+    html! { b { (name) } @if !about.is_empty() { " " (about) } }
 }
 
 /// Whether a `table` stage prints this table of that stage, whole.

@@ -274,7 +274,10 @@ pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageErro
 pub(super) fn check_names(context: &Context, factors: &[String], responses: &[String]) -> Vec<Complaint> {
     let unknown = |name: &String| {
         let known = known_are(context.responses.keys(), "response");
-        Complaint::new("responses", format!("there is no [response.{name}]")).missing(Named::Response, name).hint(known)
+        Complaint::new("responses", format!("there is no [response.{name}]"))
+            .missing(Named::Response, name)
+            .among(context.responses.keys())
+            .hint(known)
     };
     let factors = factors.iter().flat_map(|name| super::derived::check(name, context));
     factors.chain(responses.iter().filter(|name| !context.responses.contains_key(*name)).map(unknown)).collect()
