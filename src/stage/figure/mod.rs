@@ -340,7 +340,8 @@ impl Kind for Figure {
     /// below a picture use the declared symbols.
     /// 18: overlays keep their own units; lines are straight on logarithmic axes; the mean of curves ends where the first does;
     /// bands and bars are named; powers are raised in plain words.
-    /// 19: boxes say how many values they hold and what their whiskers are; names of columns keep their letters in titles.
+    /// 19: boxes say how many values they hold and what their whiskers are; names of columns keep their letters in titles; points
+    /// on an axis are drawn whole.
     const WORKS: &'static [Work] = &[Work { name: "figure", version: 19, run: draw }];
 }
 

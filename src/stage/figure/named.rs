@@ -9,6 +9,9 @@ impl Figure {
     pub(super) fn check_named(&self, key: &String, context: &Context) -> Option<Complaint> {
         let stages = [self.of.list(), self.compare.list()].concat();
         let columns = [&self.x, &self.y, &self.value, &self.by].into_iter().flatten();
+        if key == "overlay" && self.overlay.is_some() {
+            return None;
+        }
         let known: Vec<&String> =
             context.responses.keys().chain(context.factors.keys()).chain(columns).chain(&stages).collect();
         let message = format!("`{key}` is no response, factor, column or stage of this figure");
