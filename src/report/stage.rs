@@ -9,6 +9,7 @@ use super::warning::warnings;
 use super::{compared, symbol};
 use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::stage::calibrate::parameters_in_words;
+use crate::stage::data::Data;
 use crate::stage::figure::Figure as Picture;
 use crate::stage::table::Table as PrintedTable;
 use crate::stage::{Kind, artifact_kind};
@@ -103,7 +104,9 @@ fn own(paper: &Paper, index: usize, members: &[usize]) -> Markup {
         |name: &str| name == main && !members.iter().any(|&m| prints_some(&paper.parts[m], index, name, main));
     let sheet = |name: &str, table| {
         let command = paper.command("show", &format!("{} --table {name}", part.name));
-        let about = artifact_about(name, table);
+        // What a laboratory measured was no run of a simulator.
+        let called = if part.kind == Data::NAME && name == main { "rows" } else { name };
+        let about = artifact_about(called, table);
         Sheet::new(table, &paper.context, about, command).markup()
     };
     let closed: Vec<_> = rest.iter().filter(|(name, _)| !is_open(name)).collect();
@@ -136,7 +139,8 @@ fn artifact_about(name: &str, table: &Table) -> Markup {
         Some(rest) if rest.starts_with([' ', ',', ';']) => rest.trim_start(),
         _ => &table.about,
     };
-    html! { b { (name) } @if !about.is_empty() { " " (about) } }
+    let gap = if about.is_empty() || about.starts_with([',', ';']) { "" } else { " " };
+    html! { b { (name) } (gap) (about) }
 }
 
 /// Whether a `table` stage prints this table of that stage, whole.

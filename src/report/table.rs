@@ -175,7 +175,7 @@ impl<'a> Sheet<'a> {
                 let word = words.get(row).map_or("", String::as_str);
                 let markup = self.words(shown, word);
                 let full = markup.is_some().then_some(word);
-                let markup = markup.unwrap_or_else(|| html! { (word) });
+                let markup = markup.unwrap_or_else(|| coded(word));
                 let class = if word.starts_with("differs") { "t far" } else { "t" };
                 if is_name {
                     html! { th.t scope="row" data-v=[full] { (markup) } }
@@ -233,6 +233,15 @@ const FIELD: [(&str, &str); 22] = [
     ("low", "lower limit"),
     ("high", "upper limit"),
 ];
+
+/// A sentence with its keys and values as code.
+fn coded(text: &str) -> Markup {
+    let parts: Vec<&str> = text.split('`').collect();
+    if parts.len() % 2 == 0 {
+        return html! { (text) };
+    }
+    html! { @for (i, part) in parts.iter().enumerate() { @if i % 2 == 1 { code { (part) } } @else { (part) } } }
+}
 
 /// A column with how it is shown.
 struct Shown<'a> {
