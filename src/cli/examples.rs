@@ -202,7 +202,7 @@ mod tests {
             assert!(!lines.is_empty(), "`{name}`: {help}");
             assert!(words(lines[0]).starts_with(&call), "{}", lines[0]);
             for line in lines {
-                let read = Arguments::try_parse_from(&words(line));
+                let read = Arguments::try_parse_from(words(line));
                 assert!(read.is_ok(), "{line}: {}", read.err().map_or_else(String::new, |e| e.to_string()));
             }
         }

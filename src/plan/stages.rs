@@ -175,7 +175,7 @@ fn is_lost(check: &Check<'_>, missing: Option<&Missing>) -> bool {
 /// A complaint as a fault without its location.
 fn fault_of(complaint: Complaint) -> Fault {
     let meant = complaint.missing.as_ref().and_then(|missing| {
-        nearest(&missing.name, complaint.among.iter().map(String::as_str)).map(|near| format!("did you mean `{near}`?"))
+        nearest(&missing.name, missing.among.iter().map(String::as_str)).map(|near| format!("did you mean `{near}`?"))
     });
     Fault { hint: complaint.hint, missing: complaint.missing, label: meant, ..Fault::new(complaint.message) }
 }

@@ -279,6 +279,8 @@ pub struct Missing {
     pub what: Named,
     /// The name.
     pub name: String,
+    /// Names one of which may have been meant.
+    pub among: Vec<String>,
 }
 
 impl Missing {
@@ -316,8 +318,6 @@ pub struct Complaint {
     pub missing: Option<Box<Missing>>,
     /// What was found and what was expected.
     pub message: String,
-    /// Names one of which may have been meant.
-    pub among: Vec<String>,
     /// What to do.
     pub hint: Option<String>,
 }
@@ -326,20 +326,22 @@ impl Complaint {
     /// A complaint about the value at `path` (keys separated by dots).
     pub fn new(path: &str, message: impl Into<String>) -> Self {
         let path = path.split('.').filter(|part| !part.is_empty()).map(str::to_owned).collect();
-        Self { path, material: None, missing: None, message: message.into(), among: Vec::new(), hint: None }
+        Self { path, material: None, missing: None, message: message.into(), hint: None }
     }
 
     /// Says what is not there.
     #[must_use]
     pub fn missing(mut self, what: Named, name: &str) -> Self {
-        self.missing = Some(Box::new(Missing { what, name: name.to_owned() }));
+        self.missing = Some(Box::new(Missing { what, name: name.to_owned(), among: Vec::new() }));
         self
     }
 
     /// Adds names one of which may have been meant by the one that is not there.
     #[must_use]
     pub fn among<'a>(mut self, names: impl IntoIterator<Item = &'a String>) -> Self {
-        self.among = names.into_iter().cloned().collect();
+        if let Some(missing) = &mut self.missing {
+            missing.among = names.into_iter().cloned().collect();
+        }
         self
     }
 
