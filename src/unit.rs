@@ -11,6 +11,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 mod convert;
+mod near;
 mod power;
 mod read;
 
@@ -114,9 +115,12 @@ pub enum UnitError {
     /// Powers whose product no number holds.
     #[error("`{0}` is too large or too small a unit")]
     Extreme(String),
-    /// A symbol that is not known.
-    #[error("`{0}` is not a unit that flow knows; known are {1}, with the prefixes G M k c m µ n where usual")]
+    /// A symbol that is not known, and the one that was meant or all that are.
+    #[error("`{0}` is not a unit that flow knows; {1}")]
     Unknown(String, String),
+    /// A decimal comma.
+    #[error("`{0}` has a decimal comma; write \"{1}\"")]
+    Comma(String, String),
     /// Two units of different kinds of quantity.
     #[error("the two units measure different quantities")]
     Differ,
@@ -197,8 +201,15 @@ fn symbol_unit(symbol: &str) -> Option<Unit> {
     })
 }
 
-fn known_symbols() -> String {
-    SYMBOLS.iter().map(|s| s.0).collect::<Vec<_>>().join(", ")
+/// What to write instead of a symbol that is not known.
+fn instead_of(symbol: &str) -> String {
+    near::meant(symbol).map_or_else(
+        || {
+            let known = SYMBOLS.iter().map(|s| s.0).collect::<Vec<_>>().join(", ");
+            format!("known are {known}, with the prefixes G M k c m µ n where usual")
+        },
+        |meant| format!("did you mean `{meant}`?"),
+    )
 }
 
 /// A kind of physical quantity.
@@ -270,6 +281,9 @@ fn si(text: &str, value: f64, unit: Unit) -> Result<f64, UnitError> {
 
 fn finite<'t>(text: &'t str, example: &'static str) -> Result<(f64, &'t str), UnitError> {
     let (value, rest) = split_number(text).ok_or_else(|| UnitError::NoNumber(text.to_owned(), example))?;
+    if let Some(meant) = near::without_comma(text) {
+        return Err(UnitError::Comma(text.to_owned(), meant));
+    }
     if value.is_finite() { Ok((value, rest)) } else { Err(UnitError::NotFinite(text.to_owned())) }
 }
 

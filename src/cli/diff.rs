@@ -7,7 +7,10 @@ use super::common::{Campaign, Common, decided, provenance, system};
 use crate::artifact::{Artifact, ContentHash, Table, Values};
 use crate::report::quoted;
 use crate::run::StageStatus;
+use crate::stage::Context;
+use crate::stage::units::presented;
 use crate::store::{self, Store};
+use crate::unit::Conversion;
 use clap::Args;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -178,6 +181,9 @@ fn results(a: Option<&Side>, b: Option<&Side>, store: &Store) -> Result<Vec<Stri
 }
 
 fn compare(a: &Artifact, b: &Artifact) -> Vec<String> {
+    // A recorded run does not say what its workflow declared, so both sides are in the units of the field.
+    let field = Context::default();
+    let (a, b) = (&presented(a, &field), &presented(b, &field));
     let mut lines = Vec::new();
     for (name, old) in a.tables() {
         match b.table(&name) {
@@ -202,16 +208,25 @@ fn compare_tables(name: &str, a: &Table, b: &Table) -> Vec<String> {
             continue;
         };
         match (&old.values, &new.values) {
-            (old, new) if old == new => {}
-            (Values::Reals(x), Values::Reals(y)) => lines.push(format!("{name}.{}: {}", old.name, largest(x, y))),
+            (values, others) if values == others && old.unit == new.unit => {}
+            (Values::Reals(x), Values::Reals(y)) => {
+                // The same number of kilopascals and of megapascals differs, whatever the digits say.
+                let units = [&old.unit, &new.unit].map(String::as_str);
+                lines.push(format!("{name}.{}: {}", old.name, largest(x, y, units)));
+            }
             (_, _) => lines.push(format!("{name}.{}: other values", old.name)),
         }
     }
     lines
 }
 
-/// How many values differ, and the largest relative change.
-fn largest(a: &[f64], b: &[f64]) -> String {
+/// How many values differ, and the largest relative change, in the units of both sides.
+fn largest(a: &[f64], b: &[f64], units: [&str; 2]) -> String {
+    let there: Vec<f64> = match Conversion::between(units[1], units[0]) {
+        Ok(to) => to.of_all(b.to_vec()),
+        Err(_) => return format!("in {} → in {}", units[0], units[1]),
+    };
+    let b = there.as_slice();
     let differ: Vec<(usize, f64)> = (0..a.len())
         .filter(|&i| a[i].to_bits() != b[i].to_bits())
         .map(|i| (i, ((b[i] - a[i]) / a[i].abs().max(b[i].abs())).abs()))
@@ -219,13 +234,41 @@ fn largest(a: &[f64], b: &[f64]) -> String {
     let most = differ.iter().max_by(|x, y| x.1.total_cmp(&y.1));
     most.map_or_else(String::new, |&(i, change)| {
         format!(
-            "{} of {} values differ, most in row {}: {} → {} ({:.2} %)",
+            "{} of {} values differ, most in row {}: {} ({:.2} %)",
             differ.len(),
             a.len(),
             i + 1,
-            a[i],
-            b[i],
+            format!("{} → {} {}", digits(a[i], b[i]), digits(b[i], a[i]), units[0]).trim_end(),
             100.0 * change
         )
     })
+}
+
+/// A value with six significant digits, or with all where six do not tell it from the other.
+fn digits(value: f64, other: f64) -> String {
+    let short = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value);
+    let shown = if short(value) == short(other) { value } else { short(value) };
+    let size = shown.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{shown:e}") } else { shown.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artifact::{ArtifactKind, Group, Node};
+
+    #[test]
+    fn values_have_the_digits_that_tell_them_apart() {
+        assert_eq!(digits(31.234_567_89, 30.0), "31.2346");
+        assert_eq!(digits(0.1 + 0.2, 0.3), "0.30000000000000004");
+        assert_eq!([digits(1.5e-9, 1.0), digits(0.0, 1.0), digits(f64::NAN, 1.0)], ["1.5e-9", "0", "NaN"]);
+    }
+
+    #[test]
+    fn results_that_differ_are_told_in_the_units_of_the_field() {
+        let table = |value: f64| Table::default().reals_column("UCS", "Pa", "", vec![1e6, value]);
+        let made = |value| Artifact::of(ArtifactKind::RESULTS, Group::new().with("runs", Node::Table(table(value))));
+        let wanted = "runs.UCS: 1 of 2 values differ, most in row 2: 30.1235 → 31 MPa (2.83 %)";
+        assert_eq!(compare(&made(30_123_456.7), &made(31e6)), [wanted]);
+    }
 }

@@ -81,6 +81,75 @@ pub(super) const SITE: &str = "Examples:
   flow site check ours
       the script that it makes";
 
+pub(super) const STORE_LS: &str = "Examples:
+  flow store ls
+  flow store ls --store results
+      another folder than the usual one";
+
+pub(super) const STORE_ADOPT: &str = "Example:
+  flow store adopt --store results
+      results of an earlier flow, to be used by this one";
+
+pub(super) const STORE_VERIFY: &str = "Example:
+  flow store verify
+      every result against its record; 1 if any is damaged";
+
+pub(super) const STORE_DU: &str = "Example:
+  flow store du
+      what the results of each kind take";
+
+pub(super) const STORE_GC: &str = "Examples:
+  flow store gc w.toml
+      lists what no stage of w.toml can reach
+  flow store gc w.toml other.toml --yes
+      removes what neither can reach";
+
+pub(super) const STORE_PUSH: &str = "Examples:
+  flow store push results/rocks --sign ~/.ssh/id_ed25519
+      a folder that others can read, signed
+  flow store push s3://rocks/c30 --unsigned
+      a bucket, for people who trust its server";
+
+pub(super) const STORE_PULL: &str = "Examples:
+  flow store pull results/rocks
+      results of the people in allowed_signers, proven first
+  flow store pull s3://rocks/c30 --unsigned
+      of anybody";
+
+pub(super) const STORE_ATTACH: &str = "Example:
+  flow store attach results/rocks
+      each result is read from there when it is first needed";
+
+pub(super) const STORE_DETACH: &str = "Example:
+  flow store detach
+      what was read stays";
+
+pub(super) const STORE_MIRROR: &str = "Example:
+  flow store mirror results/rocks s3://rocks/c30
+      a folder into a bucket, with its signatures";
+
+pub(super) const STORE_AUDIT: &str = "Example:
+  flow store audit w.toml --sample 5
+      five results computed again, compared bit by bit";
+
+pub(super) const SITE_LS: &str = "Example:
+  flow site ls
+      the site files, and where they lie";
+
+pub(super) const SITE_NEW: &str = "Examples:
+  flow site new ours
+      ours.toml in the folder of site files; fill in queue, account and modules
+  flow run w.toml --executor slurm --site ours
+      then runs on it";
+
+pub(super) const SITE_CHECK: &str = "Example:
+  flow site check ours
+      the script that would be submitted";
+
+pub(super) const SITE_SCHEMA: &str = "Example:
+  flow site schema > site.schema.json
+      editors complete and check with it";
+
 pub(super) const NEW: &str = "Examples:
   flow new mine
       mine.toml, a first campaign
@@ -113,17 +182,27 @@ mod tests {
         words
     }
 
+    /// The commands that people see, each with the words that call it.
+    fn all(command: &clap::Command, call: &[String]) -> Vec<(Vec<String>, clap::Command)> {
+        let seen = command.get_subcommands().filter(|command| !command.is_hide_set() && command.get_name() != "help");
+        let one = |command: &clap::Command| {
+            let call = [call, &[command.get_name().to_owned()]].concat();
+            let below = all(command, &call);
+            [vec![(call, command.clone())], below].concat()
+        };
+        seen.flat_map(one).collect()
+    }
+
     #[test]
     fn every_command_has_examples_that_it_takes() {
-        for command in Arguments::command().get_subcommands().filter(|command| !command.is_hide_set()) {
-            let name = command.get_name();
+        for (call, command) in all(&Arguments::command(), &["flow".to_owned()]) {
+            let name = call.join(" ");
             let help = command.get_after_help().unwrap_or_else(|| panic!("`{name}` has no example")).to_string();
             let lines: Vec<&str> = help.lines().filter(|line| line.starts_with("  flow ")).collect();
             assert!(!lines.is_empty(), "`{name}`: {help}");
+            assert!(words(lines[0]).starts_with(&call), "{}", lines[0]);
             for line in lines {
-                let words = words(line);
-                assert_eq!(words[..2], ["flow", name], "{line}");
-                let read = Arguments::try_parse_from(&words);
+                let read = Arguments::try_parse_from(words(line));
                 assert!(read.is_ok(), "{line}: {}", read.err().map_or_else(String::new, |e| e.to_string()));
             }
         }

@@ -8,6 +8,7 @@ use crate::artifact::{Artifact, Column, Node, Table, Values};
 use crate::export::csv_text;
 use crate::plan::Workflow;
 use crate::run::{Report, StageReport, StageStatus};
+use crate::stage::artifact_kind;
 use crate::stage::units::presented;
 use crate::store::{ObjectId, Store};
 use clap::Args;
@@ -25,7 +26,7 @@ pub(super) struct Show {
     /// One table of it; by default all.
     #[arg(long, value_name = "NAME", requires = "what")]
     table: Option<String>,
-    /// As CSV, with units in the first line.
+    /// As CSV, with units in the first line: the main table, or the one of `--table`.
     #[arg(long, conflicts_with_all = ["json", "path"], requires = "what")]
     csv: bool,
     /// As JSON: all values, or the one table.
@@ -75,7 +76,9 @@ impl Show {
                 StageStatus::Done(_) => tables.join(", "),
                 status => format!("no result yet ({})", status.word()),
             };
-            out!("{:width$}  {:16}  {what}", stage.name, stage.kind);
+            let title = workflow.position(&stage.name).and_then(|index| workflow.stages[index].title.as_deref());
+            let title = title.map_or_else(String::new, |title| format!("  ({title})"));
+            out!("{:width$}  {:16}  {what}{title}", stage.name, stage.kind);
         }
         Ok(Exit::Done)
     }
@@ -164,8 +167,15 @@ impl Show {
             }
         }
         if self.csv && tables.len() > 1 {
-            err!("error: `{what}` has several tables; choose one with --table: {known}");
-            return Err(Exit::BadInput);
+            let main = artifact_kind(artifact).and_then(|kind| kind.main_table());
+            if !tables.iter().any(|(name, _)| Some(name.as_str()) == main) {
+                err!("error: `{what}` has several tables; choose one with --table: {known}");
+                return Err(Exit::BadInput);
+            }
+            tables.retain(|(name, _)| Some(name.as_str()) == main);
+            self.campaign
+                .common
+                .note(&format!("this is the table `{}`; --table shows another of {known}", tables[0].0));
         }
         Ok(tables)
     }

@@ -1,7 +1,7 @@
 //! `flow site`: descriptions of clusters, and the script that would be submitted to one.
 
-use super::Exit;
 use super::common::system;
+use super::{Exit, examples};
 use crate::cluster::Site;
 use crate::cluster::script::{Order, script};
 use crate::cluster::site::{self, Needs};
@@ -22,18 +22,22 @@ pub(super) struct SiteCommand {
 #[derive(Subcommand)]
 enum What {
     /// List the site files.
+    #[command(after_help = examples::SITE_LS)]
     Ls,
     /// Write a commented site file to fill in.
+    #[command(after_help = examples::SITE_NEW)]
     New {
         /// Name of the site.
         name: String,
     },
     /// Read a site file and show the script that it makes.
+    #[command(after_help = examples::SITE_CHECK)]
     Check {
         /// Name of the site, or a path to its file.
         name: Option<String>,
     },
     /// Print the JSON Schema of site files, for editors.
+    #[command(after_help = examples::SITE_SCHEMA)]
     Schema,
 }
 

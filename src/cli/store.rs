@@ -2,8 +2,8 @@
 
 mod share;
 
-use super::Exit;
 use super::common::{Campaign, Common, decided, system};
+use super::{Exit, examples};
 use crate::artifact::Key;
 use crate::report::duration;
 use crate::stage::command::leftover;
@@ -24,26 +24,37 @@ pub(super) struct StoreCommand {
 #[derive(Subcommand)]
 enum What {
     /// List the results: task, size, duration.
+    #[command(after_help = examples::STORE_LS)]
     Ls,
     /// Turn the folder of an earlier flow, which has no file `flow.store`, into a store.
+    #[command(after_help = examples::STORE_ADOPT)]
     Adopt,
     /// Read every result and compare it with its record; set aside what is damaged.
+    #[command(after_help = examples::STORE_VERIFY)]
     Verify,
     /// Sizes.
+    #[command(after_help = examples::STORE_DU)]
     Du,
     /// Remove results that none of the named workflows can reach; without --yes it only lists them.
+    #[command(after_help = examples::STORE_GC)]
     Gc(Gc),
     /// Copy all results to a remote, a folder or a bucket that others can read, and sign the list of them.
+    #[command(after_help = examples::STORE_PUSH)]
     Push(share::Push),
     /// Take results of people whom you trust from a remote; each result is proven first.
+    #[command(after_help = examples::STORE_PULL)]
     Pull(share::Pull),
     /// Read what this store lacks from a remote, each result when it is first needed; once, until it is detached.
+    #[command(after_help = examples::STORE_ATTACH)]
     Attach(share::Attach),
     /// Read nothing more from the attached remote.
+    #[command(after_help = examples::STORE_DETACH)]
     Detach,
     /// Copy a remote to another one, with its signatures.
+    #[command(after_help = examples::STORE_MIRROR)]
     Mirror(share::Mirror),
     /// Compute some results of a workflow again and compare: equal bits prove them.
+    #[command(after_help = examples::STORE_AUDIT)]
     Audit(share::Audit),
 }
 

@@ -39,6 +39,8 @@ pub struct BoxPlot {
 
 /// Fewer values than this have no box: quartiles of three runs mean nothing.
 const LEAST: usize = 4;
+/// More groups than this have no room for the number of values beside their name.
+const MOST_COUNTED: usize = 4;
 /// Golden ratio: points of a group never fall into columns.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
@@ -53,7 +55,7 @@ impl Figure for BoxPlot {
         let top = legend::height(&entries, page.width(), style);
         scene.height += top;
         let outer = Rect { top: page.top + top, bottom: page.bottom + top, ..page };
-        let names: Vec<String> = self.groups.iter().map(|g| g.name.clone()).collect();
+        let names: Vec<String> = self.groups.iter().map(|group| self.named(group)).collect();
         let x = Axis::categories(self.by.title(), &names);
         let y = Span::of(&self.y, self.scale, self.groups.iter().flat_map(|g| g.values.iter().copied()));
         let panel = marks::category_panel(outer, &x, &y, style);
@@ -84,11 +86,22 @@ impl Figure for BoxPlot {
 }
 
 impl BoxPlot {
+    /// The name of a group with the number of its values, where there is room for it.
+    fn named(&self, group: &Group) -> String {
+        let count = format!("n = {}", group.values.len());
+        match (self.groups.len() <= MOST_COUNTED, group.name.is_empty()) {
+            (false, _) => group.name.clone(),
+            (true, true) => count,
+            (true, false) => format!("{} ({count})", group.name),
+        }
+    }
+
     fn entries(&self) -> Vec<Entry> {
         let point = Swatch::Point(Marker::Disc, BLUE);
-        let mut entries = vec![Entry::new("run", point), Entry::new("mean", Swatch::Point(Marker::Diamond, VERMILION))];
+        let mut entries =
+            vec![Entry::new("single value", point), Entry::new("mean", Swatch::Point(Marker::Diamond, VERMILION))];
         if self.groups.iter().any(|g| g.values.len() >= LEAST) {
-            entries.insert(0, Entry::new("median, quartiles, 1.5 ranges", Swatch::Box(SKY)));
+            entries.insert(0, Entry::new("box: quartiles, median; whiskers: to 1.5 box heights", Swatch::Box(SKY)));
         }
         entries
     }

@@ -140,10 +140,14 @@ impl Quantity {
         text::quantity(&self.name, &self.symbol, &self.unit)
     }
 
-    /// Plain words for titles and descriptions: the name with a small first letter, or the symbol.
+    /// Plain words for titles and descriptions: the name with a small first letter, or the symbol. The name of a column stays
+    /// as its file has it: other languages write nouns with a capital.
     pub fn words(&self) -> String {
         if self.name.is_empty() {
             return text::Line::new(&self.sign(), 1.0).plain;
+        }
+        if self.name == text::plain_text(&self.key) {
+            return text::Line::new(&self.name, 1.0).plain;
         }
         let mut letters = self.name.chars();
         let first = letters.next().unwrap_or_default();

@@ -60,6 +60,8 @@ pub struct Xy {
 const WIDEST_BAND: f64 = 1.8;
 /// Most groups that have bands; more bands would cover each other.
 const MOST_BANDS: usize = 4;
+/// Half a marker, in mm.
+const MARKER: f64 = 1.1;
 /// More points than this are drawn as plain discs.
 const MANY: usize = 4000;
 
@@ -78,13 +80,16 @@ impl Figure for Xy {
         panel.draw_grid(&mut scene);
         let first = scene.items.len();
         self.draw_lines(&mut scene, &panel);
+        scene.group_from(first, Some(panel.area), panel.facts());
+        // a point on an axis is drawn whole
+        let points = scene.items.len();
         for (i, cloud) in self.clouds.iter().enumerate() {
             self.draw_cloud(&mut scene, &panel, i, cloud);
         }
         for (i, cloud) in self.measured.iter().enumerate() {
             draw_measured(&mut scene, &panel, i, cloud);
         }
-        scene.group_from(first, Some(panel.area), panel.facts());
+        scene.group_from(points, Some(panel.area.inset(-MARKER, -MARKER, -MARKER, -MARKER)), Vec::new());
         panel.draw_axes(&mut scene, style);
         scene
     }

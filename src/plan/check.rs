@@ -120,7 +120,7 @@ impl Check<'_> {
             if self.faults.len() > MOST_FAULTS {
                 break;
             }
-            self.name(name, entry);
+            self.name(key, name, entry);
             match one(self, name, &mut entry.node) {
                 Some(value) => drop(found.insert(name.clone(), value)),
                 None => self.lost.push((key, name.clone())),

@@ -36,14 +36,17 @@ impl Check<'_> {
     }
 
     /// Names stand in file names, on the command line and in figures.
-    pub(super) fn name(&mut self, name: &str, entry: &Entry) {
+    pub(super) fn name(&mut self, section: &str, name: &str, entry: &Entry) {
         let inner = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
         if begins && name.chars().all(inner) && name.len() <= LONGEST_NAME {
             return;
         }
         let fault = Fault::new(format!("`{}` cannot be a name", super::node::shortened(name)));
-        let hint = format!("a letter first, then letters, digits, `_` and `-`, at most {LONGEST_NAME} in all");
+        let mut hint = format!("a letter first, then letters, digits, `_` and `-`, at most {LONGEST_NAME} in all");
+        if section == "factor" || section == "response" {
+            hint += "; a column of a file gets such a name by `rename` of its `data` stage";
+        }
         self.faults.push(fault.at(self.sources.location(entry.key)).hint(hint));
     }
 

@@ -127,7 +127,16 @@ pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         let distance = distance(&found, &name);
         (distance <= most && distance < name.len()).then_some(distance)
     };
-    known.into_iter().filter_map(|name| Some((slip(name)?, name))).min_by_key(|(distance, _)| *distance).map(|x| x.1)
+    let known: Vec<&str> = known.into_iter().collect();
+    let near = known.iter().filter_map(|name| Some((slip(name)?, *name))).min_by_key(|(distance, _)| *distance);
+    near.map(|(_, name)| name).or_else(|| {
+        // `boxplot` for `box`, `hist` for `histogram`, where one name alone begins so
+        let found: String = found.iter().collect();
+        let begins = |long: &str, short: &str| short.chars().count() >= 3 && long.starts_with(short);
+        let mut like =
+            known.iter().filter(|name| begins(&found, &name.to_lowercase()) || begins(&name.to_lowercase(), &found));
+        like.next().filter(|_| like.next().is_none()).copied()
+    })
 }
 
 /// Letters to insert, remove, replace or swap with the next one (optimal string alignment).

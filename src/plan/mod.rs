@@ -64,6 +64,8 @@ pub struct Workflow {
 pub struct StageNode {
     /// Its name.
     pub name: String,
+    /// Its title for people, where the workflow gives one.
+    pub title: Option<String>,
     /// The word after `kind =`.
     pub kind: &'static str,
     /// The configured stage.

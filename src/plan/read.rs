@@ -12,6 +12,7 @@
 use super::fault::Fault;
 use super::node::{Entry, Node, Sources, Step, Value, shortened};
 use super::reader::{Cause, Reader, Unread};
+use crate::unit::{Dimension, Unit, UnitError, split_any};
 use std::slice;
 
 /// Most faults that are reported of one table.
@@ -75,13 +76,41 @@ fn tell<T>(
         }
         Cause::Wanted(wanted) => {
             let path = narrow(node, path, error, read);
-            wrong(node, &path, sources, |found| Fault::new(format!("wanted {wanted}, found {}", found.describe())))
+            wrong(node, &path, sources, |found| {
+                let fault = Fault::new(format!("wanted {wanted}, found {}", found.describe()));
+                match as_number(wanted, found) {
+                    Some(hint) => fault.hint(hint),
+                    None => fault,
+                }
+            })
         }
         Cause::Other(message) => {
             let path = narrow(node, path, error, read);
             wrong(node, &path, sources, |_| Fault::new(message))
         }
     }
+}
+
+/// How a number is written that stands as a text.
+fn as_number(wanted: &str, found: &Node) -> Option<String> {
+    let Value::Text(text) = &found.value else { return None };
+    if !wanted.ends_with("number") {
+        return None;
+    }
+    let text = match split_any(text) {
+        Err(UnitError::Comma(_, meant)) => meant,
+        _ => text.clone(),
+    };
+    let (value, unit) = split_any(&text).ok()?;
+    let is_share = Unit::parse(unit).is_ok_and(|unit| unit.dimension == Dimension::NONE);
+    Some(match unit {
+        "" => format!("write it without quotes: {value}"),
+        // The quotient is the nearest number; a product with 0.01 is not.
+        "%" => format!("write the share: {}", value / 100.0),
+        "‰" => format!("write the share: {}", value / 1000.0),
+        _ if is_share => format!("write the number alone: {value}"),
+        unit => format!("write the number alone: {value}; where it counts in `{unit}`, the unit is a key of its own"),
+    })
 }
 
 /// The path to the value that the error is about. Below the path that the error itself knows, only values that were

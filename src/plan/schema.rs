@@ -78,6 +78,8 @@ fn stage(kind: &crate::stage::KindEntry, generator: &mut SchemaGenerator) -> Val
     let properties = object.entry("properties").or_insert_with(|| Value::Object(Map::new()));
     if let Some(properties) = properties.as_object_mut() {
         properties.insert("kind".to_owned(), tag);
+        let about = "Title of the stage in the report and in lists; no result depends on it.";
+        properties.insert("title".to_owned(), json!({ "type": "string", "description": about }));
     }
     let required = object.entry("required").or_insert_with(|| json!([]));
     if let Some(required) = required.as_array_mut() {
@@ -100,6 +102,7 @@ pub(super) fn keys(kind: &str) -> Vec<String> {
         let schema = (entry.schema)(&mut generator).to_value();
         collect_keys(&schema, generator.definitions(), &mut keys);
     }
+    keys.push("title".to_owned());
     keys.sort_unstable();
     keys.dedup();
     keys

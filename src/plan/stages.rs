@@ -3,7 +3,7 @@
 mod idle;
 
 use super::collect::{Check, MOST_FAULTS, steps};
-use super::fault::Fault;
+use super::fault::{Fault, nearest};
 use super::node::{Entry, Node, Step, Table, Value};
 use super::read::read;
 use super::reader::{Reader, Unread};
@@ -20,6 +20,7 @@ use std::path::Path;
 /// A stage that was read.
 struct Configured {
     name: String,
+    title: Option<String>,
     kind: &'static str,
     stage: Box<dyn Stage>,
     ports: Vec<Port>,
@@ -78,8 +79,9 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &mut Context) ->
         if check.faults.len() > MOST_FAULTS {
             break;
         }
-        check.name(name, entry);
+        check.name("stage", name, entry);
         let Some(kind) = take_kind(check, name, &mut entry.node) else { continue };
+        let title = take_title(check, &mut entry.node);
         let keys = || super::schema::keys(kind);
         let by_kind = |reader: Reader<'_>| stage_of(kind, reader);
         let Some(stage) = read(&mut entry.node, check.sources, &mut check.faults, keys, by_kind) else { continue };
@@ -87,7 +89,7 @@ fn configure(check: &mut Check<'_>, table: &mut Table, context: &mut Context) ->
             let template = Template { kind, table: entry.node.json() };
             context.templates.insert(name.clone(), template);
         }
-        stages.push(Configured { name: name.clone(), kind, ports: stage.inputs(), stage });
+        stages.push(Configured { name: name.clone(), title, kind, ports: stage.inputs(), stage });
     }
     stages
 }
@@ -172,7 +174,10 @@ fn is_lost(check: &Check<'_>, missing: Option<&Missing>) -> bool {
 
 /// A complaint as a fault without its location.
 fn fault_of(complaint: Complaint) -> Fault {
-    Fault { hint: complaint.hint, missing: complaint.missing, ..Fault::new(complaint.message) }
+    let meant = complaint.missing.as_ref().and_then(|missing| {
+        nearest(&missing.name, missing.among.iter().map(String::as_str)).map(|near| format!("did you mean `{near}`?"))
+    });
+    Fault { hint: complaint.hint, missing: complaint.missing, label: meant, ..Fault::new(complaint.message) }
 }
 
 /// A complaint about a stage as a fault with its location.
@@ -184,6 +189,24 @@ fn located(check: &Check<'_>, node: &Node, complaint: Complaint) -> Fault {
 fn stage_of(kind: &str, reader: Reader<'_>) -> Result<Box<dyn Stage>, Unread> {
     crate::stage::read(kind, reader).unwrap_or_else(|| panic!("BUG: kind `{kind}` is in the list"))
 }
+
+/// Takes `title` out of the table of a stage: no result depends on it.
+fn take_title(check: &mut Check<'_>, node: &mut Node) -> Option<String> {
+    let Value::Table(table) = &mut node.value else { return None };
+    let entry = table.0.remove("title")?;
+    let fault = match &entry.node.value {
+        Value::Text(text) if !text.trim().is_empty() && text.chars().count() <= LONGEST_TITLE => {
+            return Some(text.clone());
+        }
+        Value::Text(_) => Fault::new(format!("a title has 1 to {LONGEST_TITLE} letters")),
+        _ => Fault::new(format!("wanted a title in quotes, found {}", entry.node.describe())),
+    };
+    check.faults.push(fault.at(check.sources.location(entry.node.span)));
+    None
+}
+
+/// Longest title of a stage, in letters.
+const LONGEST_TITLE: usize = 120;
 
 /// Takes `kind` out of the table of a stage.
 fn take_kind(check: &mut Check<'_>, name: &str, node: &mut Node) -> Option<&'static str> {
@@ -309,7 +332,10 @@ fn in_order(stages: Vec<Configured>, inputs: Vec<Vec<(&'static str, usize)>>, or
     for ((stage, inputs), &new) in stages.into_iter().zip(inputs).zip(&new_number) {
         if new != usize::MAX {
             let inputs = inputs.into_iter().map(|(port, old)| (port, new_number[old])).collect();
-            nodes.push((new, StageNode { name: stage.name, kind: stage.kind, stage: stage.stage, inputs }));
+            nodes.push((
+                new,
+                StageNode { name: stage.name, title: stage.title, kind: stage.kind, stage: stage.stage, inputs },
+            ));
         }
     }
     nodes.sort_by_key(|(new, _)| *new);

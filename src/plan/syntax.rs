@@ -128,11 +128,22 @@ fn syntax_faults(sources: &Sources, index: u32, errors: &[toml::de::Error]) -> V
                 Fault::new(format!("`{}` stands here a second time", shortened(&text[start..end]))).label(label)
             }
             message if message.contains("recurs") => Fault::new("nested too deeply").hint(NOT_DEEP),
-            message => Fault::new(message),
+            message => comma_in_number(text, start).unwrap_or_else(|| Fault::new(message)),
         };
         faults.push(fault.at(sources.location(span)));
     }
     faults
+}
+
+/// The fault of a number with a decimal comma at this byte.
+fn comma_in_number(text: &str, at: usize) -> Option<Fault> {
+    let is_digit = |c: char| c.is_ascii_digit();
+    let (before, after) = (text.get(..at)?, text.get(at..)?.strip_prefix(',')?);
+    let begin = before.trim_end_matches(is_digit).len();
+    let end = after.len() - after.trim_start_matches(is_digit).len();
+    let number = (begin < at && end > 0).then(|| &text[begin..=at + end])?;
+    let hint = format!("write {}", number.replacen(',', ".", 1));
+    Some(Fault::new(format!("`{number}` has a decimal comma")).hint(hint))
 }
 
 /// The first dotted key of more parts than the TOML reader takes.

@@ -3,8 +3,11 @@
 use super::figure::Glyphs;
 use super::paper::{Paper, State};
 use figure::dag::{Dag, Stage};
-use figure::{DOUBLE, Figure, Style, svg::svg};
+use figure::{DOUBLE, Figure, SINGLE, Style, svg::svg};
 use maud::{Markup, html};
+
+/// Widest picture of the workflow, in mm, that stands in half the page.
+const NARROW: f64 = 120.0;
 
 /// The stages that compute, as boxes. Tables and figures stand with what they show and are left out, and so is what
 /// only they read.
@@ -35,12 +38,15 @@ pub(super) fn picture(paper: &Paper, glyphs: &mut Glyphs) -> Markup {
     edges.dedup();
     let classes = ["done", "to run", "cannot run"].map(str::to_owned).to_vec();
     let dag = Dag { stages: stages.collect(), edges, classes };
-    let scene = dag.scene(&Style::wide(DOUBLE));
+    // A few stages stay as narrow as a telephone.
+    let narrow = dag.scene(&Style::wide(SINGLE));
+    let is_narrow = narrow.width <= NARROW;
+    let scene = if is_narrow { narrow } else { dag.scene(&Style::wide(DOUBLE)) };
     let label = format!("{}. {}", scene.title, scene.description);
     let left = paper.parts.len() - shown.len();
     let Some((drawn, _)) = glyphs.inline(&svg(&scene), &label) else { return html! {} };
     html! {
-        figure #dag .double {
+        figure #dag class=(if is_narrow { "single" } else { "double" }) {
             div.plot.ink { (drawn) }
             figcaption {
                 b { "The workflow." } " Results flow along the arrows."

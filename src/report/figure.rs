@@ -83,7 +83,8 @@ pub(super) fn figure(paper: &Paper, part: &Part, glyphs: &mut Glyphs) -> Markup 
                 script.values type="application/json" { (PreEscaped(values::in_script(&numbers))) }
             }
             figcaption {
-                b { (part.words()) "." } " " (set(title)) "."
+                b { (part.words()) "." } " "
+                @if let Some(caption) = part.settings["caption"].as_str() { (symbol::label(caption)) } @else { (set(title)) "." }
                 @if !description.is_empty() { " " span { (set(&description)) } }
             }
         }

@@ -53,6 +53,7 @@ pub fn gather(workflow: &Workflow, asked: Asked, store: &Store) -> Result<Paper,
 fn part(node: &StageNode, state: State, cost: Cost, outcome: Outcome) -> Part {
     let entry = kind(node.kind);
     Part {
+        title: node.title.clone(),
         name: node.name.clone(),
         kind: node.kind.to_owned(),
         class: entry.map_or(Class::Statistics, |entry| entry.class),

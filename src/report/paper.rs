@@ -38,6 +38,8 @@ pub struct Paper {
 pub struct Part {
     /// Its name.
     pub name: String,
+    /// Its title, where the workflow gives one.
+    pub title: Option<String>,
     /// Its kind.
     pub kind: String,
     /// Class of the kind.
@@ -174,13 +176,22 @@ impl Part {
         }
     }
 
-    /// Its name for people: `figure_5` → `Figure 5`, `ccd_ucs` → `CCD UCS`.
+    /// Its title, or else its name for people: `figure_5` → `Figure 5`, `ccd_ucs` → `CCD UCS`.
     pub(super) fn words(&self) -> String {
+        if let Some(title) = &self.title {
+            return title.clone();
+        }
         let word = |word: &str| {
             let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
             if ABBREVIATIONS.contains(&letters) { word.to_uppercase() } else { word.to_owned() }
         };
         capital(&self.name.split('_').map(word).collect::<Vec<_>>().join(" "))
+    }
+
+    /// Its kind in words of the field.
+    pub(super) fn kind_in_words(&self) -> &str {
+        let words = KINDS_IN_WORDS.iter().find(|(kind, _)| *kind == self.kind);
+        words.map_or(self.kind.as_str(), |(_, words)| words)
     }
 
     /// Whether it only shows what other stages computed.
@@ -229,6 +240,21 @@ impl Paper {
         self.runs.iter().rev().find(made)
     }
 }
+
+/// Kinds whose word in the workflow is not that of the field.
+const KINDS_IN_WORDS: [(&str, &str); 11] = [
+    ("anova", "analysis of variance"),
+    ("calibrate", "calibration"),
+    ("command", "external program"),
+    ("design", "design of experiments"),
+    ("effort", "effort of optimisers"),
+    ("envelope", "failure envelope"),
+    ("range", "range analysis"),
+    ("rsm", "response surfaces"),
+    ("screening", "screening of effects"),
+    ("simulate", "simulation"),
+    ("verify", "verification"),
+];
 
 /// Abbreviations of the field that stage names are made of.
 const ABBREVIATIONS: [&str; 7] = ["anova", "bbd", "ccd", "lhs", "pb", "rsm", "ucs"];

@@ -9,6 +9,7 @@ use super::warning::warnings;
 use super::{compared, symbol};
 use crate::artifact::{Artifact, ArtifactKind, Table};
 use crate::stage::calibrate::parameters_in_words;
+use crate::stage::data::Data;
 use crate::stage::figure::Figure as Picture;
 use crate::stage::table::Table as PrintedTable;
 use crate::stage::{Kind, artifact_kind};
@@ -26,8 +27,8 @@ pub(super) fn section(paper: &Paper, index: usize, members: &[usize], glyphs: &m
     let found = warnings(part);
     html! {
         section.stage id={ "stage-" (part.name) } aria-labelledby=(head) {
-            h2 id=(head) { (part.words()) " " span.kind { (part.kind) } }
-            p.about { (capital(&part.about)) "." }
+            h2 id=(head) { (part.words()) " " span.kind title={ "kind = \"" (part.kind) "\", [stage." (part.name) "]" } { (part.kind_in_words()) } }
+            p.about { (capital(&part.about)) "." @if part.title.is_some() { " Stage " code { (part.name) } "." } }
             @match &part.state {
                 State::Done { .. } => (facts(paper, part)),
                 State::Missing | State::Broken(_) => (missing(paper, part)),
@@ -62,7 +63,7 @@ fn facts(paper: &Paper, part: &Part) -> Markup {
                     @for (i, input) in inputs(part).into_iter().enumerate() {
                         @if i > 0 { ", " }
                         @let maker = &paper.parts[input];
-                        a href={ "#stage-" (maker.name) } { (maker.name) }
+                        a href={ "#stage-" (maker.name) } { (maker.words()) }
                     }
                 } }
             }
@@ -103,7 +104,9 @@ fn own(paper: &Paper, index: usize, members: &[usize]) -> Markup {
         |name: &str| name == main && !members.iter().any(|&m| prints_some(&paper.parts[m], index, name, main));
     let sheet = |name: &str, table| {
         let command = paper.command("show", &format!("{} --table {name}", part.name));
-        let about = artifact_about(name, table);
+        // What a laboratory measured was no run of a simulator.
+        let called = if part.kind == Data::NAME && name == main { "rows" } else { name };
+        let about = artifact_about(called, table);
         Sheet::new(table, &paper.context, about, command).markup()
     };
     let closed: Vec<_> = rest.iter().filter(|(name, _)| !is_open(name)).collect();
@@ -130,7 +133,14 @@ fn names(tables: &[&&(String, &Table)]) -> String {
 }
 
 fn artifact_about(name: &str, table: &Table) -> Markup {
-    html! { b { (name.replace('_', " ")) } @if !table.about.is_empty() { " " (table.about) } }
+    let name = name.replace('_', " ");
+    // "quality: quality of the specimen" says a word twice.
+    let about = match table.about.strip_prefix(&name) {
+        Some(rest) if rest.starts_with([' ', ',', ';']) => rest.trim_start(),
+        _ => &table.about,
+    };
+    let gap = if about.is_empty() || about.starts_with([',', ';']) { "" } else { " " };
+    html! { b { (name) } (gap) (about) }
 }
 
 /// Whether a `table` stage prints this table of that stage, whole.

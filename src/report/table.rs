@@ -153,10 +153,16 @@ impl<'a> Sheet<'a> {
         let plain = if unit.is_empty() { key.to_owned() } else { format!("{key} [{unit}]") };
         html! {
             th scope="col" class=[shown.is_text().then_some("t")] data-k=(plain) title=[(!shown.about.is_empty()).then_some(shown.about)] {
-                @if let Some(symbol) = symbol { (symbol) @if !word.is_empty() { " " (word) } } @else { (key.replace('_', " ")) }
+                @if let Some(symbol) = symbol { (symbol) @if !word.is_empty() { " " (word) } } @else if let Some(word) = self.word_of_field(shown) { (symbol::label(word)) } @else { (key.replace('_', " ")) }
                 @if !unit.is_empty() { " " small { (symbol::unit(unit)) } }
             }
         }
+    }
+
+    /// The field's word for a column that a stage declares.
+    fn word_of_field(&self, shown: &Shown) -> Option<&'static str> {
+        let word = FIELD.iter().find(|(key, _)| *key == shown.column.key);
+        word.filter(|_| !shown.about.is_empty()).map(|(_, word)| *word)
     }
 
     fn cell(&self, shown: &Shown, row: usize, is_name: bool) -> Markup {
@@ -169,7 +175,7 @@ impl<'a> Sheet<'a> {
                 let word = words.get(row).map_or("", String::as_str);
                 let markup = self.words(shown, word);
                 let full = markup.is_some().then_some(word);
-                let markup = markup.unwrap_or_else(|| html! { (word) });
+                let markup = markup.unwrap_or_else(|| coded(word));
                 let class = if word.starts_with("differs") { "t far" } else { "t" };
                 if is_name {
                     html! { th.t scope="row" data-v=[full] { (markup) } }
@@ -200,6 +206,41 @@ impl<'a> Sheet<'a> {
     fn words(&self, shown: &Shown, word: &str) -> Option<Markup> {
         NAMING_COLUMNS.contains(&shown.column.key.as_str()).then(|| symbol::term(self.context, word)).flatten()
     }
+}
+
+/// Columns of statistics as the field calls them, in the notation of labels.
+const FIELD: [(&str, &str); 22] = [
+    ("std_error", "std. error"),
+    ("df", "d.f."),
+    ("df_residual", "residual d.f."),
+    ("df_pure_error", "pure-error d.f."),
+    ("ss", "$SS$"),
+    ("ms", "$MS$"),
+    ("f", "$F$"),
+    ("t", "$t$"),
+    ("p", "$p$"),
+    ("n", "$n$"),
+    ("s", "$s$"),
+    ("r2", "$R^2$"),
+    ("r2_adjusted", "$R^2$ adjusted"),
+    ("r2_predicted", "$R^2$ predicted"),
+    ("eta2", r"$\eta^2$"),
+    ("omega2", r"$\omega^2$"),
+    ("press", "PRESS"),
+    ("lack_of_fit_f", "$F$ of lack of fit"),
+    ("lack_of_fit_p", "$p$ of lack of fit"),
+    ("cook", "Cook’s $D$"),
+    ("low", "lower limit"),
+    ("high", "upper limit"),
+];
+
+/// A sentence with its keys and values as code.
+fn coded(text: &str) -> Markup {
+    let parts: Vec<&str> = text.split('`').collect();
+    if parts.len().is_multiple_of(2) {
+        return html! { (text) };
+    }
+    html! { @for (i, part) in parts.iter().enumerate() { @if i % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
 /// A column with how it is shown.

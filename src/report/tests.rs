@@ -20,6 +20,7 @@ fn part(name: &str, kind: &str, inputs: &[usize], artifact: Option<Artifact>) ->
     let inputs = inputs.iter().map(|&input| ("of".to_owned(), input)).collect();
     let settings = json!({ "caption": HOSTILE, "notes": [HOSTILE], "show": "points", "text": HOSTILE });
     Part {
+        title: None,
         name: name.to_owned(),
         kind: kind.to_owned(),
         class: crate::stage::kind(kind).unwrap().class,

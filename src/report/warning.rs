@@ -73,7 +73,8 @@ fn by_response<'a>(responses: &'a [String], values: &[f64]) -> Vec<(&'a str, f64
 fn fits(fit: &Fits) -> Vec<String> {
     let mut found = Vec::new();
     for (response, missing) in fit.response.iter().zip(&fit.missing).filter(|(_, missing)| **missing > 0) {
-        found.push(format!("{response}: {missing} runs are missing from the fit"));
+        let rows = if *missing == 1 { "row has no value and is" } else { "rows have no value and are" };
+        found.push(format!("{response}: {missing} {rows} not in the fit"));
     }
     for (response, p) in by_response(&fit.response, &fit.lack_of_fit_p).into_iter().filter(|(_, p)| *p < LEVEL) {
         found.push(format!(

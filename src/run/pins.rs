@@ -180,7 +180,7 @@ data 4
 design 3
 effort 1
 envelope 1
-figure 18
+figure 19
 fit 4
 formula 2
 gather 2

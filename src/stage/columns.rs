@@ -232,14 +232,14 @@ fn labels(values: &Values) -> Vec<String> {
 }
 
 /// The first cell that is not a number, with its row from 0. One such cell makes the reader return the whole column as text.
-pub(super) fn first_word(values: &Values) -> Option<(usize, &str)> {
+fn first_word(values: &Values) -> Option<(usize, &str)> {
     let Values::Texts(texts) = values else { return None };
     let is_word = |text: &str| !text.is_empty() && !text.parse().is_ok_and(f64::is_finite);
     texts.iter().map(String::as_str).enumerate().find(|(_, text)| is_word(text))
 }
 
 /// A factor whose levels are numbers has a word in a table.
-pub(super) fn not_a_level(factor: &str, row: usize, word: &str) -> StageError {
+fn not_a_level(factor: &str, row: usize, word: &str) -> StageError {
     let message = format!("row {}: `{factor}` is `{word}`, and the levels of [factor.{factor}] are numbers", row + 1);
     StageError::new(message).hint(format!("correct the cell, or name the levels: `levels = [\"{word}\", …]`"))
 }
@@ -274,7 +274,10 @@ pub(super) fn refused_without(faults: Faults, not_valid: &NotValid) -> StageErro
 pub(super) fn check_names(context: &Context, factors: &[String], responses: &[String]) -> Vec<Complaint> {
     let unknown = |name: &String| {
         let known = known_are(context.responses.keys(), "response");
-        Complaint::new("responses", format!("there is no [response.{name}]")).missing(Named::Response, name).hint(known)
+        Complaint::new("responses", format!("there is no [response.{name}]"))
+            .missing(Named::Response, name)
+            .among(context.responses.keys())
+            .hint(known)
     };
     let factors = factors.iter().flat_map(|name| super::derived::check(name, context));
     factors.chain(responses.iter().filter(|name| !context.responses.contains_key(*name)).map(unknown)).collect()

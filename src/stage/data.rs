@@ -2,25 +2,25 @@
 //!
 //! The first line names the columns, a unit in brackets after the name: `sigma_c [MPa]`, `sigma_c (MPa)` or
 //! `sigma_c/MPa`. Units may also stand in the row below the names. A column whose cells are all numbers (or missing) holds
-//! reals, any other holds texts. Comments (`#`) stand above the line of names only. The result is an artifact `results`
+//! reals, any other holds texts. Comments (`#`) and titles stand above the line of names only. The result is an artifact `results`
 //! with the table `runs`, as `simulate` gives it, and the table `notes`, which says how the file was read where that was
 //! detected and is not the default (UTF-8, commas between cells, decimal points).
 
 mod below;
 mod cells;
 mod dialect;
+mod head;
 mod rename;
 mod workbook;
 
 use super::beside::Beside;
-use super::columns::{first_word, not_a_level};
 use super::notes::Notes;
 use super::sheet::Sheet;
 use super::{Class, Complaint, Failure, Job, Kind, Known, Port, Stage, StageError, Step, Task, Work};
 use crate::artifact::results::Results;
 use crate::artifact::{Artifact, ArtifactKind, Table, Values};
 use crate::unit::Unit;
-use cells::Cells;
+use cells::{Cells, Words};
 use dialect::Dialect;
 pub use dialect::{Decimal, Delimiter, Encoding};
 use schemars::JsonSchema;
@@ -45,7 +45,7 @@ pub struct Data {
     /// The sheet of a workbook; needed if it has several.
     pub sheet: Option<String>,
     /// The line of the file, or row of the sheet, that names the columns, counted from 1; by default the first that is
-    /// neither empty nor a comment.
+    /// neither empty nor a comment nor a title.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_line: Option<usize>,
     /// New names of columns, by their names in the file: `{ "w/z" = "wc", "Festigkeit" = "UCS" }`. A unit may be given where
@@ -70,19 +70,19 @@ impl Data {
 
 impl Data {
     /// Words where the workflow declares numbers.
-    fn words(&self, table: &Table, context: &super::Context, found: &mut Beside) {
-        for column in &table.columns {
-            let Some((row, word)) = first_word(&column.values) else { continue };
-            let (file, name) = (&self.file, &column.name);
+    fn words(&self, columns: &[Words], context: &super::Context, found: &mut Beside) {
+        for words in columns {
+            let name = &words.name;
             let error = if context.factors.get(name).is_some_and(|factor| factor.names.is_empty()) {
-                not_a_level(name, row, word)
+                let message = format!("{}, and the levels of [factor.{name}] are numbers", words.found());
+                let levels = format!("name the levels: `levels = [{:?}, …]`", words.first());
+                StageError::new(message).hint(format!("correct the file, {levels}, or {}", words.as_missing()))
             } else if context.responses.contains_key(name) {
-                StageError::new(format!("row {}: `{name}` is `{word}`, which is no number", row + 1))
-                    .hint(format!("correct it, or say `missing = [\"{word}\"]` if it stands for no value"))
+                words.fault()
             } else {
                 continue;
             };
-            let complaint = Complaint::new("file", format!("{file}: {}", error.message));
+            let complaint = Complaint::new("file", format!("{}: {}", self.file, error.message));
             found.faults.push(Complaint { hint: error.hint, ..complaint });
         }
     }
@@ -133,9 +133,9 @@ impl Stage for Data {
                 let complaint = Complaint::new("file", format!("{}: {message}", self.file));
                 found.faults.push(Complaint { hint, ..complaint });
             }
-            Ok((table, _)) => {
+            Ok(Read { table, words, .. }) => {
                 self.units(&table, context, found);
-                self.words(&table, context, found);
+                self.words(&words, context, found);
                 found.columns = Some(table.columns.into_iter().map(|column| column.name).collect());
             }
         }
@@ -162,7 +162,7 @@ impl Kind for Data {
 }
 
 fn read(job: &Job) -> Result<Artifact, Failure> {
-    let (table, said) = parse_as(&job.file("table")?, &job.params()?)?;
+    let Read { table, said, .. } = parse_as(&job.file("table")?, &job.params()?)?;
     let notes = said.map(|said| {
         let mut notes = Notes::default();
         notes.add("", said);
@@ -176,11 +176,21 @@ fn read(job: &Job) -> Result<Artifact, Failure> {
 /// # Errors
 /// A fault of it, and where.
 pub fn parse(bytes: &[u8]) -> Result<Table, StageError> {
-    parse_as(bytes, &Dialect::default()).map(|(table, _)| table)
+    parse_as(bytes, &Dialect::default()).map(|read| read.table)
 }
 
-/// Reads the table by the settings `how`; the second value says what was detected, where that is not plain CSV.
-fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), StageError> {
+/// A file that was read.
+#[derive(Debug)]
+struct Read {
+    table: Table,
+    /// What was detected, where that is not plain CSV.
+    said: Option<String>,
+    /// What is no number in columns that are read as words.
+    words: Vec<Words>,
+}
+
+/// Reads the table by the settings `how`.
+fn parse_as(bytes: &[u8], how: &Dialect) -> Result<Read, StageError> {
     let is_workbook = workbook::is_workbook(bytes);
     how.check(is_workbook)?;
     let (mut sheet, decimal, mut said, shares) = if is_workbook {
@@ -206,9 +216,10 @@ fn parse_as(bytes: &[u8], how: &Dialect) -> Result<(Table, Option<String>), Stag
     }
     let mut names = HashSet::new();
     // A table that looks for the name of each new column among all others would cost the square of their number.
-    let column = |(head, texts): (&String, _)| cells::column((head, texts), &cells, &mut names);
+    let mut words = Vec::new();
+    let column = |(head, texts): (&String, _)| cells::column((head, texts), &cells, &mut names, &mut words);
     let columns = sheet.heads.iter().zip(sheet.columns).map(column).collect::<Result<_, StageError>>()?;
-    Ok((Table { about: String::new(), columns }, said))
+    Ok(Read { table: Table { about: String::new(), columns }, said, words })
 }
 
 /// The unit of columns whose cells a spreadsheet may show in per cent.
@@ -249,18 +260,27 @@ fn text(bytes: &[u8], how: &Dialect) -> Result<(Sheet, Decimal, Option<String>),
     if let Some((_, rest)) = &stated {
         rest.clone_into(&mut text);
     }
-    if let Some(line) = how.first_line.filter(|line| *line > 1) {
+    let stated = how.delimiter.or(stated.map(|(delimiter, _)| delimiter));
+    let stated_line = how.first_line.filter(|line| *line > 1);
+    if let Some(line) = stated_line {
         text = dialect::from_line(&text, line)?;
     }
-    let stated = how.delimiter.or(stated.map(|(delimiter, _)| delimiter));
-    let delimiter = stated.unwrap_or_else(|| dialect::delimiter(&text));
-    let sheet = Sheet::of(&text, delimiter.byte(), |_| Ok(()))?;
+    let dialect::Layout { delimiter, line, is_even } = dialect::layout(&text, stated, how.first_line);
+    let detected_line = line.filter(|_| how.first_line.is_none());
+    if let Some(line) = detected_line {
+        text = dialect::from_line(&text, line)?;
+    }
+    let sheet = Sheet::of(&text, delimiter.byte(), |_| Ok(())).map_err(|error| match is_even {
+        false => error.or("if titles stand above the names, say in which line the names are: `first_line = 4`"),
+        true => error,
+    })?;
     let cells = sheet.columns.iter().flatten().map(String::as_str);
     let decimal = how.decimal.map_or_else(|| dialect::decimal(cells), Ok)?;
     let said = dialect::said(
         encoding,
         Some(delimiter).filter(|_| how.delimiter.is_none()),
         Some(decimal).filter(|_| how.decimal.is_none()),
+        detected_line,
     );
     Ok((sheet, decimal, said))
 }

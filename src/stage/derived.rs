@@ -34,7 +34,10 @@ pub(super) fn factors_of_formula(text: &str) -> Option<Vec<String>> {
 pub(super) fn check(name: &str, context: &Context) -> Vec<Complaint> {
     let known = || known_are(context.factors.keys(), "factor");
     let unknown = |name: &str| {
-        Complaint::new("factors", format!("there is no [factor.{name}]")).missing(Named::Factor, name).hint(known())
+        Complaint::new("factors", format!("there is no [factor.{name}]"))
+            .missing(Named::Factor, name)
+            .among(context.factors.keys())
+            .hint(known())
     };
     if context.factors.contains_key(name) {
         return Vec::new();

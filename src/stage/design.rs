@@ -11,6 +11,7 @@
 //!
 //! The result has the tables `design` (run, standard order, point type, factors in their units), `coded` and `report`.
 
+mod beyond;
 mod config;
 mod tables;
 #[cfg(test)]
@@ -229,14 +230,21 @@ impl Design {
         found
     }
 
-    /// Rows that break a rule, where that is a fault of the design.
+    /// Rows that break a rule, or axial points without a meaning, where that is a fault of the design.
     fn broken_rules(&self, method: &Method, context: &Context) -> Vec<Complaint> {
         let mut found = self.rule_complaints();
-        if !found.is_empty() || self.valid.is_empty() {
+        if !found.is_empty() {
             return found;
         }
         // A design that cannot be built is reported when it runs.
+        let axial = matches!(method, Method::CentralComposite(_));
+        if !axial && self.valid.is_empty() {
+            return found;
+        }
         let Ok(table) = build(method, &self.factors(context), self.layout(), context.seed) else { return found };
+        if self.valid.is_empty() {
+            return beyond::zero(&table, context);
+        }
         match valid::broken(&self.valid, &table) {
             Err(why) => found.push(Complaint::new("valid", why)),
             Ok(broken) if self.invalid_rows == InvalidRows::Refuse => {

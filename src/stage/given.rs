@@ -23,6 +23,7 @@ pub(super) fn check_given<'a>(
         });
         Complaint::new(path, format!("`{response}` is no response of {whose}"))
             .missing(Named::Response, response)
+            .among(givers.iter().flat_map(|(_, given)| given.iter()))
             .hint(gives.collect::<Vec<_>>().join("; "))
     };
     // Another check reports a response that the workflow does not declare.

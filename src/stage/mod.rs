@@ -279,6 +279,8 @@ pub struct Missing {
     pub what: Named,
     /// The name.
     pub name: String,
+    /// Names one of which may have been meant.
+    pub among: Vec<String>,
 }
 
 impl Missing {
@@ -330,7 +332,16 @@ impl Complaint {
     /// Says what is not there.
     #[must_use]
     pub fn missing(mut self, what: Named, name: &str) -> Self {
-        self.missing = Some(Box::new(Missing { what, name: name.to_owned() }));
+        self.missing = Some(Box::new(Missing { what, name: name.to_owned(), among: Vec::new() }));
+        self
+    }
+
+    /// Adds names one of which may have been meant by the one that is not there.
+    #[must_use]
+    pub fn among<'a>(mut self, names: impl IntoIterator<Item = &'a String>) -> Self {
+        if let Some(missing) = &mut self.missing {
+            missing.among = names.into_iter().cloned().collect();
+        }
         self
     }
 
@@ -369,6 +380,13 @@ impl StageError {
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
+        self
+    }
+
+    /// Adds another thing to do.
+    #[must_use]
+    pub fn or(mut self, other: &str) -> Self {
+        self.hint = Some(self.hint.map_or_else(|| other.to_owned(), |hint| format!("{hint}; {other}")));
         self
     }
 }

@@ -43,9 +43,11 @@ impl Reads {
             let whose = tables.iter().map(|(stage, _)| format!("`{stage}`")).collect::<Vec<_>>().join(" or ");
             let has = tables.iter().map(|(stage, columns)| format!("`{stage}` has {}", listed(columns)));
             let alike = tables.iter().find_map(|(_, columns)| look_alike(&column, columns));
-            let hint = alike.into_iter().chain(has).collect::<Vec<_>>().join("; ");
+            let renamed = tables.iter().find_map(|(stage, columns)| renamed(&column, stage, columns));
+            let hint = alike.into_iter().chain(has).chain(renamed).collect::<Vec<_>>().join("; ");
             Complaint::new(&self.path, format!("`{column}` is no column of {whose}"))
                 .missing(Named::Column, &column)
+                .among(tables.iter().flat_map(|(_, columns)| *columns))
                 .hint(hint)
         };
         lost.into_iter().map(complaint).collect()
@@ -73,6 +75,19 @@ fn look_alike(name: &str, columns: &[String]) -> Option<String> {
     let letters: Vec<String> =
         column.chars().filter(|c| !c.is_ascii()).map(|c| format!("U+{:04X}", u32::from(c))).collect();
     Some(format!("the file has `{column}`, which holds {} and only looks the same", letters.join(", ")))
+}
+
+/// How a column gets this name whose own differs from it in signs that no name here can have: `w/z` for `wz`.
+fn renamed(name: &str, stage: &str, columns: &[String]) -> Option<String> {
+    let letters = |text: &str| text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
+    let other = |column: &&String| *column != name && !is_name(column) && letters(column) == letters(name);
+    let column = columns.iter().find(other)?;
+    Some(format!("a column of `{stage}` gets another name by `rename = {{ {column:?} = {name:?} }}`"))
+}
+
+/// Whether a column can be a factor or a response by its own name.
+fn is_name(column: &str) -> bool {
+    column.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
 /// Marks that nobody sees.
@@ -132,6 +147,12 @@ mod tests {
         let both = "`UCT` is no column of `cores` or `logs`; `cores` has sample, Ec, UCS, w/c; `logs` has depth";
         assert_eq!(said(&["cores", "logs"], &["UCT", "depth"]), [both]);
         assert!(said(&["wide"], &["x"])[0].ends_with(", c19 and 10 more"));
+    }
+
+    #[test]
+    fn a_column_whose_name_no_workflow_can_use_is_renamed() {
+        let wanted = "; a column of `cores` gets another name by `rename = { \"w/c\" = \"wc\" }`";
+        assert!(said(&["cores"], &["wc"])[0].ends_with(wanted));
     }
 
     #[test]

@@ -59,7 +59,7 @@ impl Sheet {
         }
         let mut reader =
             csv::ReaderBuilder::new().delimiter(separator).trim(csv::Trim::All).from_reader(body.as_bytes());
-        let fail = |e: &csv::Error| unequal(e, skipped);
+        let fail = |e: &csv::Error| unequal(e, body, skipped);
         let heads: Vec<String> =
             reader.headers().map_err(|e| fail(&e))?.iter().map(|head| head.trim_matches(blank).to_owned()).collect();
         if heads.len() > MOST_COLUMNS {
@@ -75,7 +75,7 @@ impl Sheet {
             }
             let record = record.map_err(|e| fail(&e))?;
             if heads.len() > 1 && record.iter().all(str::is_empty) {
-                let line = record.position().map_or(0, csv::Position::line) as usize + skipped;
+                let line = record.position().map_or(0, |at| line_at(body, at.byte())) + skipped;
                 return Err(StageError::new(format!("line {line} has no value in any cell"))
                     .hint("remove such lines; spreadsheets write them below a table"));
             }
@@ -136,10 +136,17 @@ fn not_text(bytes: &[u8], valid: usize) -> StageError {
         .hint("save the file as CSV in UTF-8; spreadsheets offer it when a file is saved")
 }
 
-fn unequal(error: &csv::Error, skipped: usize) -> StageError {
+/// The line, from 1, of the record that begins at this byte: the reader takes the ends of lines above a record for a part of it.
+pub(super) fn line_at(text: &str, byte: u64) -> usize {
+    let byte = byte as usize;
+    let ends = text[byte..].bytes().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+    1 + text[..byte + ends].matches('\n').count()
+}
+
+fn unequal(error: &csv::Error, body: &str, skipped: usize) -> StageError {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
-            let line = pos.as_ref().map_or(0, |at| at.line() as usize + skipped);
+            let line = pos.as_ref().map_or(0, |at| line_at(body, at.byte()) + skipped);
             let cells = if *len == 1 { "cell" } else { "cells" };
             StageError::new(format!("line {line} has {len} {cells} where the first line has {expected_len}"))
                 .hint("every line must have the cells of the first line; put a cell that holds a comma in quotes")
@@ -182,6 +189,8 @@ mod tests {
         assert_eq!(read("a,y\n1,2\n\n3,4\n").rows(), 2);
         assert_eq!(message(b"# c\na,b\n1\n"), "line 3 has 1 cell where the first line has 2");
         assert_eq!(message(b"# c\na,b\n1,\0\n"), "line 3 holds the character NUL, which no text has");
+        assert_eq!(message(b"# c\r\na,b\r\n1,2\r\n\r\n1\r\n"), "line 5 has 1 cell where the first line has 2");
+        assert_eq!(message(b"# c\r\na,b\r\n1,2\r\n\r\n,\r\n"), "line 5 has no value in any cell");
         assert_eq!(message(b"a,b\n1,2,3\n"), "line 2 has 3 cells where the first line has 2");
         assert_eq!(message(b"a,b\n1,2\n\xf6,3\n"), "line 3 holds a byte that is not UTF-8 text");
         assert_eq!(message(b"# c\na,b\n1,\"2\n3,4\n"), "line 3: a double quote has no partner");

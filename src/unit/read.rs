@@ -7,7 +7,7 @@
 //! ```
 
 use super::power::Power;
-use super::{Dimension, Unit, UnitError, known_symbols, symbol_unit};
+use super::{Dimension, Unit, UnitError, instead_of, symbol_unit};
 
 /// Brackets within brackets.
 const DEEPEST: usize = 8;
@@ -120,7 +120,7 @@ impl<'t> Reader<'t> {
             return Err(self.incomplete());
         }
         self.rest = rest;
-        symbol_unit(symbol).ok_or_else(|| UnitError::Unknown(quoted(symbol), known_symbols()))
+        symbol_unit(symbol).ok_or_else(|| UnitError::Unknown(quoted(symbol), instead_of(symbol)))
     }
 
     /// The power behind a symbol or a bracket; the error is what follows a power that is no number.

@@ -17,6 +17,7 @@ mod guide;
 mod hostile;
 mod joints;
 mod kill;
+mod laboratory;
 mod nodes;
 mod reading;
 mod readme;

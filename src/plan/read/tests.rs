@@ -100,7 +100,7 @@ fn every_fault_is_reported_at_its_location() {
         "w.toml:4:11: wanted true or false, found the number 1",
         "w.toml:4:14: unknown key `z` | known keys: `x`, `y`",
         "w.toml:5:5: `least-square` is not one of the known words | did you mean `least-squares`? | known words: `least-squares`, `ridge`",
-        "w.toml:6:11: wanted a number, found the text \"1\"",
+        "w.toml:6:11: wanted a number, found the text \"1\" | write it without quotes: 1",
         "w.toml:7:5: wanted a list of 2 values, found a list of 1 value",
         "w.toml:8:1: unknown key `h` | known keys: `a`, `b`, `c`, `d`, `e`, `f`, `g`",
     ];

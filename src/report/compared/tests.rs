@@ -14,6 +14,7 @@ use std::sync::Arc;
 fn part(name: &str, kind: &str, class: Class, inputs: &[usize], settings: Value, artifact: Artifact) -> Part {
     let content = artifact.content_hash();
     Part {
+        title: None,
         name: name.to_owned(),
         kind: kind.to_owned(),
         class,

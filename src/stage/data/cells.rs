@@ -15,11 +15,69 @@ pub(super) struct Cells<'a> {
     pub missing: Option<&'a [String]>,
 }
 
-/// One column of the table; `names` are those of the columns before it.
+/// The cells of a column that are neither numbers nor missing, where it is read as words.
+#[derive(Debug, PartialEq)]
+pub(super) struct Words {
+    /// The column.
+    pub name: String,
+    unit: String,
+    /// Their rows, from 1.
+    rows: Vec<usize>,
+    /// The different ones, in their order.
+    words: Vec<String>,
+    /// Words for missing values that the workflow names.
+    missing: Vec<String>,
+}
+
+/// Most rows and words that a fault lists.
+const MOST_LISTED: usize = 8;
+
+/// `1, 2 and 3`, or the first of many and how many there are.
+fn listed(all: impl ExactSizeIterator<Item = String>) -> String {
+    let count = all.len();
+    let mut shown: Vec<String> = all.take(MOST_LISTED).collect();
+    match shown.pop() {
+        Some(last) if count > MOST_LISTED => format!("{}, {last}, … ({count} in all)", shown.join(", ")),
+        Some(last) if !shown.is_empty() => format!("{} and {last}", shown.join(", ")),
+        last => last.unwrap_or_default(),
+    }
+}
+
+impl Words {
+    /// `rows 2 and 5: `UCS` [MPa] is `broken``.
+    pub(super) fn found(&self) -> String {
+        let rows = listed(self.rows.iter().map(usize::to_string));
+        let words = listed(self.words.iter().map(|word| format!("`{}`", shortened(word))));
+        let (plural, name) = (if self.rows.len() == 1 { "" } else { "s" }, &self.name);
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
+        format!("row{plural} {rows}: `{name}`{unit} is {words}")
+    }
+
+    /// That they are no numbers, and what to do.
+    pub(super) fn fault(&self) -> StageError {
+        let none = if self.words.len() == 1 { "which is no number" } else { "which are no numbers" };
+        StageError::new(format!("{}, {none}", self.found())).hint(format!("correct the file, or {}", self.as_missing()))
+    }
+
+    /// The key that takes them for missing values, with the words that it holds already.
+    pub(super) fn as_missing(&self) -> String {
+        let all: Vec<String> = self.missing.iter().chain(&self.words).map(|word| format!("{word:?}")).collect();
+        let stands = if self.words.len() == 1 { "it stands" } else { "they stand" };
+        format!("say `missing = [{}]` if {stands} for no value", all.join(", "))
+    }
+
+    /// The first of them.
+    pub(super) fn first(&self) -> &str {
+        self.words.first().map_or("", String::as_str)
+    }
+}
+
+/// One column of the table; `names` are those of the columns before it. `words` receives what is no number in it.
 pub(super) fn column(
     (head, cells): (&str, Vec<String>),
     how: &Cells,
     names: &mut HashSet<String>,
+    found: &mut Vec<Words>,
 ) -> Result<Column, StageError> {
     let (name, unit) = name_and_unit(head)?;
     if name.is_empty() {
@@ -37,7 +95,7 @@ pub(super) fn column(
     if let Some(values) = numbers {
         return Ok(column(unit, Values::Reals(values)));
     }
-    how.check_words(name, unit, &cells)?;
+    found.push(how.words(name, unit, &cells)?);
     let words = cells.into_iter().map(|cell| if how.is_missing(&cell) { String::new() } else { cell });
     Ok(column("", Values::Texts(words.collect())))
 }
@@ -105,32 +163,32 @@ impl Cells<'_> {
         is_number(&text).then(|| text.parse().ok()).flatten()
     }
 
-    /// The fault of a cell that is not a number in a column of numbers: a thousands separator, or a word in a column with a unit.
-    fn check_words(&self, name: &str, unit: &str, cells: &[String]) -> Result<(), StageError> {
-        let wrong = cells.iter().enumerate().find(|(_, cell)| self.number(cell).is_none());
-        let Some((row, cell)) = wrong else { return Ok(()) };
-        if let Some((row, cell)) =
-            cells.iter().enumerate().find(|(_, cell)| self.number(cell).is_none() && grouped(cell))
-        {
+    /// What is no number in a column that is not one of numbers.
+    ///
+    /// # Errors
+    /// A number with a thousands separator, numbers that are written otherwise, or words in a column with a unit.
+    fn words(&self, name: &str, unit: &str, cells: &[String]) -> Result<Words, StageError> {
+        let wrong: Vec<(usize, &String)> =
+            cells.iter().enumerate().filter(|(_, cell)| self.number(cell).is_none()).collect();
+        if let Some((row, cell)) = wrong.iter().find(|(_, cell)| grouped(cell)) {
             let message = format!("row {}: `{name}` is `{cell}`, a number with a thousands separator", row + 1);
             let hint = "remove the separators from the file: the same signs stand for decimals elsewhere, and a guess would \
                         be wrong by a thousand";
             return Err(StageError::new(message).hint(hint));
         }
         // A column of numbers but for some that are written otherwise would be a column of words, and nobody would see it.
-        let word = |cell: &&String| self.number(cell).is_none() && !is_meant_as_number(cell);
-        if !cells.iter().any(|cell| word(&cell)) {
+        if let Some((row, cell)) = wrong.first().filter(|_| wrong.iter().all(|(_, cell)| is_meant_as_number(cell))) {
             let message = format!("row {}: `{name}` is `{}`, which is no number here", row + 1, shortened(cell));
             let hint = "write it as 5, 0.05 or 5e-2, between 1e-300 and 1e300; per cent stand in the head: `x [%]`";
             return Err(StageError::new(message).hint(hint));
         }
-        let numbers = cells.iter().filter(|cell| !self.is_missing(cell) && self.number(cell).is_some()).count();
-        if unit.is_empty() || numbers == 0 {
-            return Ok(());
-        }
-        let message = format!("row {}: `{name}` [{unit}] is `{cell}`, which is no number", row + 1);
-        Err(StageError::new(message)
-            .hint(format!("correct it, or say `missing = [\"{cell}\"]` if it stands for no value")))
+        let rows = wrong.iter().map(|(row, _)| row + 1).collect();
+        let mut seen = HashSet::new();
+        let words = wrong.into_iter().map(|(_, cell)| cell).filter(|cell| seen.insert(*cell)).cloned().collect();
+        let missing = self.missing.unwrap_or_default().to_vec();
+        let words = Words { name: name.to_owned(), unit: unit.to_owned(), rows, words, missing };
+        let are_numbers = cells.iter().any(|cell| !self.is_missing(cell) && self.number(cell).is_some());
+        if !unit.is_empty() && are_numbers { Err(words.fault()) } else { Ok(words) }
     }
 }
 

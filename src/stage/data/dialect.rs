@@ -1,7 +1,8 @@
 //! The dialect of a text file: encoding, delimiter and decimal sign, detected from the bytes or set in the workflow.
 
 use super::super::StageError;
-use super::super::sheet::below_comments;
+use super::super::sheet::{below_comments, line_at};
+use super::head;
 use crate::unit::vanishes;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -140,25 +141,48 @@ pub(super) fn decode(bytes: &[u8], fixed: Option<Encoding>) -> Result<(String, O
     Ok((text.into_owned(), detected))
 }
 
-/// The delimiter under which all lines have the same number of cells, the greatest such number; not one under which a quote
-/// swallows all lines, or closes before the end of its cell.
-pub(super) fn delimiter(text: &str) -> Delimiter {
-    let (body, _) = below_comments(text.trim_start_matches('\u{feff}'));
+/// The lines of a text that are looked at before it is read.
+pub(super) const LOOKED_AT: usize = 200;
+
+/// How the lines of a text make a table.
+pub(super) struct Layout {
+    pub delimiter: Delimiter,
+    /// The line of the names, from 1, where it is stated or not the first.
+    pub line: Option<usize>,
+    /// Whether all lines from that of the names on have the same number of cells, as far as they were looked at.
+    pub is_even: bool,
+}
+
+/// The delimiter under which all lines from that of the names on have the same number of cells, the greatest such number, and
+/// the line of the names; not one under which a quote swallows all lines, or closes before the end of its cell. A delimiter
+/// or a line that is stated stays.
+pub(super) fn layout(text: &str, fixed: Option<Delimiter>, line: Option<usize>) -> Layout {
+    let (body, skipped) = below_comments(text.trim_start_matches('\u{feff}'));
     let score = |delimiter: Delimiter| {
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter.byte())
             .has_headers(false)
             .flexible(true)
+            .trim(csv::Trim::All)
             .from_reader(body.as_bytes());
-        let widths: Vec<usize> = reader.records().take(200).flatten().map(|record| record.len()).collect();
+        let records: Vec<csv::StringRecord> = reader.records().take(LOOKED_AT).flatten().collect();
+        let lines: Vec<Vec<&str>> = records.iter().map(|record| record.iter().collect()).collect();
+        let head = if line.is_some() { Some(0) } else { head::find(&lines, is_any_number) };
+        let widths: Vec<usize> = lines[head.unwrap_or(0)..].iter().map(Vec::len).collect();
         let first = widths.first().copied().unwrap_or(1);
         let rows = widths.len() > 1 && quotes_fit(body, delimiter.byte());
         let even = first > 1 && rows && widths.iter().all(|w| *w == first);
-        // where no delimiter gives lines of equal length, the one with most cells in the first line is reported
-        (even, first)
+        let at = head.filter(|head| even && *head > 0).and_then(|head| records[head].position());
+        let at = at.map(|at| skipped + line_at(body, at.byte()));
+        // where no delimiter gives lines of equal length, the one with most cells in the first line is reported, or that of
+        // most lines: a file below a title is no table of one column
+        let parted = widths.iter().filter(|width| **width > 1).count() * 2 > widths.len();
+        let last = widths.last().filter(|_| parted).copied().unwrap_or(1);
+        ((even, even && head == Some(0), first, last), Layout { delimiter, line: line.or(at), is_even: even })
     };
-    let best = Delimiter::ALL.into_iter().reduce(|a, b| if score(b) > score(a) { b } else { a });
-    best.unwrap_or(Delimiter::Comma)
+    let all = Delimiter::ALL.into_iter().filter(|delimiter| fixed.is_none_or(|fixed| fixed == *delimiter));
+    let best = all.map(score).reduce(|a, b| if b.0 > a.0 { b } else { a });
+    best.map_or(Layout { delimiter: Delimiter::Comma, line, is_even: false }, |(_, layout)| layout)
 }
 
 /// Whether every quote that opens a cell has a partner, and the cell ends there.
@@ -228,6 +252,11 @@ pub(super) fn is_number(text: &str) -> bool {
     sane && text.parse::<f64>().is_ok_and(|value| value.is_finite() && !vanishes(text, value))
 }
 
+/// Whether a text is a number with either decimal sign.
+pub(super) fn is_any_number(text: &str) -> bool {
+    is_number(&text.replacen(',', ".", 1).replacen('−', "-", 1))
+}
+
 /// Whether a text that is no number here is one elsewhere: `inf`, `1e400`, `0x10`, `5%`, digits of other scripts,
 /// marks without width.
 pub(super) fn is_meant_as_number(text: &str) -> bool {
@@ -267,8 +296,13 @@ pub(super) fn stated(text: &str) -> Option<(Delimiter, &str)> {
     Some((delimiter, rest))
 }
 
-/// The note on how a table was read; `None` for the default.
-pub(super) fn said(encoding: Option<String>, delimiter: Option<Delimiter>, decimal: Option<Decimal>) -> Option<String> {
+/// The note on how a table was read; `None` for the default. `line` is that of the names, where it is not the first.
+pub(super) fn said(
+    encoding: Option<String>,
+    delimiter: Option<Delimiter>,
+    decimal: Option<Decimal>,
+    line: Option<usize>,
+) -> Option<String> {
     let cells = delimiter.filter(|d| *d != Delimiter::Comma).map(|d| {
         format!(
             "cells parted by {}",
@@ -279,7 +313,15 @@ pub(super) fn said(encoding: Option<String>, delimiter: Option<Delimiter>, decim
         )
     });
     let comma = decimal.filter(|d| *d == Decimal::Comma).map(|_| "decimal commas".to_owned());
-    let all: Vec<String> = [encoding, cells, comma].into_iter().flatten().collect();
-    let keys = "the keys `encoding`, `delimiter` and `decimal` fix it";
+    let all: Vec<String> = [encoding, cells, comma, line.map(names_in)].into_iter().flatten().collect();
+    let keys = match line {
+        Some(_) => "the keys `encoding`, `delimiter`, `decimal` and `first_line` fix it",
+        None => "the keys `encoding`, `delimiter` and `decimal` fix it",
+    };
     (!all.is_empty()).then(|| format!("detected: {}; {keys}", all.join(", ")))
+}
+
+/// The words for a line of names that is not the first.
+pub(super) fn names_in(line: usize) -> String {
+    format!("names of the columns in line {line}, below titles")
 }

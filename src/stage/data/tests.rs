@@ -26,7 +26,7 @@ fn faults_name_line_or_column() {
 }
 
 fn read(bytes: &[u8], how: &Dialect) -> (Table, String) {
-    let (table, said) = parse_as(bytes, how).unwrap();
+    let Read { table, said, .. } = parse_as(bytes, how).unwrap();
     (table, said.unwrap_or_default())
 }
 
@@ -111,6 +111,11 @@ fn missing_values_have_words() {
     assert!(read(b"a\n-\n2\n", &own).0.shown("a").is_err());
     let message = parse(b"UCS [MPa]\n30\nbroken\n").unwrap_err().message;
     assert_eq!(message, "row 2: `UCS` [MPa] is `broken`, which is no number");
+    let several = Dialect { missing: Some(vec!["x".into()]), ..Dialect::default() };
+    let fault = parse_as(b"UCS [MPa]\n30\nbroken\nx\n-\nbroken\n", &several).unwrap_err();
+    assert_eq!(fault.message, "rows 2, 4 and 5: `UCS` [MPa] is `broken` and `-`, which are no numbers");
+    let hint = "correct the file, or say `missing = [\"x\", \"broken\", \"-\"]` if they stand for no value";
+    assert_eq!(fault.hint.as_deref(), Some(hint));
     // categories stay words
     assert!(parse(b"cement\nCEM I\nslag\n").unwrap().shown("cement").is_err());
 }
@@ -137,10 +142,17 @@ fn workbooks_are_read_by_sheet() {
 fn names_and_units_stand_where_the_laboratory_put_them() {
     let german = b"sep=;\r\nPr\xfcfbericht 12;;\r\nProbe;UCS;nu\r\n;MPa;-\r\nA1;31,5;0,2\r\nA2;29,25;0,21\r\n";
     let third = Dialect { first_line: Some(3), ..Dialect::default() };
-    let (table, said) = read(german, &third);
-    assert_eq!(table.shown("UCS").unwrap(), (vec![31.5, 29.25], "MPa"));
-    assert_eq!((table.rows(), table.column("nu").unwrap().unit.as_str()), (2, ""));
-    assert!(said.contains("windows-1252") && said.ends_with("detected: units in the row below the names"), "{said}");
+    let detected = "names of the columns in line 3, below titles";
+    for (how, is_detected) in [(third, false), (Dialect::default(), true)] {
+        let (table, said) = read(german, &how);
+        assert_eq!(table.shown("UCS").unwrap(), (vec![31.5, 29.25], "MPa"));
+        assert_eq!((table.rows(), table.column("nu").unwrap().unit.as_str()), (2, ""));
+        assert_eq!(said.contains(detected) && said.contains("`first_line` fix it"), is_detected, "{said}");
+        assert!(
+            said.contains("windows-1252") && said.ends_with("detected: units in the row below the names"),
+            "{said}"
+        );
+    }
     let message = |bytes: &[u8], how: &Dialect| parse_as(bytes, how).unwrap_err().message;
     let beyond = Dialect { first_line: Some(9), ..Dialect::default() };
     assert_eq!(message(b"a\n1\n", &beyond), "the file has no line 9, in which `first_line` looks for the names");
@@ -150,8 +162,21 @@ fn names_and_units_stand_where_the_laboratory_put_them() {
         message(b"a,,c\n1,2,3\n", &Dialect::default()),
         "column 2 has no name: every column needs a name of its own"
     );
+    let hint = parse_as(b"Labor\n;mix;grade\nP1;A;4\n", &Dialect::default()).unwrap_err().hint.unwrap();
+    assert!(hint.ends_with("say in which line the names are: `first_line = 4`"), "{hint}");
     let sheet = Dialect { sheet: Some("a".into()), ..Dialect::default() };
     assert_eq!(message(b"a\n1\n", &sheet), "`sheet` has no effect on a text file");
+}
+
+/// Titles without the delimiters that would make them as wide as the table, with commas of their own.
+#[test]
+fn titles_above_the_names_are_left_out_and_said() {
+    let text = "# export\n\nBaustofflabor, Musterstadt\nAuftrag;12\n\nProbe;w/z;fc (MPa)\nP1;0,45;31,2\nP2;0,5;k. A.\n";
+    let how = Dialect { missing: Some(vec!["k. A.".into()]), ..Dialect::default() };
+    let (table, said) = read(text.as_bytes(), &how);
+    assert_eq!(table.columns.iter().map(|c| c.name.as_str()).collect::<Vec<_>>(), ["Probe", "w/z", "fc"]);
+    assert_eq!(table.rows(), 2);
+    assert!(said.contains("semicolons `;`, decimal commas, names of the columns in line 6, below titles"), "{said}");
 }
 
 #[test]
@@ -249,14 +274,16 @@ fn a_title_beside_the_columns_is_no_column() {
         None,
     );
     let from = |line| parse_as(&bytes, &Dialect { first_line: line, ..Dialect::default() });
-    let (table, _) = from(Some(3)).unwrap();
-    assert_eq!((table.shown("x").unwrap().0, table.shown("y").unwrap().0), (vec![1.0], vec![2.0]));
-    assert_eq!(table.columns.len(), 2);
+    for (line, said) in [(Some(3), None), (None, Some("line 3, below titles; the key `first_line` fixes it"))] {
+        let Read { table, said: detected, .. } = from(line).unwrap();
+        assert_eq!((table.shown("x").unwrap().0, table.shown("y").unwrap().0), (vec![1.0], vec![2.0]));
+        assert_eq!(table.columns.len(), 2);
+        assert!(said.is_none_or(|said| detected.is_some_and(|detected| detected.ends_with(said))));
+    }
     for line in [5, (1 << 32) + 1, usize::MAX] {
         let message = format!("the file has no line {line}, in which `first_line` looks for the names");
         assert_eq!(from(Some(line)).unwrap_err().message, message);
     }
-    assert_eq!(from(Some(0)).unwrap_err(), from(None).unwrap_err());
 }
 
 /// Rows and cells of Excel may leave out where they stand; some programs write none of it.
@@ -469,7 +496,7 @@ fn damaged_workbooks_are_refused() {
             let mut flipped = bytes.clone();
             flipped[at] ^= 1 << (at % 8);
             // The check sums of an archive leave a flip in its headers alone.
-            assert!(parse_as(&flipped, &how).map_or(true, |(table, _)| table == whole), "{file} flipped at {at}");
+            assert!(parse_as(&flipped, &how).map_or(true, |read| read.table == whole), "{file} flipped at {at}");
         }
     }
 }

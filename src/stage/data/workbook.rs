@@ -9,6 +9,7 @@ mod xlsb;
 use super::super::StageError;
 use super::super::sheet::Sheet;
 use super::dialect::{self, Decimal, Dialect};
+use super::head;
 use archive::{Archive, broken};
 use calamine::{Data, Dimensions, ExcelDateTime, Reader, Sheets, open_workbook_auto_from_rs};
 use design::table::MOST_RUNS;
@@ -34,14 +35,17 @@ pub(super) struct Book {
 /// The cells of a sheet.
 pub(super) fn sheet(bytes: &[u8], how: &Dialect) -> Result<Book, StageError> {
     let mut cells = cells(bytes, how.sheet.as_deref())?;
-    if let Some(line) = how.first_line {
+    let detected_line = if how.first_line.is_none() { cells.head() } else { None };
+    if let Some(line) = how.first_line.or(detected_line) {
         cells.begin(line)?;
     }
     cells.check_merged()?;
     let tells_shares = cells.tells_shares;
-    let detected = cells.settle_decimals(how.decimal)?;
-    let said =
-        detected.then(|| "detected: decimal commas in cells that hold text; the key `decimal` fixes it".to_owned());
+    let commas = cells.settle_decimals(how.decimal)?;
+    let commas = commas.then(|| "decimal commas in cells that hold text; the key `decimal` fixes it".to_owned());
+    let names = detected_line.map(|line| format!("{}; the key `first_line` fixes it", dialect::names_in(line)));
+    let all: Vec<String> = [commas, names].into_iter().flatten().collect();
+    let said = (!all.is_empty()).then(|| format!("detected: {}", all.join("; ")));
     let mut lines = cells.lines().into_iter();
     let heads: Vec<String> = lines.next().unwrap_or_default().iter().map(|head| head.text.trim().to_owned()).collect();
     let (mut columns, mut shares) = (vec![Vec::new(); heads.len()], Vec::new());
@@ -181,6 +185,19 @@ impl Cells {
     /// Takes a cell of a sheet, or the error that it holds.
     fn take(&mut self, sheet: &str, row: u32, column: u32, cell: Result<Cell, String>) -> Result<(), StageError> {
         self.add(row, column, cell.map_err(|error| at(sheet, row as usize + 1, &error))?)
+    }
+
+    /// The row that names the columns, counted from 1, where it is not the first one.
+    fn head(&self) -> Option<usize> {
+        let [first, last] = self.columns?;
+        let mut lines = Vec::new();
+        for cells in self.rows.values().take(dialect::LOOKED_AT) {
+            let mut line = vec![""; (last - first) as usize + 1];
+            cells.iter().for_each(|(column, cell)| line[(column - first) as usize] = &cell.text);
+            lines.push(line);
+        }
+        let at = head::find(&lines, dialect::is_any_number).filter(|at| *at > 0)?;
+        self.rows.keys().nth(at).map(|row| *row as usize + 1)
     }
 
     /// Leaves out what stands above a row, counted from 1.

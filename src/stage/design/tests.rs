@@ -170,6 +170,26 @@ fn faults_stand_at_their_key_with_the_remedy() {
 }
 
 #[test]
+fn axial_points_below_zero_are_refused_before_anything_runs() {
+    let mut context = context();
+    let ranged = |range, sets: &[&str]| crate::stage::Factor {
+        unit: "GPa".into(),
+        range: Some(range),
+        sets: sets.iter().map(|&path| path.to_owned()).collect(),
+        ..Default::default()
+    };
+    context.factors.insert("E".into(), ranged([1.0, 30.0], &["mortar.Ec"]));
+    context.factors.insert("T".into(), ranged([1.0, 30.0], &[]));
+    let found = |text: &str| stage(&format!("method = \"central-composite\"\n{text}")).check(&context);
+    let [fault] = &found("factors = [\"E\", \"sigma_c\"]")[..] else { panic!("one fault") };
+    assert_eq!(fault.message, "row 5: the axial point puts `E` to −5.01 GPa, beyond its range and below zero");
+    assert!(fault.hint.as_ref().unwrap().contains("extent = \"axial\""));
+    // a temperature may be below zero, and an inscribed design stays within the range
+    assert!(found("factors = [\"T\", \"sigma_c\"]").is_empty());
+    assert!(found("extent = \"axial\"\nfactors = [\"E\", \"sigma_c\"]").is_empty());
+}
+
+#[test]
 fn unknown_keys_and_methods_are_refused_by_the_reader() {
     let error = |text: &str| toml::from_str::<Design>(text).unwrap_err().to_string();
     assert!(error("method = \"taguchi\"\nfactors = []").contains("expected one of `full-factorial`"));

@@ -35,6 +35,9 @@ pub struct Figure {
     /// Names of quantities: `{ UCS = "Peak strength" }`; for series, names in the legend by stage.
     #[serde(default)]
     pub names: BTreeMap<String, String>,
+    /// What the report says below the figure, in place of its own sentence on what is drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub caption: Option<String>,
     /// Half width of the band around the line of equality, as a fraction of the value.
     pub band: Option<f64>,
     /// Column along the page (`xy`, `curves`, `heat-map`), or the quantity of a `histogram`.

@@ -36,6 +36,7 @@ mod design;
 mod flow;
 mod lost;
 mod model;
+mod named;
 mod own;
 mod parts;
 mod plot;
@@ -159,6 +160,7 @@ impl Stage for Figure {
             found.push(
                 Complaint::new("response", message)
                     .missing(Named::Response, name)
+                    .among(context.responses.keys())
                     .hint(format!("known: {}", known.join(", "))),
             );
         }
@@ -169,10 +171,14 @@ impl Stage for Figure {
             let known: Vec<&str> = context.factors.keys().map(String::as_str).collect();
             let message = format!("there is no [factor.{name}]");
             found.push(
-                Complaint::new(key, message).missing(Named::Factor, name).hint(format!("known: {}", known.join(", "))),
+                Complaint::new(key, message)
+                    .missing(Named::Factor, name)
+                    .among(context.factors.keys())
+                    .hint(format!("known: {}", known.join(", "))),
             );
         }
-        for label in self.names.values() {
+        found.extend(self.names.keys().filter_map(|key| self.check_named(key, context)));
+        for label in self.names.values().chain(&self.caption) {
             if let Err(fault) = text::check(label) {
                 found.push(Complaint::new("", fault.to_string()));
             }
@@ -312,63 +318,6 @@ impl Figure {
         }
         found
     }
-
-    fn response_labels(&self, context: &Context) -> Vec<Label> {
-        let label = |key: &String| {
-            let response = context.responses.get(key).cloned().unwrap_or_default();
-            let name = self.names.get(key).cloned().unwrap_or_default();
-            Label { key: key.clone(), name, symbol: response.symbol, unit: response.unit, ..Label::default() }
-        };
-        let named = self.response.list();
-        let all = named.is_empty() && self.show.needs().responses[1] > 0;
-        if all { context.responses.keys().map(label).collect() } else { named.iter().map(label).collect() }
-    }
-
-    /// The factors that are named, or all that the first input holds.
-    fn factor_labels(&self, known: &Known) -> Result<Vec<Label>, StageError> {
-        if self.show.needs().factors[1] == 0 {
-            return Ok(Vec::new());
-        }
-        let mut keys = self.factors.clone();
-        // A surface is drawn over two factors, and its note states the others; any other figure shows the named ones, or all.
-        if keys.is_empty() || matches!(self.show, Show::Contour | Show::Surface) {
-            let artifact = known.load(known.one("of")?)?;
-            let found = source::words(&artifact, self.response.list().first().map(String::as_str));
-            for name in found.into_iter().filter(|name| known.context.factors.contains_key(name)) {
-                if !keys.contains(&name) {
-                    keys.push(name);
-                }
-            }
-        }
-        if self.show == Show::Agreement {
-            // Rows are matched by the factors; their labels are not drawn.
-            let unit = |key: &String| known.context.factors.get(key).map_or(String::new(), |own| own.unit.clone());
-            return Ok(keys.into_iter().map(|key| Label { unit: unit(&key), key, ..Label::default() }).collect());
-        }
-        let label = |key: &String| {
-            let factor = known.context.factors.get(key).cloned().unwrap_or_default();
-            let (low, high) = figure::axis::extent(factor.levels.iter().copied());
-            let range = factor.range.or((!factor.levels.is_empty()).then_some([low, high]));
-            let group = factor
-                .sets
-                .first()
-                .and_then(|path| path.split_once('.'))
-                .map(|(group, _)| group.to_owned())
-                .unwrap_or_default();
-            let name = self.names.get(key).cloned().unwrap_or_default();
-            Label { key: key.clone(), name, symbol: factor.symbol, unit: factor.unit, group, range }
-        };
-        Ok(keys.iter().map(label).collect())
-    }
-
-    /// Names in the legend where several stages are drawn together: those of `names`, else those of the stages.
-    fn series(&self) -> Vec<String> {
-        let stages = self.of.list();
-        if stages.len() < 2 {
-            return Vec::new();
-        }
-        stages.iter().map(|stage| self.names.get(stage).cloned().unwrap_or(stage.replace('_', " "))).collect()
-    }
 }
 
 impl Kind for Figure {
@@ -391,7 +340,9 @@ impl Kind for Figure {
     /// below a picture use the declared symbols.
     /// 18: overlays keep their own units; lines are straight on logarithmic axes; the mean of curves ends where the first does;
     /// bands and bars are named; powers are raised in plain words.
-    const WORKS: &'static [Work] = &[Work { name: "figure", version: 18, run: draw }];
+    /// 19: boxes say how many values they hold and what their whiskers are; names of columns keep their letters in titles; points
+    /// on an axis are drawn whole.
+    const WORKS: &'static [Work] = &[Work { name: "figure", version: 19, run: draw }];
 }
 
 fn draw(job: &Job) -> Result<Artifact, Failure> {

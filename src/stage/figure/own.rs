@@ -191,7 +191,7 @@ pub(super) fn xy(params: &Params, sources: &Sources, job: &Job) -> Result<Xy, Fa
         let message = format!("no row has numbers in both `{}` and `{}`", x.quantity.id(), y.quantity.id());
         return Err(StageError::new(message).into());
     }
-    let measured = overlay(job, &x.quantity, &y.quantity)?;
+    let measured = overlay(job, params, [&x.quantity, &y.quantity])?;
     let measured = measured.map(|line| Cloud { name: line.name, x: line.x, y: line.y, ..Cloud::default() });
     Ok(Xy {
         x_scale: drawn.plot.scale(Direction::X),
@@ -303,8 +303,8 @@ fn told(plot: &Plot, Fitted { fit, found }: &Fitted) -> String {
     format!("{what} {}{error}, $R^2${kind} {}", significant(slope.estimate, 4), figure::axis::fixed(found.fit.r2, 4))
 }
 
-/// The user's own columns `x` and `y`, in the units of the plot.
-fn overlay(job: &Job, x: &Quantity, y: &Quantity) -> Result<Option<bundle::Line>, Failure> {
+/// The user's own columns `x` and `y`, in the units of the plot; in the legend with the name of its file, or that of `names`.
+fn overlay(job: &Job, params: &Params, [x, y]: [&Quantity; 2]) -> Result<Option<bundle::Line>, Failure> {
     let Some(file) = job.files.iter().find(|file| file.name == "overlay") else { return Ok(None) };
     let table = data::parse(&job.file("overlay")?)?;
     let named = |q: &Quantity| table.column(q.id());
@@ -329,7 +329,8 @@ fn overlay(job: &Job, x: &Quantity, y: &Quantity) -> Result<Option<bundle::Line>
         Ok::<Vec<f64>, StageError>(to.of_all(numbers(column).0))
     };
     let stem = file.path.file_stem().map(|stem| stem.to_string_lossy().replace('_', " ")).unwrap_or_default();
-    Ok(Some(bundle::Line { name: stem, x: read(first, x)?, y: read(second, y)? }))
+    let name = params.labels.get("overlay").map_or(stem, |label| label.name.clone());
+    Ok(Some(bundle::Line { name, x: read(first, x)?, y: read(second, y)? }))
 }
 
 /// Number of abscissae at which a mean curve is computed.
@@ -367,7 +368,7 @@ pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bu
         bundle::Group { name, curves, mean }
     };
     let groups = names.into_iter().enumerate().map(group).filter(|g| !g.curves.is_empty()).collect();
-    let measured = overlay(job, &x, &y)?.into_iter().collect();
+    let measured = overlay(job, params, [&x, &y])?.into_iter().collect();
     Ok(Bundle { x, y, groups, band: "one standard deviation".into(), measured })
 }
 

@@ -185,7 +185,9 @@ impl Plot {
             let column = column.clone().or_else(|| curve(key))?;
             Some((key.to_owned(), label(&column, context, names)))
         };
-        columns.into_iter().filter_map(label).collect()
+        let overlaid = names.get("overlay").filter(|_| self.overlay.is_some());
+        let overlaid = overlaid.map(|name| ("overlay".to_owned(), Label { name: name.clone(), ..Label::default() }));
+        columns.into_iter().filter_map(label).chain(overlaid).collect()
     }
 }
 
