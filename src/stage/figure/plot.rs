@@ -231,6 +231,11 @@ const KNOWN: [(&str, &str, &str); 4] = [
     ("stress", "Axial stress", r"\sigma"),
 ];
 
+/// Whether a name is one of ours, and not of the workflow or a file.
+pub(super) fn is_ours(name: &str) -> bool {
+    KNOWN.iter().any(|(_, words, _)| *words == name)
+}
+
 /// The label of a column: a factor or response has its symbol and unit, any other column its name.
 fn label(column: &str, context: &Context, names: &BTreeMap<String, String>) -> Label {
     let factor = context.factors.get(column).map(|f| (f.symbol.clone(), f.unit.clone()));
