@@ -101,13 +101,15 @@ pub enum Fault {
         wanted: &'static str,
     },
     /// Two particles start too deep in one another.
-    #[error("particles {a} and {b} start with an overlap of {overlap:.3} of the smaller radius")]
+    #[error(
+        "particles {a} and {b} start with an overlap of {overlap:.3} of the smaller radius (of the ball's, at a clump)"
+    )]
     Overlap {
         /// One, by its index in the caller's list.
         a: usize,
         /// The other.
         b: usize,
-        /// Overlap over the smaller radius.
+        /// Overlap over the smaller radius, or over the ball's at a pebble of a clump.
         overlap: f64,
     },
     /// A particle starts too deep in a wall.

@@ -45,7 +45,8 @@ pub struct Settings<S: Space> {
     pub bounds: Option<[Vector<S>; 2]>,
     /// A periodic cell, instead of walls. Velocities of the model come on top of the cell's own motion.
     pub cell: Option<Cell<S>>,
-    /// Overlap over the smaller radius above which a start is refused; infinite while a packing is being made.
+    /// Overlap over the smaller radius, or over the ball's at a pebble of a clump, above which a start is refused; infinite while a
+    /// packing is being made.
     pub overlap_limit: f64,
 }
 

@@ -430,7 +430,13 @@ fn overlaps<S: Space>(model: &Model<S>, body: &[u32], faults: &mut Vec<Fault>) {
             return;
         }
         let distance = centres[j].minus(centres[i]).norm();
-        let overlap = (radii[i] + radii[j] - distance) / radii[i].min(radii[j]);
+        // A clump is rigid however small its pebbles are: of a ball and a pebble the ball says what is deep.
+        let size = match [i, j].map(|k| (bodies[k] as usize) < model.clumps.len()) {
+            [true, false] => radii[j],
+            [false, true] => radii[i],
+            _ => radii[i].min(radii[j]),
+        };
+        let overlap = (radii[i] + radii[j] - distance) / size;
         if overlap > model.settings.overlap_limit || distance == 0.0 {
             faults.push(Fault::Overlap { a, b, overlap });
         }

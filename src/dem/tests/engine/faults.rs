@@ -152,6 +152,26 @@ fn an_overlap_across_the_faces_of_a_cell_is_named() {
 }
 
 #[test]
+fn a_ball_may_cover_a_small_pebble_and_not_another_ball() {
+    let ball = |x: f64, radius: f64| Particle::<D2>::ball([x, 0.0], radius, 2000.0, GRAIN);
+    let mut model = model::<D2>(vec![ball(0.0, 1.0), ball(1.0, 0.1)], vec![], bonded(), Settings::default());
+    assert!(matches!(Engine::new(&model).unwrap_err().0[..], [Fault::Overlap { a: 0, b: 1, .. }]));
+    let clump = Clump {
+        pebbles: vec![1],
+        centre: [1.0, 0.0],
+        velocity: [0.0; 2],
+        spin: [0.0],
+        mass: 1.0,
+        inertia: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    };
+    model.clumps.push(clump);
+    Engine::new(&model).unwrap();
+    model.particles[1].position = [0.5, 0.0];
+    model.particles[1].radius = 0.3;
+    assert!(matches!(Engine::new(&model).unwrap_err().0[..], [Fault::Overlap { a: 0, b: 1, .. }]));
+}
+
+#[test]
 fn a_cell_is_strained_only_where_there_is_one() {
     let mut engine = Engine::new(&block::<D2>(6, 6, 1.0)).unwrap();
     assert!(engine.strain_cell([[0.0; 3]; 3]).is_err());

@@ -27,8 +27,8 @@ use dem::space::Tuple;
 use dem::*;
 use std::sync::LazyLock;
 
-const KN: f64 = 1e6;
-const KS: f64 = 4e5;
+pub(crate) const KN: f64 = 1e6;
+pub(crate) const KS: f64 = 4e5;
 const STEPS: u64 = 500;
 
 pub(crate) fn family() -> Family {
@@ -47,11 +47,11 @@ fn lattices_have_their_closed_forms() {
 /// A lattice of balls of radius 0.5 at distance l: places in one repeat and the repeat's edges, over l.
 pub(crate) struct Lattice {
     pub(crate) name: &'static str,
-    basis: Vec<[f64; 3]>,
-    repeat: [f64; 3],
+    pub(crate) basis: Vec<[f64; 3]>,
+    pub(crate) repeat: [f64; 3],
     count: [usize; 3],
     /// C₁₁, C₁₂, G over 1 N/m and l = 1 m.
-    constants: [f64; 3],
+    pub(crate) constants: [f64; 3],
 }
 
 pub(crate) fn lattices() -> Vec<Lattice> {

@@ -12,7 +12,8 @@
 //! 0.257 for κ 1, 1.5, 2. The packing decides. Five packings grown to that porosity with bonds where discs touch (1.98 a disc)
 //! have 0.780, 0.712, 0.662 and 0.100, 0.164, 0.212 here, with a coefficient of variation of E of 8 %; up to a gap of 1 % (2.06 a disc)
 //! 0.843, 0.770, 0.717; packings to a stress 0.871, 0.796, 0.742. The ratio of E to that of parallel bonds in the same packing
-//! is 0.53 to 0.54 in both kinds. ν stays 0.045 below the periodic statics; platens and a periodic cell differ there.
+//! is 0.53 to 0.54 in both kinds. ν stays 0.045 below the periodic statics between
+//! platens; in a periodic cell of our own it stays within 0.03 ([`crate::periodic`]).
 
 use crate::block::{GRAIN, PLATEN};
 use crate::case::{Case, Family, Near};

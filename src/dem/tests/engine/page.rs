@@ -30,6 +30,7 @@ fn families() -> Vec<Family> {
         crate::strength::family(),
         crate::beam::family(),
         crate::lattice::family(),
+        crate::platens::family(),
         crate::measuring::family(),
         crate::disc::family(),
         crate::packing::family(),
@@ -44,6 +45,7 @@ fn families() -> Vec<Family> {
         crate::curve::family(),
         crate::genesis::family(),
         crate::moduli::family(),
+        crate::periodic::family(),
     ]
 }
 
