@@ -35,6 +35,8 @@ pub struct BoxPlot {
     pub scale: Scale,
     /// Groups from left to right.
     pub groups: Vec<Group>,
+    /// Ends of the axis up the page, where they are asked for; what lies outside is not drawn.
+    pub limits: Option<[f64; 2]>,
 }
 
 /// Fewer values than this have no box: quartiles of three runs mean nothing.
@@ -57,7 +59,8 @@ impl Figure for BoxPlot {
         let outer = Rect { top: page.top + top, bottom: page.bottom + top, ..page };
         let names: Vec<String> = self.groups.iter().map(|group| self.named(group)).collect();
         let x = Axis::categories(self.by.title(), &names);
-        let y = Span::of(&self.y, self.scale, self.groups.iter().flat_map(|g| g.values.iter().copied()));
+        let y = Span::of(&self.y, self.scale, self.groups.iter().flat_map(|g| g.values.iter().copied()))
+            .within(self.limits);
         let panel = marks::category_panel(outer, &x, &y, style);
         legend::draw(&mut scene, &entries, page, style);
         panel.draw_grid(&mut scene);
@@ -136,11 +139,11 @@ fn draw_group(scene: &mut Scene, panel: &Panel, at: f64, group: &Group) {
         scene.stroke(Path::polyline(&[[middle - half, median], [middle + half, median]]), Stroke::new(INK, 0.5));
     }
     let spread = |i: usize| ((i as f64 + 1.0) * GOLDEN).fract() - 0.5;
-    let shown = group.values.iter().enumerate().filter(|(_, v)| can_show(&panel.y, **v));
+    let shown = group.values.iter().enumerate().filter(|(_, v)| panel.y.holds(**v));
     let size = if group.values.len() > 200 { 0.25 } else { 0.45 };
     let discs = shown.map(|(i, &v)| ([middle + 1.1 * half * spread(i), panel.place_y(v)], size)).collect();
     scene.items.push(Item::Discs { discs, color: BLUE });
-    if can_show(&panel.y, group.mean) {
+    if panel.y.holds(group.mean) {
         let diamond = marker(Marker::Diamond, [middle, panel.place_y(group.mean)], 1.9);
         scene.shape(diamond, VERMILION, Stroke::new(PAPER, 0.2));
     }

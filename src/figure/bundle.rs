@@ -48,6 +48,8 @@ pub struct Bundle {
     pub band: String,
     /// Measured curves.
     pub measured: Vec<Line>,
+    /// Ends of the axes along and up the page, where they are asked for; what lies outside is not drawn.
+    pub limits: [Option<[f64; 2]>; 2],
 }
 
 /// Curves of a lone group.
@@ -67,8 +69,8 @@ impl Figure for Bundle {
         let outer = Rect { top: page.top + top, bottom: page.bottom + top, ..page };
         let values = |pick: fn(&Line) -> &Vec<f64>| self.lines().flat_map(move |l| pick(l).iter().copied());
         let (linear, band) = (super::axis::Scale::Linear, self.groups.iter().flat_map(|g| &g.mean));
-        let x = Span::of(&self.x, linear, values(|l| &l.x));
-        let y = Span::of(&self.y, linear, values(|l| &l.y).chain(band.flat_map(Band::values)));
+        let x = Span::of(&self.x, linear, values(|l| &l.x)).within(self.limits[0]);
+        let y = Span::of(&self.y, linear, values(|l| &l.y).chain(band.flat_map(Band::values))).within(self.limits[1]);
         let panel = marks::panel(outer, &x, &y, style);
         legend::draw(&mut scene, &entries, page, style);
         panel.draw_grid(&mut scene);

@@ -40,7 +40,7 @@ impl Figure for Histogram {
         let most = self.counts.iter().map(|&c| c as f64).chain(curve.iter().map(|p| p[1])).fold(1.0, f64::max);
         let x = Span::of(&self.quantity, Scale::Linear, self.edges.iter().copied().filter(|e| e.is_finite()));
         let count = Quantity::new("Number of runs", "", "");
-        let y = Span { quantity: count, scale: Scale::Linear, low: 0.0, high: most };
+        let y = Span { quantity: count, scale: Scale::Linear, low: 0.0, high: most, is_fixed: false };
         let mut panel = marks::panel(outer, &x, &y, style);
         panel.x.grid = false;
         whole(&mut panel.y);

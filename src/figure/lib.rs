@@ -110,12 +110,15 @@ pub struct Quantity {
     pub symbol: String,
     /// Unit: "MPa"; empty for a pure number.
     pub unit: String,
+    /// Whether the name keeps its letters among words, because a person or a file gave it: other languages write nouns with a
+    /// capital.
+    pub is_as_written: bool,
 }
 
 impl Quantity {
     /// From its three parts.
     pub fn new(name: &str, symbol: &str, unit: &str) -> Self {
-        Self { key: String::new(), name: name.into(), symbol: symbol.into(), unit: unit.into() }
+        Self { key: String::new(), name: name.into(), symbol: symbol.into(), unit: unit.into(), is_as_written: false }
     }
 
     /// Sets the key.
@@ -140,13 +143,12 @@ impl Quantity {
         text::quantity(&self.name, &self.symbol, &self.unit)
     }
 
-    /// Plain words for titles and descriptions: the name with a small first letter, or the symbol. The name of a column stays
-    /// as its file has it: other languages write nouns with a capital.
+    /// Plain words for titles and descriptions: the name, with a small first letter unless it is as written, or the symbol.
     pub fn words(&self) -> String {
         if self.name.is_empty() {
             return text::Line::new(&self.sign(), 1.0).plain;
         }
-        if self.name == text::plain_text(&self.key) {
+        if self.is_as_written {
             return text::Line::new(&self.name, 1.0).plain;
         }
         let mut letters = self.name.chars();

@@ -121,6 +121,8 @@ pub struct Span {
     pub low: f64,
     /// The values it holds.
     pub high: f64,
+    /// Whether the ends are those that were asked for.
+    pub is_fixed: bool,
 }
 
 impl Span {
@@ -128,11 +130,23 @@ impl Span {
     pub fn of(quantity: &Quantity, scale: Scale, values: impl IntoIterator<Item = f64>) -> Self {
         let shown = values.into_iter().filter(|v| scale == Scale::Linear || *v > 0.0);
         let (low, high) = extent(shown);
-        Self { quantity: quantity.clone(), scale, low, high }
+        Self { quantity: quantity.clone(), scale, low, high, is_fixed: false }
+    }
+
+    /// With these ends, where some are asked for.
+    #[must_use]
+    pub fn within(self, limits: Option<[f64; 2]>) -> Self {
+        match limits {
+            Some([low, high]) => Self { low, high, is_fixed: true, ..self },
+            None => self,
+        }
     }
 
     fn axis(&self, want: usize, long: bool) -> Axis {
         let title = if long { self.quantity.title() } else { self.quantity.short() };
+        if self.is_fixed {
+            return Axis::between(title, self.scale, self.low, self.high, want);
+        }
         // an axis that starts at zero has no margin below zero
         if self.scale == Scale::Linear && self.low == 0.0 && self.high > 0.0 {
             return Axis::from_zero(title, [self.high], want);

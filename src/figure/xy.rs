@@ -6,7 +6,7 @@
 use super::axis::{Scale, extent, significant};
 use super::column::Column;
 use super::legend::{self, Entry, Swatch};
-use super::marks::{self, Band, Span, can_show};
+use super::marks::{self, Band, Span};
 use super::palette::{INK, Marker, PAPER};
 use super::panel::{Panel, draw_marker, marker};
 use super::scene::{Item, Rect, Scene, Stroke};
@@ -54,6 +54,8 @@ pub struct Xy {
     pub band: String,
     /// What the error bars are, such as "one standard deviation"; empty without bars.
     pub bars: String,
+    /// Ends of the axes along and up the page, where they are asked for; what lies outside is not drawn.
+    pub limits: [Option<[f64; 2]>; 2],
 }
 
 /// Largest factor by which the axes grow to show the bands.
@@ -75,7 +77,8 @@ impl Figure for Xy {
         let top = legend::height(&entries, page.width(), style);
         scene.height += top;
         let outer = Rect { top: page.top + top, bottom: page.bottom + top, ..page };
-        let panel = marks::panel(outer, &self.span_x(), &self.span_y(), style);
+        let panel =
+            marks::panel(outer, &self.span_x().within(self.limits[0]), &self.span_y().within(self.limits[1]), style);
         legend::draw(&mut scene, &entries, page, style);
         panel.draw_grid(&mut scene);
         let first = scene.items.len();
@@ -213,7 +216,7 @@ impl Cloud {
     /// Points that the axes can show.
     fn shown(&self, panel: &Panel) -> Vec<[f64; 2]> {
         let pairs = self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y]);
-        pairs.filter(|[x, y]| can_show(&panel.x, *x) && can_show(&panel.y, *y)).collect()
+        pairs.filter(|[x, y]| panel.x.holds(*x) && panel.y.holds(*y)).collect()
     }
 
     /// Centres and half lengths of the error bars.

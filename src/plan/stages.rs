@@ -273,7 +273,12 @@ fn connect(check: &mut Check<'_>, table: &Table, stages: &[Configured]) -> Vec<V
                 None => {
                     let fault = Fault::new(format!("`{}` names no stage", super::node::shortened(name)));
                     let known = table.in_order().into_iter().map(|(name, _)| name).filter(|known| *known != stage.name);
-                    put_at_port(check, table, stage, port.key, at, fault.known(name, "stages", known));
+                    let fault = match name.split_once('[') {
+                        // one run of a design
+                        Some((whole, _)) if table.0.contains_key(whole) => fault.hint(one_run(whole)),
+                        _ => fault.known(name, "stages", known),
+                    };
+                    put_at_port(check, table, stage, port.key, at, fault);
                 }
             }
         }
@@ -289,7 +294,18 @@ fn fits(check: &mut Check<'_>, table: &Table, stage: &Configured, port: &Port, a
         return;
     }
     let message = format!("`{}` wants {}, but stage `{}` gives {gives}", port.key, port.accepts, input.name);
-    put_at_port(check, table, stage, port.key, at, Fault::new(message));
+    let fault = Fault::new(message);
+    let is_run_of_design = port.accepts.takes(ArtifactKind::RUN) && gives == ArtifactKind::RESULTS;
+    let fault = if is_run_of_design { fault.hint(one_run(&input.name)) } else { fault };
+    put_at_port(check, table, stage, port.key, at, fault);
+}
+
+/// What to do where one run is wanted and a stage has many.
+fn one_run(stage: &str) -> String {
+    format!(
+        "the rows of `{stage}` are not stages of their own: `show = \"curves\"` draws the curves of all, and a single run is a \
+         `simulate` stage without a `design`"
+    )
 }
 
 fn put_at_port(check: &mut Check<'_>, table: &Table, stage: &Configured, key: &str, at: usize, fault: Fault) {

@@ -26,6 +26,8 @@ pub(super) struct Sheet<'a> {
     decimals: BTreeMap<String, usize>,
     symbols: BTreeMap<String, String>,
     judgements: Option<Judgements>,
+    /// Whether it is a table of the stage itself, which shows only columns that say something; a printed one shows all.
+    is_own: bool,
 }
 
 /// What stands in place of the deviations of a column, where per cent say nothing.
@@ -49,6 +51,10 @@ pub(super) struct Cell {
 const PRINTED: usize = 500;
 const OTHERS: usize = 100;
 
+/// Tables with more columns than this are wide, and texts with more letters in them are long.
+const WIDE: usize = 6;
+const LONG: usize = 60;
+
 /// Within so many per cent two values are close, and beyond the second they are far apart.
 pub(super) const CLOSE: f64 = 5.0;
 pub(super) const FAR: f64 = 20.0;
@@ -67,6 +73,7 @@ impl<'a> Sheet<'a> {
             decimals: BTreeMap::new(),
             symbols: BTreeMap::new(),
             judgements: None,
+            is_own: true,
         }
     }
 
@@ -87,6 +94,7 @@ impl<'a> Sheet<'a> {
         let map = |key: &str| settings[key].as_object().into_iter().flatten();
         let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
         self.most = PRINTED;
+        self.is_own = false;
         self.digits = settings["digits"].as_u64().map_or(4, |digits| digits as usize);
         self.decimals = map("decimals").filter_map(|(k, v)| Some((k.clone(), v.as_u64()? as usize))).collect();
         self.symbols = map("symbols").map(|(k, v)| (k.clone(), text(v))).collect();
@@ -95,7 +103,9 @@ impl<'a> Sheet<'a> {
     }
 
     pub(super) fn markup(&self) -> Markup {
-        let columns: Vec<Shown> = self.table.columns.iter().map(|column| self.column(column)).collect();
+        let (empty, filled): (Vec<&artifact::Column>, Vec<_>) =
+            self.table.columns.iter().partition(|column| self.leaves_out(column));
+        let columns: Vec<Shown> = filled.into_iter().map(|column| self.column(column)).collect();
         let rows = self.table.rows();
         let named = columns.first().is_some_and(|first| first.is_text());
         html! {
@@ -115,10 +125,19 @@ impl<'a> Sheet<'a> {
                 }
             }
             @for note in &self.notes { p.note { (note) } }
+            @if !empty.is_empty() {
+                p.note { "Empty in every row: " (empty.iter().map(|c| c.name.replace('_', " ")).collect::<Vec<_>>().join(", ")) "." }
+            }
             @if rows > self.most {
                 p.note { "The first " (self.most) " of " (rows) " rows; all of them: " code { (self.command) " --csv" } }
             }
         }
+    }
+
+    /// Whether a column of words that a stage declares says nothing here, such as why runs failed where none did.
+    fn leaves_out(&self, column: &artifact::Column) -> bool {
+        let is_blank = matches!(&column.values, Values::Texts(texts) if texts.iter().all(String::is_empty));
+        self.is_own && !column.about.is_empty() && is_blank && self.table.rows() > 0
     }
 
     fn column(&self, column: &'a artifact::Column) -> Shown<'a> {
@@ -176,7 +195,18 @@ impl<'a> Sheet<'a> {
                 let markup = self.words(shown, word);
                 let full = markup.is_some().then_some(word);
                 let markup = markup.unwrap_or_else(|| coded(word));
-                let class = if word.starts_with("differs") { "t far" } else { "t" };
+                // In a wide table a sentence would make its row many lines tall.
+                let is_long = self.table.columns.len() > WIDE && word.chars().count() > LONG;
+                let markup = if is_long {
+                    html! { span.long tabindex="0" title=(word) { (markup) } }
+                } else {
+                    markup
+                };
+                let class = match word.starts_with("differs") {
+                    true => "t far",
+                    false if self.table.columns.len() > WIDE && !is_long => "t one",
+                    false => "t",
+                };
                 if is_name {
                     html! { th.t scope="row" data-v=[full] { (markup) } }
                 } else {
@@ -356,6 +386,20 @@ mod tests {
         assert_eq!([words(Mark::Signed, 5.1), words(Mark::Signed, -21.0)], ["↑ high", "↓ far low"]);
         assert_eq!([words(Mark::Size, 12.0), words(Mark::Size, 20.1)], ["≠ off", "≠ far off"]);
         assert_eq!(words(Mark::Signed, f64::NAN), " ");
+    }
+
+    #[test]
+    fn a_declared_column_that_says_nothing_is_named_below_the_table() {
+        let table = artifact::Table::default()
+            .reals_column("UCS", "MPa", "", vec![30.0, 31.0])
+            .texts_column("failure", "why a run has no result", vec![String::new(); 2])
+            .texts_column("remark", "", vec![String::new(); 2]);
+        let context = Context::default();
+        let sheet = || Sheet::new(&table, &context, html! { "c" }, String::new());
+        let text = sheet().markup().into_string();
+        assert!(!text.contains(">failure<") && text.contains("Empty in every row: failure."), "{text}");
+        assert!(text.contains(">remark<"), "{text}");
+        assert!(sheet().printed(&Value::Null).markup().into_string().contains(">failure<"));
     }
 
     #[test]

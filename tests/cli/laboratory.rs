@@ -80,3 +80,30 @@ fn slips_in_a_workflow_of_data_are_told_with_the_right_word() {
         assert!(told(&output).contains(words), "{words}: {}", told(&output));
     }
 }
+
+/// What lies outside of the limits of an axis is counted; a `where` that no row meets says what there is.
+#[test]
+fn figures_say_what_they_leave_out() {
+    let space = laboratory("missing = [\"k. A.\"]\n");
+    let text = std::fs::read_to_string(space.path("w.toml")).unwrap();
+    let figure = "[stage.fig]\nkind = \"figure\"\nshow = \"xy\"\nof = \"labor\"\nx = \"wz\"\ny = \"fc\"\n";
+    space.write("w.toml", &format!("{text}{figure}y_limits = [35, 60]\n"));
+    space.run(&[]);
+    space.flow(&["report", "w.toml"]);
+    let page = std::fs::read_to_string(space.path("report.html")).unwrap();
+    assert!(page.contains("1 of 4 values of fc lies outside of the axis"), "no count");
+    for (added, words) in [
+        ("y_limits = [60, 35]\n", "the limits must rise: 60 is not below 35"),
+        ("log = [\"y\"]\ny_limits = [0, 60]\n", "a logarithmic axis has no 0"),
+    ] {
+        space.write("w.toml", &format!("{text}{figure}{added}"));
+        assert!(told(&space.flow(&["check", "w.toml"])).contains(words), "{words}");
+    }
+    space.write("w.toml", &format!("{text}{figure}where = {{ Zement = \"CEM V\" }}\n"));
+    let said = told(&space.flow(&["run", "w.toml"]));
+    assert!(said.contains("no row has the values that `where` asks for: Zement = CEM V"), "{said}");
+    assert!(said.contains("`Zement` has CEM I, CEM III"), "{said}");
+    space.write("w.toml", &format!("{text}{}", figure.replace("\"labor\"", "\"labor[1]\"")));
+    let said = told(&space.flow(&["check", "w.toml"]));
+    assert!(said.contains("the rows of `labor` are not stages of their own"), "{said}");
+}

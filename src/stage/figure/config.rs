@@ -62,6 +62,12 @@ pub struct Figure {
     /// Logarithmic axes: `["x"]`, `["y"]` or both.
     #[serde(default)]
     pub log: Vec<Direction>,
+    /// Ends of the axis along the page in its unit: `[0, 60]` (`xy`, `curves`). What lies outside is not drawn, and counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x_limits: Option<[f64; 2]>,
+    /// Ends of the axis up the page (`xy`, `curves`, `box`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y_limits: Option<[f64; 2]>,
     /// Joins the points of each group of an `xy` by lines.
     #[serde(default)]
     pub joined: bool,
@@ -304,14 +310,28 @@ impl Show {
             Show::Convergence => needs(&[Of::SOLUTION], &[], [0, 0], [0, 0]),
             Show::Solutions => needs(&[Of::SOLUTION], &[], [0, 0], [0, MANY]),
             Show::Verification => needs(&[Of::VERIFICATION], &[], [0, MANY], [0, 0]),
-            Show::Curves => {
-                Needs { from: Accepts::Only(&[Of::RUN, Of::RESULTS]), ..plot(&[], &["x", "y", "by", "overlay"]) }
-            }
+            Show::Curves => Needs {
+                from: Accepts::Only(&[Of::RUN, Of::RESULTS]),
+                ..plot(&[], &["x", "y", "by", "overlay", "x_limits", "y_limits"])
+            },
             Show::Xy => {
-                plot(&["x", "y"], &["by", "table", "where", "fit", "bars", "confidence", "log", "joined", "overlay"])
+                const OPTIONAL: &[&str] = &[
+                    "by",
+                    "table",
+                    "where",
+                    "fit",
+                    "bars",
+                    "confidence",
+                    "log",
+                    "joined",
+                    "overlay",
+                    "x_limits",
+                    "y_limits",
+                ];
+                plot(&["x", "y"], OPTIONAL)
             }
             Show::Histogram => plot(&["x"], &["table", "where", "bins"]),
-            Show::Box => plot(&["y"], &["by", "table", "where", "log"]),
+            Show::Box => plot(&["y"], &["by", "table", "where", "log", "y_limits"]),
             Show::HeatMap => plot(&["x", "y", "value"], &["table", "where"]),
             Show::Dag => Needs { from: Accepts::All, ..needs(&[], &[], [0, 0], [0, 0]) },
         }

@@ -37,6 +37,14 @@ pub(super) fn sentences(params: &Params, sources: &Sources) -> Result<Vec<String
             let name = column.quantity.sign();
             found.push(format!("{off} of {all} values of {name} {is} not above zero and not on the logarithmic axis"));
         }
+        if let Some([low, high]) = drawn.plot.limits(direction).filter(|_| params.show != Show::HeatMap) {
+            let outside = whole.iter().filter(|at| !(low..=high).contains(&column.values[**at])).count();
+            let (lie, all) = (if outside == 1 { "lies" } else { "lie" }, whole.len());
+            if outside > 0 {
+                found
+                    .push(format!("{outside} of {all} values of {} {lie} outside of the axis", column.quantity.sign()));
+            }
+        }
     }
     if let (Show::Xy, [x, y]) = (params.show, &columns[..]) {
         found.extend(lines(&drawn, x, y, &whole)?);

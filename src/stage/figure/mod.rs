@@ -90,7 +90,8 @@ impl Label {
         // The name of a column is escaped; a name from the workflow's `names` may hold markup.
         let key = text::plain_text(&self.key);
         let name = if self.name.is_empty() && self.symbol.is_empty() { &key } else { &self.name };
-        figure::Quantity::new(name, &self.symbol, &self.unit).keyed(&self.key)
+        let is_as_written = !plot::is_ours(name);
+        figure::Quantity { is_as_written, ..figure::Quantity::new(name, &self.symbol, &self.unit).keyed(&self.key) }
     }
 }
 

@@ -24,6 +24,7 @@ use stats::regression::{Regression, Settings, regress};
 use stats::sample::{Factor, Response, Sample};
 use stats::summary::{self, Summary};
 use stats::terms::Term;
+use std::collections::HashSet;
 
 /// Beyond this the length of an axis may be infinite.
 const LARGEST: f64 = 1e300;
@@ -41,8 +42,15 @@ impl Shown {
         if self.names.is_empty() {
             return Ok(self);
         }
-        let message = format!("column `{}` holds words, which have no place on an axis", self.quantity.id());
-        Err(StageError::new(message).hint(format!("name a column of numbers for `{key}`")))
+        let is_word = |name: &&String| name.replacen(',', ".", 1).parse::<f64>().is_err();
+        let words: Vec<String> = self.names.iter().filter(is_word).take(3).map(|word| format!("`{word}`")).collect();
+        let message = format!(
+            "column `{}` holds words ({}), which have no place on an axis",
+            self.quantity.id(),
+            words.join(", ")
+        );
+        let hint = "or, where they stand for no value, list them under `missing` of the `data` stage";
+        Err(StageError::new(message).hint(format!("name a column of numbers for `{key}`, {hint}")))
     }
 
     /// The chosen rows of a column in the unit of its label, or in the field's unit.
@@ -120,7 +128,11 @@ fn chosen_rows(table: &Table, plot: &Plot, invalid: Invalid) -> Result<Vec<usize
         });
     }
     if rows.is_empty() {
-        return Err(StageError::new("no row has the values that `where` asks for"));
+        let asked: Vec<String> = plot.only.iter().map(|(name, wanted)| format!("{name} = {wanted}")).collect();
+        let there = plot.only.keys().filter_map(|name| Some((name, table.column(name)?)));
+        let there: Vec<String> = there.map(|(name, column)| format!("`{name}` has {}", values_of(column))).collect();
+        let message = format!("no row has the values that `where` asks for: {}", asked.join(", "));
+        return Err(StageError::new(message).hint(there.join("; ")));
     }
     rows.retain(|&row| !judged.leaves_out(row));
     if let (true, Some(sentence)) = (rows.is_empty(), judged.sentence()) {
@@ -129,6 +141,20 @@ fn chosen_rows(table: &Table, plot: &Plot, invalid: Invalid) -> Result<Vec<usize
         );
     }
     Ok(rows)
+}
+
+/// The different values of a column, as many as a person reads.
+fn values_of(column: &Column) -> String {
+    const MOST: usize = 12;
+    let texts = match &column.values {
+        Values::Texts(texts) => texts.clone(),
+        Values::Ints(values) => values.iter().map(ToString::to_string).collect(),
+        Values::Reals(values) => values.iter().map(|value| short(*value)).collect(),
+    };
+    let mut seen = HashSet::new();
+    let different: Vec<String> = texts.into_iter().filter(|text| seen.insert(text.clone())).collect();
+    let more = if different.len() > MOST { format!(", … ({} in all)", different.len()) } else { String::new() };
+    format!("{}{more}", different[..different.len().min(MOST)].join(", "))
 }
 
 /// The plot, its labels, and the table that it draws.
@@ -199,6 +225,7 @@ pub(super) fn xy(params: &Params, sources: &Sources, job: &Job) -> Result<Xy, Fa
         by: by.map(|b| b.quantity).unwrap_or_default(),
         clouds,
         joined: drawn.plot.joined,
+        limits: [drawn.plot.x_limits, drawn.plot.y_limits],
         measured: measured.into_iter().collect(),
         band: drawn.plot.fit.map_or_else(String::new, |_| format!("{} confidence of the line", drawn.plot.percent())),
         bars: drawn.plot.bars.map_or_else(String::new, |bars| drawn.plot.bars_in_words(bars)),
@@ -369,7 +396,8 @@ pub(super) fn curves(params: &Params, sources: &Sources, job: &Job) -> Result<Bu
     };
     let groups = names.into_iter().enumerate().map(group).filter(|g| !g.curves.is_empty()).collect();
     let measured = overlay(job, params, [&x, &y])?.into_iter().collect();
-    Ok(Bundle { x, y, groups, band: "one standard deviation".into(), measured })
+    let limits = params.plot.as_ref().map_or([None; 2], |plot| [plot.x_limits, plot.y_limits]);
+    Ok(Bundle { x, y, groups, band: "one standard deviation".into(), measured, limits })
 }
 
 /// Per cent for a strain, else the declared unit; `None` for the unit of the field.
@@ -412,7 +440,13 @@ pub(super) fn boxes(params: &Params, sources: &Sources) -> Result<BoxPlot, Stage
         return Err(StageError::new(format!("column `{}` has no number", y.quantity.id())));
     }
     let scale = drawn.plot.scale(Direction::Y);
-    Ok(BoxPlot { by: by.map(|b| b.quantity).unwrap_or_default(), y: y.quantity, scale, groups: found })
+    Ok(BoxPlot {
+        by: by.map(|b| b.quantity).unwrap_or_default(),
+        y: y.quantity,
+        scale,
+        groups: found,
+        limits: drawn.plot.y_limits,
+    })
 }
 
 pub(super) fn heat_map(params: &Params, sources: &Sources) -> Result<HeatMap, StageError> {

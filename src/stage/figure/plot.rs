@@ -61,6 +61,12 @@ pub(super) struct Plot {
     /// Logarithmic axes: `["x"]`, `["y"]` or both.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub log: Vec<Direction>,
+    /// Ends of the axis along the page in its unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub x_limits: Option<[f64; 2]>,
+    /// Ends of the axis up the page in its unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub y_limits: Option<[f64; 2]>,
     /// Joins the points of each group of an `xy` by lines.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub joined: bool,
@@ -99,6 +105,8 @@ impl Plot {
             bars: figure.bars,
             confidence: figure.confidence,
             log: figure.log.clone(),
+            x_limits: figure.x_limits,
+            y_limits: figure.y_limits,
             joined: figure.joined,
             overlay: figure.overlay.clone(),
             bins: figure.bins,
@@ -118,6 +126,8 @@ impl Plot {
             ("bars", self.bars.is_some()),
             ("confidence", self.confidence.is_some()),
             ("log", !self.log.is_empty()),
+            ("x_limits", self.x_limits.is_some()),
+            ("y_limits", self.y_limits.is_some()),
             ("joined", self.joined),
             ("overlay", self.overlay.is_some()),
             ("bins", self.bins.is_some()),
@@ -143,6 +153,8 @@ impl Plot {
             let message = "a logarithmic axis has no origin for `fit = \"through-origin\"`";
             found.push(Complaint::new("fit", message).hint("fit = \"line\", or leave out `log`"));
         }
+        let axes = [("x_limits", Direction::X), ("y_limits", Direction::Y)];
+        found.extend(axes.into_iter().filter_map(|(key, direction)| self.check_limits(key, direction)));
         found.extend(self.confidence.and_then(|c| super::super::columns::check_probability("confidence", c)));
         found.extend(
             self.bins
@@ -150,6 +162,26 @@ impl Plot {
                 .map(|bins| Complaint::new("bins", format!("{bins} bins cannot be drawn")).hint("1 to 200")),
         );
         found
+    }
+
+    /// A complaint about ends that no axis can have.
+    fn check_limits(&self, key: &str, direction: Direction) -> Option<Complaint> {
+        let [low, high] = self.limits(direction)?;
+        if !(low < high && low.is_finite() && high.is_finite()) {
+            let message = format!("the limits must rise: {low} is not below {high}");
+            return Some(Complaint::new(key, message).hint(format!("{key} = [0, 60]")));
+        }
+        let message = || format!("a logarithmic axis has no {low}");
+        (self.scale(direction) == Scale::Log && low <= 0.0)
+            .then(|| Complaint::new(key, message()).hint("begin above zero"))
+    }
+
+    /// The ends of an axis, where some are asked for.
+    pub(super) fn limits(&self, direction: Direction) -> Option<[f64; 2]> {
+        match direction {
+            Direction::X => self.x_limits,
+            Direction::Y => self.y_limits,
+        }
     }
 
     pub(super) fn scale(&self, direction: Direction) -> Scale {
@@ -198,6 +230,11 @@ const KNOWN: [(&str, &str, &str); 4] = [
     ("volumetric_strain", "Volumetric strain", r"\varepsilon_v"),
     ("stress", "Axial stress", r"\sigma"),
 ];
+
+/// Whether a name is one of ours, and not of the workflow or a file.
+pub(super) fn is_ours(name: &str) -> bool {
+    KNOWN.iter().any(|(_, words, _)| *words == name)
+}
 
 /// The label of a column: a factor or response has its symbol and unit, any other column its name.
 fn label(column: &str, context: &Context, names: &BTreeMap<String, String>) -> Label {

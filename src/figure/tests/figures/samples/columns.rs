@@ -98,6 +98,7 @@ pub(crate) fn bundle(groups: usize) -> Bundle {
         groups,
         band: "one standard deviation".into(),
         measured: vec![lab],
+        limits: [None; 2],
     }
 }
 
@@ -128,6 +129,7 @@ pub(crate) fn boxes(groups: usize) -> BoxPlot {
         y: Quantity::new("Peak strength", r"\sigma_u", "MPa").keyed("UCS"),
         scale: Scale::Linear,
         groups: (0..groups).map(&mut group).collect(),
+        limits: None,
     }
 }
 
