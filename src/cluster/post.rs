@@ -190,9 +190,9 @@ impl Post {
         self.entries.iter().map(|entry| entry.key)
     }
 
-    /// Key of a task that has not ended.
-    pub fn key(&self, task: usize) -> Key {
-        self.entries[task - self.before].key
+    /// Key of a task, as long as tasks that were listed with it have not all ended.
+    pub fn key(&self, task: usize) -> Option<Key> {
+        task.checked_sub(self.before).and_then(|task| self.entries.get(task)).map(|entry| entry.key)
     }
 
     /// The text of the line that lists a task.

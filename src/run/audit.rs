@@ -27,6 +27,8 @@ pub struct Audited {
 /// Computes `sample` of the stored results of a campaign again, drawn at random of those that take long: specimens,
 /// simulations, external programs. Nothing is stored.
 ///
+/// The report is that of a decision (`decided`), which keeps every task; a run lets go what it computed.
+///
 /// # Errors
 /// An input cannot be read, or the system grants no threads; in words.
 pub fn audit(

@@ -255,7 +255,8 @@ impl<'a> Far<'a> {
 
     fn sort(&mut self, number: usize, news: Vec<(usize, News)>, heard: &mut Vec<Heard>) -> Result<(), StoreError> {
         for (task, news) in news {
-            let key = self.posts[number].key(task);
+            // What is said of a task twice may come after the last one of its post has ended.
+            let Some(key) = self.posts[number].key(task) else { continue };
             // A task that was listed again is another task of another post by now.
             let is_it = |handed: &Handed| (handed.post as usize, handed.task as usize) == (number, task);
             if !self.handed.get(&key).is_some_and(is_it) {

@@ -39,8 +39,10 @@ impl Loop<'_, '_> {
             let Some(key) = self.board.key_of(node) else {
                 panic!("BUG: a task was ready before its inputs were known")
             };
+            // Another node of this key may stand in a list that is not sent yet.
+            let is_listed = self.board.away(&key).is_some() || self.far.as_ref().is_some_and(|far| far.has(&key));
             self.board.hand_over(node);
-            if self.far.as_ref().is_some_and(|far| far.has(&key)) {
+            if is_listed {
                 continue;
             }
             if let Err(lost) = self.hand(node, key)

@@ -242,12 +242,9 @@ impl Design {
             return found;
         }
         let Ok(table) = build(method, &self.factors(context), self.layout(), context.seed) else { return found };
-        if self.valid.is_empty() {
-            return beyond::zero(&table, context);
-        }
         match valid::broken(&self.valid, &table) {
             Err(why) => found.push(Complaint::new("valid", why)),
-            Ok(broken) if self.invalid_rows == InvalidRows::Refuse => {
+            Ok(broken) if self.invalid_rows == InvalidRows::Refuse && !broken.is_empty() => {
                 let told = |broken: &Broken| Complaint::new("valid", valid::told(broken, &table)).hint(LEAVE_OUT);
                 found.extend(broken.iter().take(MOST_TOLD).map(told));
                 if broken.len() > MOST_TOLD {
@@ -258,7 +255,7 @@ impl Design {
             Ok(broken) if valid::without(&table, &broken).runs() == 0 => {
                 found.push(Complaint::new("valid", "every row of the design breaks a rule"));
             }
-            Ok(_) => {}
+            Ok(broken) => return beyond::zero(&valid::without(&table, &broken), context),
         }
         found
     }
