@@ -12,8 +12,11 @@ pub fn csv_text(table: &Table) -> String {
     let heads: Vec<String> = table.columns.iter().map(head).collect();
     // A reader that looks for the delimiter must not take one inside a head for it; where the head has none, it is none.
     // With signs that steer, a head may begin as a workbook does.
-    let like_delimiter = |head: &String| head.contains([';', '\t', '|']) || head.contains(char::is_control);
-    let quotes = if heads.iter().any(like_delimiter) { csv::QuoteStyle::Always } else { csv::QuoteStyle::Necessary };
+    // Cells of a single column would make a table of several below a title.
+    let like_delimiter = |text: &String| text.contains([';', '\t', '|']) || text.contains(char::is_control);
+    let single = if let [only] = columns.as_slice() { only.as_slice() } else { &[] };
+    let is_unclear = heads.iter().chain(single).any(like_delimiter);
+    let quotes = if is_unclear { csv::QuoteStyle::Always } else { csv::QuoteStyle::Necessary };
     let mut out = csv::WriterBuilder::new().comment(Some(b'#')).quote_style(quotes).from_writer(Vec::new());
     let written = out.write_record(&heads).and_then(|()| {
         (0..table.rows()).try_for_each(|row| {
