@@ -192,7 +192,11 @@ impl Post {
 
     /// Key of a task, as long as tasks that were listed with it have not all ended.
     pub fn key(&self, task: usize) -> Option<Key> {
-        task.checked_sub(self.before).and_then(|task| self.entries.get(task)).map(|entry| entry.key)
+        self.entry(task).map(|entry| entry.key)
+    }
+
+    fn entry(&self, task: usize) -> Option<&Entry> {
+        self.entries.get(task.checked_sub(self.before)?)
     }
 
     /// The text of the line that lists a task.
@@ -204,8 +208,7 @@ impl Post {
     }
 
     fn is_open(&self, task: usize) -> bool {
-        let entry = task.checked_sub(self.before).and_then(|task| self.entries.get(task));
-        entry.is_some_and(|entry| entry.open)
+        self.entry(task).is_some_and(|entry| entry.open)
     }
 
     /// Numbers of the jobs.
@@ -235,8 +238,8 @@ impl Post {
 
     /// Marks a task as ended.
     pub fn over(&mut self, task: usize) {
-        let entry = task.checked_sub(self.before).and_then(|task| self.entries.get_mut(task));
-        if entry.is_some_and(|entry| std::mem::replace(&mut entry.open, false)) {
+        if self.is_open(task) {
+            self.entries[task - self.before].open = false;
             self.open -= 1;
         }
         if self.open == 0 {

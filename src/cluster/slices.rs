@@ -76,7 +76,7 @@ impl Default for Patience {
 const MISSES: usize = 8;
 
 impl Patience {
-    /// Another worker had begun the task that was wanted; whether it is time to look.
+    /// Counts a task that another worker had begun; returns whether it is time to look.
     pub fn miss(&mut self) -> bool {
         self.missed += 1;
         self.missed >= self.most

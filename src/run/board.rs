@@ -426,7 +426,7 @@ impl Board {
         some(self.nodes[node].row)
     }
 
-    /// The task of a node; not of one that was computed in this run for others that needed it.
+    /// The task of a node. Panics for a task that was computed in this run for others: it was let go.
     pub(super) fn task(&self, node: NodeId) -> &Arc<Task> {
         self.nodes[node].task.as_ref().unwrap_or_else(|| panic!("BUG: a task is asked for that was let go"))
     }
