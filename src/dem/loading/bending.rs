@@ -1,8 +1,8 @@
 //! Three-point bending of a beam, plain or notched; plane.
 //!
 //! The beam lies along x on two supports at ±L/2 and is loaded from above at the middle by a third roller, which moves
-//! down at the speed of the test. Rollers are discs of the machine, a tenth of the height in radius, that neither move
-//! otherwise nor turn, with the friction of the platens. The notch of depth a is cut into the lower side at the middle: its balls are left out.
+//! down at the speed of the test ([`super::rollers`]). L is the distance of the supports as they stand. The notch of depth a is cut
+//! into the lower side at the middle: its balls are left out.
 //!
 //! ```text
 //! δ      = settlement of the middle against the supports, read at mid-height, so that what the rollers dent does not count
@@ -16,22 +16,22 @@
 //! The beam starts with the velocities of an elastic beam that settles at the speed of the test, so that no shock runs
 //! through it.
 //!
-//! An elastic beam settles by F L³/(4 E b h³) (1 + 2.4 (1 + ν)(h/L)²) (Timoshenko). With different moduli in tension and
-//! compression E is 4 E_t E_c/(√E_t + √E_c)².
+//! The axis of an elastic beam settles by F L³/(4 E b h³) (1 + (2.4 + 1.5 ν)(h/L)² − 0.84 (h/L)³) (Seewald 1927; Timoshenko &
+//! Goodier, Theory of Elasticity, § 41): E is that much below the material's. With different moduli in tension and compression E is
+//! 4 E_t E_c/(√E_t + √E_c)².
 
 use super::curve::{Macro, Sample, evaluate};
-use super::drive::{Reading, drive};
+use super::drive::{Bench, Reading, drive};
 use super::judgement::Judgement;
-use super::material::{Material, PLATEN};
+use super::material::Material;
 use super::piece::Piece;
 use super::record::{TestRecord, Watcher};
 use super::rig::{mount, set_velocities};
+use super::rollers::Rollers;
 use super::settings::{Loading, Notch, TestError};
 use crate::space::Tuple;
-use crate::{Amount, Clump, Engine, Fault, Faults, Other, Particle, Space, Vector};
+use crate::{Amount, Clump, Engine, Fault, Faults, Space, Vector};
 
-/// Radius of a roller over the height of the beam.
-const ROLLER: f64 = 0.1;
 /// Distance of the supports over the length of the beam, when it is not given.
 const SPAN: f64 = 0.9;
 /// Radius within which balls mark a point of the beam, over the mean diameter.
@@ -56,35 +56,20 @@ pub(super) fn run<S: Space>(
         let value = Amount(span, "m");
         return Err(Faults(vec![Fault::Setting { quantity: "span", value, wanted }]).into());
     }
-    let beam = Beam { span, height, notch: test.particulars.notch };
-    let (cut, remaining) = beam.cut(piece);
-    let rollers = [(-0.5 * span, -1.0), (0.5 * span, -1.0), (0.0, 1.0)];
-    let rollers = rollers.map(|(x, side)| beam.roller(&cut, x, side)).to_vec();
-    let balls = cut.radii.len();
-    let mut mounted = mount(&cut, material, Vec::new(), rollers, (&test.platens, &test.machine), seed)?;
+    let notch = test.particulars.notch;
+    let (cut, remaining) = cut(piece, notch);
+    let wanted = [(-0.5 * span, -1.0), (0.5 * span, -1.0), (0.0, 1.0)];
+    let mut rollers = Rollers::under(&cut, wanted);
+    let beam = Beam { supports: rollers.supports(), height, notch };
+    let mut mounted = mount(&cut, material, Vec::new(), rollers.bodies(&cut), (&test.platens, &test.machine), seed)?;
     let engine = &mut mounted.engine;
     let schedule = test.schedule(&mounted.scales, &piece.outline, engine.time_step())?;
-    let down = Vector::<S>::build(|k| if k == 1 { -schedule.speed } else { 0.0 });
     set_velocities(engine, |x| beam.settling::<S>(x, schedule.speed))?;
-    for roller in [balls, balls + 1] {
-        engine.set_motion(roller, Vector::<S>::zero(), crate::Spin::<S>::zero())?;
-    }
-    engine.set_motion(balls + 2, down, crate::Spin::<S>::zero())?;
+    rollers.start(engine, schedule.speed)?;
     let marks = Marks::new(&cut, &beam);
-    let (start, factor) = (marks.read(engine), beam.stress_per_force());
-    let mut measure = |engine: &Engine<S>| {
-        let forces = roller_forces(engine, balls);
-        let [sag, mouth] = marks.read(engine);
-        let supports = 0.5 * (forces[0] + forces[1]);
-        Reading {
-            axial: 6.0 * height * (start[0] - sag) / (span * span),
-            lateral: (mouth - start[1]) / height,
-            stress: -forces[2] * factor,
-            confinement: 0.0,
-            asymmetry: if supports > 0.0 { (forces[0] - forces[1]).abs() / supports } else { 0.0 },
-        }
-    };
-    let mut run = drive(engine, &schedule, &test.rule, &mut measure, watch);
+    let start = marks.read(engine);
+    let mut bent = Bent { beam, marks, start, rollers };
+    let mut run = drive(engine, &schedule, &test.rule, &mut bent, watch);
     for snapshot in &mut run.snapshots {
         snapshot.state.centres = restored::<S>(&snapshot.state.centres, &remaining, &piece.centres);
         for link in &mut snapshot.state.forces {
@@ -92,7 +77,7 @@ pub(super) fn run<S: Space>(
         }
         snapshot.state.forces.retain(|link| link.ends[1] != usize::MAX);
     }
-    let values = beam.values(&run.samples);
+    let values = bent.beam.values(&run.samples);
     let counts = (mounted.bonds, 0);
     let judgement = Judgement::of(engine, &run, piece, (&mounted.scales, &schedule), counts, values.strength);
     Ok(TestRecord::new(run, values, judgement, Vec::new()))
@@ -105,24 +90,60 @@ fn restored<S: Space>(now: &[Vector<S>], remaining: &[usize], start: &[Vector<S>
     centres
 }
 
+/// A beam that is bent.
+struct Bent<S: Space> {
+    beam: Beam,
+    marks: Marks,
+    /// What the marks read at the start (m).
+    start: [f64; 2],
+    rollers: Rollers<S>,
+}
+
+impl<S: Space> Bench<S> for Bent<S> {
+    fn follow(&mut self, engine: &mut Engine<S>) {
+        self.rollers.follow(engine);
+    }
+
+    fn read(&self, engine: &Engine<S>) -> Reading {
+        let (span, height) = (self.beam.span(), self.beam.height);
+        let forces = self.rollers.forces(engine);
+        let [sag, mouth] = self.marks.read(engine);
+        let supports = 0.5 * (forces[0] + forces[1]);
+        Reading {
+            axial: 6.0 * height * (self.start[0] - sag) / (span * span),
+            lateral: (mouth - self.start[1]) / height,
+            stress: -forces[2] * self.beam.stress_per_force(),
+            confinement: 0.0,
+            asymmetry: if supports > 0.0 { (forces[0] - forces[1]).abs() / supports } else { 0.0 },
+        }
+    }
+}
+
 /// A beam on its supports.
 struct Beam {
-    span: f64,
+    /// Where the supports stand along x (m).
+    supports: [f64; 2],
     height: f64,
     notch: Option<Notch>,
 }
 
 impl Beam {
+    /// Distance of the supports (m).
+    fn span(&self) -> f64 {
+        self.supports[1] - self.supports[0]
+    }
+
     /// Velocity at a point of an elastic beam whose middle settles at `speed` (m/s): with ξ = 2|x|/L the deflection is
     /// 1 − (3ξ² − ξ³)/2 of that of the middle between the supports and a straight line outside, and sections stay plane.
     fn settling<S: Space>(&self, x: Vector<S>, speed: f64) -> Vector<S> {
-        let xi = 2.0 * x.at(0).abs() / self.span;
+        let off = x.at(0) - 0.5 * (self.supports[0] + self.supports[1]);
+        let xi = 2.0 * off.abs() / self.span();
         let (share, slope) = if xi <= 1.0 {
             (1.0 - 0.5 * (3.0 * xi * xi - xi * xi * xi), -0.5 * (6.0 * xi - 3.0 * xi * xi))
         } else {
             (1.5 * (1.0 - xi), -1.5)
         };
-        let slope = slope * 2.0 / self.span * if x.at(0) < 0.0 { -1.0 } else { 1.0 };
+        let slope = slope * 2.0 / self.span() * if off < 0.0 { -1.0 } else { 1.0 };
         Vector::<S>::build(|k| [speed * slope * x.at(1), -speed * share, 0.0][k])
     }
 
@@ -134,43 +155,7 @@ impl Beam {
     /// 3 L / (2 b (h − a)²), 1/m².
     fn stress_per_force(&self) -> f64 {
         let ligament = self.ligament();
-        1.5 * self.span / (ligament * ligament)
-    }
-
-    /// The piece without the balls of the notch, and the indices of those that stay. A clump whose pebbles lie in the
-    /// notch loses them and stays rigid as it was.
-    fn cut<S: Space>(&self, piece: &Piece<S>) -> (Piece<S>, Vec<usize>) {
-        let Some(Notch { depth, width }) = self.notch else { return (piece.clone(), (0..piece.radii.len()).collect()) };
-        let tip = -0.5 * self.height + depth * self.height;
-        let within = |x: Vector<S>| x.at(0).abs() < 0.5 * width * self.height && x.at(1) < tip;
-        let remaining: Vec<usize> = (0..piece.radii.len()).filter(|&i| !within(piece.centres[i])).collect();
-        let mut index = vec![None; piece.radii.len()];
-        remaining.iter().enumerate().for_each(|(new, &old)| index[old] = Some(new));
-        let clump = |clump: &Clump<S>| {
-            let pebbles: Vec<usize> = clump.pebbles.iter().filter_map(|&pebble| index[pebble]).collect();
-            (!pebbles.is_empty()).then(|| Clump { pebbles, ..clump.clone() })
-        };
-        let cut = Piece {
-            outline: piece.outline,
-            centres: remaining.iter().map(|&i| piece.centres[i]).collect(),
-            radii: remaining.iter().map(|&i| piece.radii[i]).collect(),
-            groups: remaining.iter().map(|&i| piece.groups[i]).collect(),
-            density: piece.density,
-            clumps: piece.clumps.iter().filter_map(clump).collect(),
-        };
-        (cut, remaining)
-    }
-
-    /// The roller at `x` that touches the beam from below (`side` −1) or above (1).
-    fn roller<S: Space>(&self, piece: &Piece<S>, x: f64, side: f64) -> Particle<S> {
-        let radius = ROLLER * self.height;
-        let touch = |(centre, r): (&Vector<S>, &f64)| {
-            let (across, reach) = (centre.at(0) - x, r + radius);
-            (across.abs() < reach).then(|| side * centre.at(1) + (reach * reach - across * across).sqrt())
-        };
-        let reach = piece.centres.iter().zip(&piece.radii).filter_map(touch).fold(0.5 * self.height, f64::max);
-        let position = Vector::<S>::build(|k| [x, side * reach, 0.0][k]);
-        Particle::ball(position, radius, piece.density, PLATEN)
+        1.5 * self.span() / (ligament * ligament)
     }
 
     /// Results of the beam from the record.
@@ -179,7 +164,7 @@ impl Beam {
         let nan = f64::NAN;
         let [tangent, secant] = if self.notch.is_some() { [nan; 2] } else { [all.modulus_tangent, all.modulus_secant] };
         let force = |sample: &Sample| sample.stress / self.stress_per_force();
-        let sag = |sample: &Sample| sample.axial * self.span * self.span / (6.0 * self.height);
+        let sag = |sample: &Sample| sample.axial * self.span() * self.span() / (6.0 * self.height);
         let work = |pair: &[Sample]| 0.5 * (force(&pair[0]) + force(&pair[1])) * (sag(&pair[1]) - sag(&pair[0]));
         Macro {
             strength: all.strength,
@@ -191,6 +176,31 @@ impl Beam {
             ..Macro::unknown()
         }
     }
+}
+
+/// The piece without the balls of the notch, and the indices of those that stay. A clump whose pebbles lie in the
+/// notch loses them and stays rigid as it was.
+fn cut<S: Space>(piece: &Piece<S>, notch: Option<Notch>) -> (Piece<S>, Vec<usize>) {
+    let height = piece.outline.height();
+    let Some(Notch { depth, width }) = notch else { return (piece.clone(), (0..piece.radii.len()).collect()) };
+    let tip = (depth - 0.5) * height;
+    let within = |x: Vector<S>| x.at(0).abs() < 0.5 * width * height && x.at(1) < tip;
+    let remaining: Vec<usize> = (0..piece.radii.len()).filter(|&i| !within(piece.centres[i])).collect();
+    let mut index = vec![None; piece.radii.len()];
+    remaining.iter().enumerate().for_each(|(new, &old)| index[old] = Some(new));
+    let clump = |clump: &Clump<S>| {
+        let pebbles: Vec<usize> = clump.pebbles.iter().filter_map(|&pebble| index[pebble]).collect();
+        (!pebbles.is_empty()).then(|| Clump { pebbles, ..clump.clone() })
+    };
+    let cut = Piece {
+        outline: piece.outline,
+        centres: remaining.iter().map(|&i| piece.centres[i]).collect(),
+        radii: remaining.iter().map(|&i| piece.radii[i]).collect(),
+        groups: remaining.iter().map(|&i| piece.groups[i]).collect(),
+        density: piece.density,
+        clumps: piece.clumps.iter().filter_map(clump).collect(),
+    };
+    (cut, remaining)
 }
 
 /// Balls that mark points of the beam: at mid-height over the supports and at the middle, and at the mouth.
@@ -218,7 +228,7 @@ impl Marks {
         let edge = 0.5 * beam.height * beam.notch.map_or(0.0, |notch| notch.width);
         let low = -0.5 * beam.height;
         Self {
-            supports: [near(-0.5 * beam.span, 0.0, 0.0), near(0.5 * beam.span, 0.0, 0.0)],
+            supports: [near(beam.supports[0], 0.0, 0.0), near(beam.supports[1], 0.0, 0.0)],
             middle: near(0.0, 0.0, 0.0),
             mouth: [near(-edge, low, -1.0), near(edge, low, 1.0)],
         }
@@ -233,19 +243,4 @@ impl Marks {
         let [near, far] = [0, 1].map(|k| mean(&self.mouth[k], 0));
         [mean(&self.middle, 1) - 0.5 * (left + right), far - near]
     }
-}
-
-/// Forces of the beam on the rollers along y (N per metre of thickness), downwards positive.
-fn roller_forces<S: Space>(engine: &Engine<S>, balls: usize) -> [f64; 3] {
-    let mut forces = [0.0; 3];
-    for contact in engine.contacts().filter(|contact| contact.active) {
-        let Other::Particle(other) = contact.other else { continue };
-        // The force acts on the first end.
-        for (particle, sign) in [(contact.particle, 1.0), (other, -1.0)] {
-            if let Some(force) = particle.checked_sub(balls).and_then(|roller| forces.get_mut(roller)) {
-                *force -= sign * contact.force().at(1);
-            }
-        }
-    }
-    forces
 }

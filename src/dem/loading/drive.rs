@@ -105,6 +105,9 @@ pub struct Reading {
 
 /// A test under way: how it is read, and when it is done besides the common rule.
 pub trait Bench<S: Space> {
+    /// Moves what follows the piece; asked before each sample.
+    fn follow(&mut self, _engine: &mut Engine<S>) {}
+
     /// Reads the engine.
     fn read(&self, engine: &Engine<S>) -> Reading;
 
@@ -185,6 +188,7 @@ impl<S: Space> Drive<'_, S> {
     ) -> bool {
         let last = self.run.samples[self.run.samples.len() - 1];
         let before = (engine.steps(), last.axial);
+        bench.follow(engine);
         let outcome = self.advance(engine, &last, watch);
         let reading = bench.read(engine);
         let Reading { axial, lateral, stress, .. } = reading;

@@ -50,6 +50,7 @@ pub mod piece;
 pub mod platens;
 pub mod record;
 pub mod rig;
+mod rollers;
 pub mod run;
 pub mod settings;
 pub mod snapshot;

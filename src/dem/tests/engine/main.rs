@@ -9,6 +9,7 @@
 
 mod balance;
 mod beam;
+mod bending;
 mod bits;
 mod block;
 mod bond;

@@ -29,6 +29,7 @@ fn families() -> Vec<Family> {
         crate::smooth_joint::family(),
         crate::strength::family(),
         crate::beam::family(),
+        crate::bending::family(),
         crate::lattice::family(),
         crate::platens::family(),
         crate::measuring::family(),
