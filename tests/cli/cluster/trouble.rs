@@ -99,6 +99,8 @@ fn what_another_campaign_finishes_meanwhile_is_not_computed_again() {
         texts.map(|text| text.matches("\"elsewhere\"").count()).sum::<usize>() == 2
     };
     cluster.until("the workers have looked", elsewhere);
+    // The submitter reads reports twice a second at least.
+    std::thread::sleep(std::time::Duration::from_millis(1500));
     cluster.0.write("go", "");
     assert!(here.wait().unwrap().success());
     let output = far.wait_with_output().unwrap();
