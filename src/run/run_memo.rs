@@ -152,7 +152,7 @@ fn summaries(
     cached: &CachedAt<'_>,
     indices: &[usize],
 ) -> Option<RunSummaries> {
-    let mut summaries = RunSummaries::default();
+    let mut summaries = RunSummaries::with_room(indices.len());
     for &index in indices {
         let object = cached.object(board, gather, index)?;
         match cached.summary(index) {
