@@ -99,7 +99,7 @@ impl RunMemo {
         if runs.len() != rows.len() || new * FEW <= runs.len() {
             return;
         }
-        let cached = CachedAt::of(&task);
+        let cached = CachedAt::of(task);
         let Some(summaries) = summaries(store, streamed, board, gather, &cached, &runs) else { return };
         let summaries = summaries.to_bytes();
         // Without a memo the next campaign looks at every task, and gets the same result.
