@@ -93,9 +93,24 @@ pub enum Cause {
 }
 
 impl Message {
-    /// The line of a report.
+    /// The line of a report. Of words that are too long for one, such as what a program has printed, the middle is left out.
     pub fn to_text(&self) -> String {
-        serde_json::to_string(self).unwrap_or_else(|error| panic!("BUG: a report that is no JSON: {error}"))
+        let text = |message: &Self| {
+            serde_json::to_string(message).unwrap_or_else(|error| panic!("BUG: a report that is no JSON: {error}"))
+        };
+        let whole = text(self);
+        if whole.len() <= MOST_TEXT {
+            return whole;
+        }
+        let mut short = self.clone();
+        if let Self::Stands { note: words, .. }
+        | Self::Failed { why: words, .. }
+        | Self::Lost { why: words, .. }
+        | Self::Ended { fault: Some(words) } = &mut short
+        {
+            *words = shortened(words);
+        }
+        text(&short)
     }
 
     /// The task that it is about.
@@ -118,9 +133,37 @@ impl Message {
     }
 }
 
+/// The longest line, bytes; readers take a line of [`crate::store::MOST_NEWS`].
+const MOST_TEXT: usize = 1 << 19;
+/// Characters that are left at each end of words that are too long. One character takes at most six bytes of JSON.
+const LEFT: usize = 1 << 15;
+
+/// Words without their middle.
+fn shortened(words: &str) -> String {
+    let count = words.chars().count();
+    if count <= 2 * LEFT {
+        return words.to_owned();
+    }
+    let (start, end): (String, String) =
+        (words.chars().take(LEFT).collect(), words.chars().skip(count - LEFT).collect());
+    format!("{start} … ({} characters are left out here) … {end}", count - 2 * LEFT)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_that_are_too_long_for_a_line_keep_their_ends_and_say_what_is_missing() {
+        for middle in ["x", "\0", "ε"] {
+            let why = format!("first{}last", middle.repeat(600_000));
+            let line = Message::Failed { task: 7, why }.to_text();
+            assert!(line.len() <= MOST_TEXT && (line.len() as u64) < crate::store::MOST_NEWS, "{}", line.len());
+            let Some(Message::Failed { task: 7, why }) = Message::read(&line) else { panic!("{middle:?}") };
+            assert!(why.starts_with("first") && why.ends_with("last"));
+            assert!(why.contains("(534473 characters are left out here)"), "{}", &why[LEFT..LEFT + 80]);
+        }
+    }
 
     #[test]
     fn reports_read_as_they_were_written_and_nonsense_says_nothing() {

@@ -261,3 +261,6 @@ impl Round {
         Self { job, workers, started: BTreeSet::new(), gone: BTreeSet::new(), since: Instant::now() }
     }
 }
+
+#[cfg(test)]
+mod tests;

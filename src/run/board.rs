@@ -216,9 +216,9 @@ impl Board {
         }
     }
 
-    /// The key of the task that is one of the inputs of a node, unless that run is cached.
-    pub(super) fn input_key(&self, node: NodeId, place: usize) -> Option<Key> {
-        self.key_of(self.nodes[node].input(place)?)
+    /// The object of the task that is one of the inputs of a node, unless that run is cached.
+    pub(super) fn input(&self, node: NodeId, place: usize) -> Option<ObjectId> {
+        self.object(self.nodes[node].input(place)?)
     }
 
     /// Number of nodes.

@@ -36,9 +36,20 @@ pub(super) enum Heard {
 /// A task that was handed over, and where it stands. There may be a million of them.
 #[derive(Clone, Copy)]
 struct Handed {
+    /// The post that lists it, [`DRAFT`] while no list with it is written.
     post: u32,
     task: u32,
     tries: Tries,
+}
+
+/// No post yet.
+const DRAFT: u32 = u32::MAX;
+
+impl Handed {
+    /// The post that lists it, and its number there.
+    fn listed(&self) -> Option<(usize, usize)> {
+        (self.post != DRAFT).then_some((self.post as usize, self.task as usize))
+    }
 }
 
 /// How often a worker that had begun a task was lost without a message, and how often the scheduler ended it.
@@ -51,7 +62,7 @@ struct Tries {
 /// Tasks to be listed for workers with equal needs.
 struct Fresh {
     needs: Needs,
-    tasks: Vec<(Key, Tries)>,
+    tasks: Vec<Key>,
     list: Draft,
 }
 
@@ -72,6 +83,7 @@ pub(super) struct Far<'a> {
     program: PathBuf,
     session: String,
     posts: Vec<Post>,
+    /// Every task that a post lists, or that a draft of a list has, and that has not ended.
     handed: HashMap<Key, Handed, BuildHasherDefault<FirstBytes>>,
     /// Tasks with results that a worker reported (with its seconds) at this time and that are not visible in the store yet.
     reported: HashMap<Key, (f64, Instant)>,
@@ -129,13 +141,22 @@ impl<'a> Far<'a> {
                     post.active(),
                     post.jobs().join(", ")
                 ));
-                let number = self.posts.len() as u32;
-                let handed = |task| Handed { post: number, task, tries: Tries::default() };
-                self.handed.extend(post.keys().zip((0..).map(handed)));
-                self.posts.push(post);
+                self.take_over(post);
             }
         }
         Ok(())
+    }
+
+    fn take_over(&mut self, post: Post) {
+        let (post_number, keys) = (self.posts.len() as u32, post.keys().collect::<Vec<_>>());
+        self.posts.push(post);
+        for (key, task) in keys.into_iter().zip(0..) {
+            let handed = Handed { post: post_number, task, tries: Tries::default() };
+            // A task is listed again when its worker was stopped or lost: nobody takes it from the earlier line any more.
+            if let Some((post, task)) = self.handed.insert(key, handed).and_then(|before| before.listed()) {
+                self.posts[post].over(task);
+            }
+        }
     }
 
     /// Whether tasks of this stage go to the workers; `far` says whether their work does as a rule.
@@ -148,7 +169,7 @@ impl<'a> Far<'a> {
         self.posts.is_empty()
     }
 
-    /// Whether a task was handed over already.
+    /// Whether a task was handed over already, and no news of its end has come.
     pub(super) fn has(&self, key: &Key) -> bool {
         self.handed.contains_key(key)
     }
@@ -157,7 +178,7 @@ impl<'a> Far<'a> {
     pub(super) fn is_idle(&self) -> bool {
         match self.draining {
             true => !self.posts.iter().any(Post::is_busy),
-            false => self.handed.is_empty() && self.fresh.is_empty(),
+            false => self.handed.is_empty(),
         }
     }
 
@@ -178,7 +199,8 @@ impl<'a> Far<'a> {
             }
         };
         let fresh = &mut self.fresh[number];
-        fresh.tasks.push((key, tries));
+        fresh.tasks.push(key);
+        self.handed.insert(key, Handed { post: DRAFT, task: 0, tries });
         fresh.list.add(line);
         if !fresh.list.is_full() {
             return Ok(());
@@ -198,9 +220,19 @@ impl<'a> Far<'a> {
                 self.posts.len() - 1
             }
         };
-        let first = self.posts[number].list(fresh.tasks.iter().map(|(key, _)| *key), &fresh.list)?;
-        for ((key, tries), task) in fresh.tasks.into_iter().zip(first..) {
-            self.handed.insert(key, Handed { post: number as u32, task: task as u32, tries });
+        let first = self.posts[number].list(fresh.tasks.iter().copied(), &fresh.list)?;
+        for (key, task) in fresh.tasks.into_iter().zip(first..) {
+            let before = self.handed.get_mut(&key).map(|handed| {
+                let before = handed.listed();
+                (handed.post, handed.task) = (number as u32, task as u32);
+                before
+            });
+            match before {
+                Some(None) => {}
+                Some(Some((post, earlier))) => self.posts[post].over(earlier),
+                // The run decided about it again before it was listed.
+                None => self.posts[number].over(task),
+            }
         }
         Ok(())
     }
@@ -258,7 +290,7 @@ impl<'a> Far<'a> {
             // What is said of a task twice may come after the last one of its post has ended.
             let Some(key) = self.posts[number].key(task) else { continue };
             // A task that was listed again is another task of another post by now.
-            let is_it = |handed: &Handed| (handed.post as usize, handed.task as usize) == (number, task);
+            let is_it = |handed: &Handed| handed.listed() == Some((number, task));
             if !self.handed.get(&key).is_some_and(is_it) {
                 continue;
             }
@@ -291,7 +323,8 @@ impl<'a> Far<'a> {
     /// A worker ended a task before its end.
     fn stopped(&mut self, key: Key, cause: Cause, heard: &mut Vec<Heard>) -> Result<(), StoreError> {
         let Some(handed) = self.handed.get(&key).copied() else { return Ok(()) };
-        let needs = &self.posts[handed.post as usize].needs;
+        let Some((post, _)) = handed.listed() else { return Ok(()) };
+        let needs = &self.posts[post].needs;
         match cause {
             Cause::Time | Cause::Store => return self.list_again(key, handed.tries, Needs::clone),
             Cause::WholeTime => {
@@ -320,9 +353,10 @@ impl<'a> Far<'a> {
     /// A task whose worker is gone is tried once more, alone on a worker.
     fn lost(&mut self, key: Key, at: (&str, &str), heard: &mut Vec<Heard>) -> Result<(), StoreError> {
         let Some(handed) = self.handed.get(&key).copied() else { return Ok(()) };
+        let Some((post, _)) = handed.listed() else { return Ok(()) };
         if handed.tries.gone > 0 {
             let (machine, words) = at;
-            let memory = memory(&self.posts[handed.post as usize].needs);
+            let memory = memory(&self.posts[post].needs);
             heard.push(Heard::Failed(
                 key,
                 format!("its worker on {machine} ended without a word, the second time alone{memory}: {words}"),
@@ -334,8 +368,8 @@ impl<'a> Far<'a> {
 
     /// Takes a task out of its queue and lists it again, for workers with the needs that `needs` makes of the old ones.
     fn list_again(&mut self, key: Key, tries: Tries, needs: impl Fn(&Needs) -> Needs) -> Result<(), StoreError> {
-        let Some(handed) = self.handed.get(&key) else { return Ok(()) };
-        let (post, task) = (&mut self.posts[handed.post as usize], handed.task as usize);
+        let Some((post, task)) = self.handed.get(&key).and_then(Handed::listed) else { return Ok(()) };
+        let post = &mut self.posts[post];
         let line = post.line(task)?;
         post.over(task);
         let needs = needs(&post.needs);
@@ -409,8 +443,8 @@ impl<'a> Far<'a> {
     /// Forgets a task that has ended, or about which the run decides again.
     pub(super) fn forget(&mut self, key: &Key) {
         self.reported.remove(key);
-        if let Some(handed) = self.handed.remove(key) {
-            self.posts[handed.post as usize].over(handed.task as usize);
+        if let Some((post, task)) = self.handed.remove(key).and_then(|handed| handed.listed()) {
+            self.posts[post].over(task);
         }
         // A map does not become smaller by itself, and what is gathered next needs the room.
         if self.handed.is_empty() {
@@ -449,3 +483,6 @@ fn memory(needs: &Needs) -> String {
         None => " (most likely it needs more memory: `memory` in the site file)".to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests;

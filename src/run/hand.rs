@@ -39,8 +39,8 @@ impl Loop<'_, '_> {
             let Some(key) = self.board.key_of(node) else {
                 panic!("BUG: a task was ready before its inputs were known")
             };
-            // Another node of this key may stand in a list that is not sent yet.
-            let is_listed = self.board.away(&key).is_some() || self.far.as_ref().is_some_and(|far| far.has(&key));
+            // By another node of this key, or in a queue of an earlier run.
+            let is_listed = self.far.as_ref().is_some_and(|far| far.has(&key));
             self.board.hand_over(node);
             if is_listed {
                 continue;
@@ -143,13 +143,7 @@ impl Loop<'_, '_> {
             Heard::Open(key) => {
                 self.far.iter_mut().for_each(|far| far.forget(&key));
                 while let Some(node) = self.board.take_back(&key) {
-                    match self.store.claim(&key) {
-                        Ok(Claim::Theirs(waiting)) => self.elsewhere.put(node, waiting),
-                        Ok(Claim::Mine(_) | Claim::Done(_)) => self.settle(node),
-                        Err(error) => {
-                            self.fatal.get_or_insert(error);
-                        }
-                    }
+                    self.decide_again(node, &key);
                 }
             }
             Heard::Lost(content, why) => {
@@ -157,6 +151,34 @@ impl Loop<'_, '_> {
                 if self.recompute(task::Lost { content, error }).is_err() {
                     self.refused.get_or_insert(why);
                 }
+            }
+        }
+    }
+
+    /// Other processes on the same store have let go of these tasks, finished or not.
+    pub(super) fn let_go(&mut self, nodes: Vec<NodeId>) {
+        for node in nodes {
+            match (&self.far, self.board.key_of(node)) {
+                // Workers do not look into the journals, so they would compute again what is finished.
+                (Some(_), Some(key)) => self.decide_again(node, &key),
+                // What is finished is found when it is started.
+                _ => self.ready.put(node),
+            }
+        }
+    }
+
+    /// Decides about a task that somebody else may have finished meanwhile, or may compute now.
+    fn decide_again(&mut self, node: NodeId, key: &Key) {
+        match self.store.claim(key) {
+            Ok(Claim::Theirs(waiting)) => self.elsewhere.put(node, waiting),
+            Ok(Claim::Done(record)) if !self.forced(node) => {
+                let content = record.content;
+                let finished = task::Finished { content, shared: true, seconds: 0.0, summary: None };
+                self.take(Answer { node, result: Ok(task::Outcome::Finished(finished)) });
+            }
+            Ok(Claim::Mine(_) | Claim::Done(_)) => self.settle(node),
+            Err(error) => {
+                self.fatal.get_or_insert(error);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Memos of stages: an unchanged stage is completed at once.
 //!
 //! `next` is a pure function of the stage's settings, what the workflow shares, its inputs, the files it looks at, and
-//! the program. Their hash is the key of a [`Memo`] that holds the result of the stage and the objects that the result rests on.
+//! the program. Their hash is the key of a [memo](crate::store::Memo) that holds the result of the stage and the objects that the result rests on.
 //! When the memo is there, the files are as they were and the objects are in the store, the stage is done without a look
 //! at its tasks: ten thousand of them cost one listing of folders. A memo is only a short cut: without it the tasks' own
 //! keys give the same answer, later.
@@ -11,7 +11,7 @@ use super::files::{Files, unchanged};
 use crate::artifact::{ContentHash, Key};
 use crate::plan::Workflow;
 use crate::stage::Context;
-use crate::store::{Memo, ObjectId, Store};
+use crate::store::{MemoDraft, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::os::unix::fs::MetadataExt;
@@ -113,10 +113,10 @@ pub fn remembered(store: &Store, key: &Key) -> Option<Vec<(Option<usize>, Key)>>
 
 /// Stores the memo of a stage: `nodes` are all the tasks that its result rests on.
 pub(super) fn store(store: &Store, key: &Key, content: ContentHash, board: &Board, nodes: &[NodeId], files: Files) {
-    let (objects, rows): (Vec<ObjectId>, Vec<Option<usize>>) = board.results(nodes).unzip();
-    let rows = rows.into_iter().map(|row| row.map_or(-1, |row| row as i64)).collect();
+    let rows = board.results(nodes).map(|(_, row)| row.map_or(-1, |row| row as i64)).collect();
     let note = Note { content: content.to_string(), files, rows };
     let note = serde_json::to_string(&note).unwrap_or_else(|e| panic!("BUG: the note of a memo: {e}"));
     // A memo that cannot be written costs time only; the store says what is wrong when it matters.
-    let _ = store.keep_memo(key, &Memo { note, objects, ..Memo::default() });
+    let objects = Box::new(board.results(nodes).map(|(object, _)| object));
+    let _ = store.keep_memo(key, MemoDraft { note: &note, numbers: &[], data: &[], objects });
 }

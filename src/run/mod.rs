@@ -230,8 +230,8 @@ impl Loop<'_, '_> {
             Err(RecvTimeoutError::Disconnected) => panic!("BUG: the run loop lost its own inbox"),
         }
         self.listen();
-        // What they have finished is found when it is started.
-        self.elsewhere.over().into_iter().for_each(|node| self.ready.put(node));
+        let over = self.elsewhere.over();
+        self.let_go(over);
         if let Some((node, holder)) = self.elsewhere.first().filter(|_| self.running == 0) {
             let (stage, row) = (&self.workflow.stages[self.board.stage(node)].name, self.board.row(node));
             let progress = Progress::note(format!("waits for {holder}"));

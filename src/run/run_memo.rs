@@ -1,6 +1,6 @@
 //! The memo of the runs of a stage, by which a later campaign recognises them: see [`crate::stage::cached`].
 //!
-//! It is a [`Memo`]. Its key is the hash of all that the rows of a stage share: the settings of the stage, its inputs without
+//! It is a [memo](crate::store::Memo). Its key is the hash of all that the rows of a stage share: the settings of the stage, its inputs without
 //! the design, what the workflow shares without the levels of factors, and the program. The memo counts only while the files
 //! that the runs read are unchanged and the objects are in the store. No object of a cached run is opened: the memo holds a
 //! summary of each.
@@ -10,9 +10,10 @@ use super::files::{Files, unchanged};
 use super::streamed::Streamed;
 use crate::artifact::Key;
 use crate::plan::Workflow;
-use crate::stage::cached::{CachedRun, CachedRuns, RunSummaries};
+use crate::stage::Task;
+use crate::stage::cached::{CachedRun, CachedRuns, RunSummaries, RunSummary};
 use crate::stage::rows::{DesignRows, RUN};
-use crate::store::{Memo, ObjectId, Store};
+use crate::store::{MemoDraft, ObjectId, Store};
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
@@ -98,49 +99,68 @@ impl RunMemo {
         if runs.len() != rows.len() || new * FEW <= runs.len() {
             return;
         }
-        let Some((objects, summaries)) = objects(store, streamed, board, gather, &runs) else { return };
-        let mut data: Vec<u8> = rows.words().iter().flat_map(|word| word.to_le_bytes()).collect();
-        data.extend(summaries.to_bytes());
-        drop(summaries);
+        let cached = CachedAt::of(task);
+        let Some(summaries) = summaries(store, streamed, board, gather, &cached, &runs) else { return };
+        let summaries = summaries.to_bytes();
         // Without a memo the next campaign looks at every task, and gets the same result.
         let note = Note { files: files.clone(), factors: rows.factors().to_vec() };
         let note = serde_json::to_string(&note).unwrap_or_default();
-        let _ = store.keep_memo(key, &Memo { note, data, objects });
+        let objects = Box::new(runs.iter().filter_map(|&index| cached.object(board, gather, index)));
+        let _ = store.keep_memo(key, MemoDraft { note: &note, numbers: rows.words(), data: &summaries, objects });
     }
 }
 
 /// A memo is written anew when more than one row in `FEW` is new.
 const FEW: usize = 20;
 
-/// Objects and summaries of the runs at these indices among the inputs of a node that is done.
-fn objects(
+/// The cached runs of a gathering task, by their indices among its inputs.
+struct CachedAt<'a> {
+    cached: Option<&'a CachedRuns>,
+    runs: BTreeMap<usize, usize>,
+}
+
+impl<'a> CachedAt<'a> {
+    fn of(task: &'a Task) -> Self {
+        let cached = task.cached.as_deref();
+        let runs = cached.into_iter().flat_map(|cached| cached.runs.iter().map(|(index, ..)| *index).zip(0..));
+        Self { cached, runs: runs.collect() }
+    }
+
+    /// The summary of a cached run.
+    fn summary(&self, index: usize) -> Option<RunSummary<'a>> {
+        self.cached?.summaries.get(*self.runs.get(&index)?)
+    }
+
+    /// The object of any run.
+    fn object(&self, board: &Board, gather: NodeId, index: usize) -> Option<ObjectId> {
+        match (self.cached, self.runs.get(&index)) {
+            (Some(cached), Some(&run)) => {
+                let (_, _, key, content) = cached.runs[run];
+                Some(ObjectId { content, key })
+            }
+            _ => board.input(gather, index),
+        }
+    }
+}
+
+/// Summaries of the runs at these indices among the inputs of a node that is done; `None` when one is not to be had.
+fn summaries(
     store: &Store,
     streamed: &mut Streamed,
     board: &Board,
     gather: NodeId,
+    cached: &CachedAt<'_>,
     indices: &[usize],
-) -> Option<(Vec<ObjectId>, RunSummaries)> {
-    let task = board.task(gather);
-    let nothing = CachedRuns::default();
-    let cached = task.cached.as_deref().unwrap_or(&nothing);
-    let cached_at: BTreeMap<usize, usize> = cached.runs.iter().map(|(index, ..)| *index).zip(0..).collect();
-    let (contents, mut summaries) = (board.inputs(gather)?, RunSummaries::default());
-    let mut objects = Vec::with_capacity(indices.len());
-    for index in indices {
-        let content = contents[*index];
-        let key = match cached_at.get(index) {
-            Some(&run) => {
-                summaries.push(cached.summaries.get(run)?);
-                cached.runs[run].2
-            }
-            None => {
-                summaries.push(streamed.run(&content, store).ok()??);
-                board.input_key(gather, *index)?
-            }
-        };
-        objects.push(ObjectId { content, key });
+) -> Option<RunSummaries> {
+    let mut summaries = RunSummaries::with_room(indices.len());
+    for &index in indices {
+        let object = cached.object(board, gather, index)?;
+        match cached.summary(index) {
+            Some(summary) => summaries.push(summary),
+            None => summaries.push(streamed.run(&object.content, store).ok()??),
+        }
     }
-    Some((objects, summaries))
+    Some(summaries)
 }
 
 #[cfg(test)]

@@ -121,6 +121,8 @@ impl Order {
         stop: &AtomicBool,
     ) -> Result<Finished, Failure> {
         let (artifact, timing) = compute(&self.task, &self.inputs, share, say, stop)?;
+        // Of a gathering task they take as much room as the result, and so does the file that is made of it.
+        drop(self.inputs);
         let (record, artifact) = store.finish(claim, self.text, artifact, &timing).map_err(failure)?;
         let summary = streamed::summary(&artifact);
         Ok(Finished { content: record.content, shared: false, seconds: timing.seconds, summary })

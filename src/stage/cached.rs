@@ -32,8 +32,7 @@ pub struct CachedRuns {
 impl CachedRuns {
     /// An empty list with room for `count` runs.
     pub fn with_room(count: usize) -> Self {
-        let summaries = RunSummaries { runs: Vec::with_capacity(count), ..RunSummaries::default() };
-        Self { runs: Vec::with_capacity(count), summaries }
+        Self { runs: Vec::with_capacity(count), summaries: RunSummaries::with_room(count) }
     }
 
     /// Adds the run at an index among the inputs.
@@ -80,6 +79,11 @@ pub struct RunSummaries {
 }
 
 impl RunSummaries {
+    /// An empty list with room for `count` runs.
+    pub fn with_room(count: usize) -> Self {
+        Self { runs: Vec::with_capacity(count), ..Self::default() }
+    }
+
     /// Number of runs.
     pub fn len(&self) -> usize {
         self.runs.len()

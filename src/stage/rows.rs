@@ -180,6 +180,7 @@ fn gathered(job: &Job) -> Result<Artifact, Failure> {
     }
     let mut found = Gathered::default();
     each_outcome(job, cached.as_ref(), &mut |outcome| found.add(outcome, &params.units))?;
+    drop(cached);
     Ok(found.results(table).to_artifact())
 }
 

@@ -188,6 +188,26 @@ impl Disk {
         written.map_err(|error| self.fail("rename to", &self.path(folder, name), error))
     }
 
+    /// As [`Disk::replace`], for a file whose bytes come in parts.
+    pub(super) fn replace_in_parts(
+        &self,
+        folder: &str,
+        name: &str,
+        write: impl FnOnce(&mut Parts<'_>) -> std::io::Result<()>,
+    ) -> Result<(), StoreError> {
+        let path = self.path(folder, name);
+        let draft = self.draft(folder, 0o444)?;
+        let mut parts = Parts { file: &draft.file, block: Vec::new(), hash: blake3::Hasher::new(), length: 0 };
+        write(&mut parts).and_then(|()| parts.flush()).map_err(|error| self.fail("write", &path, error))?;
+        let mut back = blake3::Hasher::new();
+        let read = draft.folder.open(&draft.name, false).and_then(|file| back.update_reader(file).map(|_| ()));
+        read.map_err(|error| self.fail("read back", &path, error))?;
+        if back.finalize() != parts.hash.finalize() {
+            return Err(StoreError::Changed { path, bytes: parts.length });
+        }
+        draft.persist(name).map_err(|error| self.fail("rename to", &path, error))
+    }
+
     /// A new file under a temporary name; the user's umask decides who may read it.
     pub(super) fn draft(&self, folder: &str, mode: u32) -> Result<Draft, StoreError> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
@@ -266,6 +286,30 @@ fn holds(mut file: File, mut bytes: &[u8]) -> std::io::Result<bool> {
             Err(error) if error.kind() == ErrorKind::Interrupted => {}
             Err(error) => return Err(error),
         }
+    }
+}
+
+/// A file that is being written in parts.
+pub(super) struct Parts<'a> {
+    file: &'a File,
+    block: Vec<u8>,
+    hash: blake3::Hasher,
+    length: usize,
+}
+
+impl Parts<'_> {
+    /// Adds bytes.
+    pub(super) fn add(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.block.extend_from_slice(bytes);
+        if self.block.len() >= 1 << 16 { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        folder::write(self.file, &self.block)?;
+        self.hash.update(&self.block);
+        self.length += self.block.len();
+        self.block.clear();
+        Ok(())
     }
 }
 

@@ -103,7 +103,13 @@ fn written_memos() -> [Memo; 3] {
 
 /// Memos as the store writes them.
 pub fn memos() -> Vec<Vec<u8>> {
-    written_memos().iter().map(|one| memo::pack(&mark(), &KEY, one)).collect()
+    let packed = |one: &Memo| {
+        let mut bytes = Vec::new();
+        let mut out = |part: &[u8]| std::io::Write::write_all(&mut bytes, part);
+        memo::pack(&mark(), &KEY, one.into(), &mut out).unwrap_or_else(|error| panic!("BUG: no memory: {error}"));
+        bytes
+    };
+    written_memos().iter().map(packed).collect()
 }
 
 /// A memo is none, or one that was written; one with a checksum that anybody can make is none.

@@ -78,9 +78,14 @@ impl Mark {
 
     /// The mark of a memo, listing or campaign called `name`, so that none can replace another.
     pub(super) fn note(&self, name: &[u8], bytes: &[u8]) -> [u8; 32] {
+        *self.note_hasher(name).update(bytes).finalize().as_bytes()
+    }
+
+    /// What makes the mark of [`Mark::note`] from bytes that come in parts.
+    pub(super) fn note_hasher(&self, name: &[u8]) -> blake3::Hasher {
         let mut hash = blake3::Hasher::new_keyed(&self.note);
-        hash.update(&(name.len() as u64).to_le_bytes()).update(name).update(bytes);
-        *hash.finalize().as_bytes()
+        hash.update(&(name.len() as u64).to_le_bytes()).update(name);
+        hash
     }
 }
 

@@ -39,6 +39,25 @@ pub struct Memo {
     pub objects: Vec<ObjectId>,
 }
 
+/// A memo to be written: its bytes are never in memory as a whole, for there may be a million objects.
+pub struct MemoDraft<'a> {
+    /// A text in the caller's format.
+    pub note: &'a str,
+    /// Numbers in the caller's format; the data of the memo begins with them, little-endian.
+    pub numbers: &'a [u64],
+    /// The data after the numbers.
+    pub data: &'a [u8],
+    /// The objects that it names.
+    pub objects: Box<dyn Iterator<Item = ObjectId> + 'a>,
+}
+
+impl<'a> From<&'a Memo> for MemoDraft<'a> {
+    fn from(memo: &'a Memo) -> Self {
+        let objects = Box::new(memo.objects.iter().copied());
+        Self { note: &memo.note, numbers: &[], data: &memo.data, objects }
+    }
+}
+
 fn place(mark: &Mark, key: &Key) -> (String, String) {
     let name = format!("{key}-{}", mark.name());
     (format!("{FOLDER}/{}", &name[..2]), name)
@@ -59,9 +78,9 @@ pub(super) fn read(disk: &Disk, mark: &Mark, key: &Key) -> Result<Option<Memo>, 
     }
 }
 
-pub(super) fn write(disk: &Disk, mark: &Mark, key: &Key, memo: &Memo) -> Result<(), StoreError> {
+pub(super) fn write(disk: &Disk, mark: &Mark, key: &Key, memo: MemoDraft<'_>) -> Result<(), StoreError> {
     let (folder, name) = place(mark, key);
-    disk.replace(&folder, &name, &pack(mark, key, memo))
+    disk.replace_in_parts(&folder, &name, |file| pack(mark, key, memo, &mut |bytes| file.add(bytes)))
 }
 
 /// Whether a file below the folder of memos is one that flow wrote: by its folder, its name and its first bytes.
@@ -72,20 +91,32 @@ pub(super) fn is_ours(at: &folder::Folder, shard: &str, name: &str) -> bool {
     named && at.begins_with(name, HEAD)
 }
 
-pub(super) fn pack(mark: &Mark, key: &Key, memo: &Memo) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(56 + memo.note.len() + memo.data.len() + 64 * memo.objects.len());
-    bytes.extend_from_slice(MAGIC);
-    bytes.extend_from_slice(&(memo.note.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(&(memo.data.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(memo.note.as_bytes());
-    bytes.extend_from_slice(&memo.data);
-    for object in &memo.objects {
-        bytes.extend_from_slice(&object.content.0);
-        bytes.extend_from_slice(&object.key.0);
+/// Gives out the bytes of a memo in parts.
+pub(super) fn pack(
+    mark: &Mark,
+    key: &Key,
+    memo: MemoDraft<'_>,
+    out: &mut dyn FnMut(&[u8]) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let MemoDraft { note, numbers, data, objects } = memo;
+    let mut hash = mark.note_hasher(&key.0);
+    let mut add = |bytes: &[u8]| {
+        hash.update(bytes);
+        out(bytes)
+    };
+    add(MAGIC)?;
+    add(&(note.len() as u64).to_le_bytes())?;
+    add(&((8 * numbers.len() + data.len()) as u64).to_le_bytes())?;
+    add(note.as_bytes())?;
+    for number in numbers {
+        add(&number.to_le_bytes())?;
     }
-    let check = mark.note(&key.0, &bytes);
-    bytes.extend_from_slice(&check);
-    bytes
+    add(data)?;
+    for object in objects {
+        add(&object.content.0)?;
+        add(&object.key.0)?;
+    }
+    out(hash.finalize().as_bytes())
 }
 
 pub(super) fn unpack(mark: &Mark, key: &Key, bytes: &[u8]) -> Option<Memo> {
@@ -107,4 +138,36 @@ pub(super) fn unpack(mark: &Mark, key: &Key, bytes: &[u8]) -> Option<Memo> {
     let objects = pairs.iter().map(|[content, key]| ObjectId { content: ContentHash(*content), key: Key(*key) });
     let note = String::from_utf8(note.to_vec()).ok()?;
     Some(Memo { note, data: data.to_vec(), objects: objects.collect() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::Store;
+
+    /// The bytes of the table above, written in parts larger and smaller than a block, and what is read of them.
+    #[test]
+    fn a_memo_is_the_bytes_of_the_table_however_it_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let mark = Mark::of(&[1; 32]);
+        let store = Store::open_as(folder.path(), mark.clone()).unwrap();
+        let numbers: Vec<u64> = (0..20_000).map(|number| number << 33).collect();
+        let objects: Vec<_> = (0..3000_u32)
+            .map(|number| ObjectId { content: ContentHash([number as u8; 32]), key: Key([7; 32]) })
+            .collect();
+        let key = Key([9; 32]);
+        let each = Box::new(objects.iter().copied());
+        store.keep_memo(&key, MemoDraft { note: "σ", numbers: &numbers, data: &[1, 2, 3], objects: each }).unwrap();
+        let mut body = b"flowmem3".to_vec();
+        body.extend([2_u64, 160_003].iter().flat_map(|length| length.to_le_bytes()));
+        body.extend("σ".as_bytes());
+        body.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        body.extend([1, 2, 3]);
+        body.extend(objects.iter().flat_map(|object| [object.content.0, object.key.0].concat()));
+        let (shard, name) = place(&mark, &key);
+        let written = std::fs::read(folder.path().join(shard).join(name)).unwrap();
+        assert_eq!(written, [body.as_slice(), &mark.note(&key.0, &body)].concat());
+        let memo = store.memo(&key).unwrap().unwrap();
+        assert_eq!((memo.note.as_str(), memo.data.len(), memo.objects), ("σ", 160_003, objects));
+    }
 }

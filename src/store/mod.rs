@@ -63,10 +63,10 @@ pub use hdf5::Hdf5Error;
 pub use located::Located;
 pub use lock::{Guard, Holder, Waiting};
 pub use mark::{Mark, MarkFault};
-pub use memo::Memo;
+pub use memo::{Memo, MemoDraft};
 pub use object::ObjectId;
 pub use origin::Origin;
-pub use queue::{LookedAfter, Queue, ReportFile};
+pub use queue::{LookedAfter, MOST_NEWS, Queue, ReportFile};
 pub use record::{Record, Timing};
 pub use remote::{Address, Mirrored, Pulled, Pushed, RemoteError, Signing, Trust, mirror};
 pub use verify::Verdict;
@@ -184,8 +184,8 @@ impl Store {
     ///
     /// # Errors
     /// The store cannot be written.
-    pub fn keep_memo(&self, stage: &Key, memo: &Memo) -> Result<(), StoreError> {
-        memo::write(&self.disk, &self.mark, stage, memo)
+    pub fn keep_memo<'a>(&self, stage: &Key, memo: impl Into<MemoDraft<'a>>) -> Result<(), StoreError> {
+        memo::write(&self.disk, &self.mark, stage, memo.into())
     }
 
     /// Records a campaign and returns its number.

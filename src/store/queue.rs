@@ -20,7 +20,7 @@
 
 mod report;
 
-pub use report::ReportFile;
+pub use report::{MOST_NEWS, ReportFile};
 
 use super::disk::Disk;
 use super::folder::{self, Folder};

@@ -74,12 +74,16 @@ impl Server {
         log.lines().filter(|line| line.contains(" HTTP/1.1")).map(str::to_owned).collect()
     }
 
-    fn flow(&self, space: &Space, secret: &str, arguments: &[&str]) -> (bool, String) {
+    fn command(&self, space: &Space, secret: &str, arguments: &[&str]) -> Command {
         let mut command = space.command(arguments);
         command.env("AWS_ACCESS_KEY_ID", "KEY").env("AWS_SECRET_ACCESS_KEY", secret);
         command.env("AWS_ENDPOINT_URL", format!("http://127.0.0.1:{}", self.port));
         command.env_remove("AWS_PROFILE").env_remove("AWS_REGION").env("HOME", space.path("home"));
-        let output = command.output().unwrap();
+        command
+    }
+
+    fn flow(&self, space: &Space, secret: &str, arguments: &[&str]) -> (bool, String) {
+        let output = self.command(space, secret, arguments).output().unwrap();
         (output.status.success(), told(&output))
     }
 
@@ -202,4 +206,23 @@ fn walk(folder: &std::path::Path, found: &mut Vec<std::path::PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         if entry.path().is_dir() { walk(&entry.path(), found) } else { found.push(entry.path()) }
     }
+}
+
+/// A stack that no memory holds has the system refuse every thread, also to root.
+#[test]
+fn where_no_thread_can_be_started_objects_are_pushed_and_pulled_one_by_one() {
+    let space = Space::new();
+    let _ = campaign(&space);
+    let Some(server) = Server::moto(&space) else { return };
+    space.run(&["--store", "ours"]);
+    let starved = |arguments: &[&str]| {
+        let mut command = server.command(&space, "secret", arguments);
+        let output = command.env("RUST_MIN_STACK", "1000000000000000").output().unwrap();
+        assert!(output.status.success(), "{}", told(&output));
+        told(&output)
+    };
+    let pushed = starved(&["store", "push", "s3://lab/group", "--unsigned", "--store", "ours"]);
+    assert!(pushed.contains("42 results pushed, 0 were there"), "{pushed}");
+    let pulled = starved(&["store", "pull", "s3://lab/group", "--unsigned", "--store", "theirs"]);
+    assert!(pulled.contains("42 results pulled, 0 were here, 0 refused"), "{pulled}");
 }

@@ -79,7 +79,11 @@ impl Post {
                     words.push(format!("worker on {}: {fault}", worker.machine));
                     self.fault = Some(format!("worker on {}: {fault}", worker.machine));
                 }
+                // A worker ends when nothing runs, so what it has said of these was lost: its disk may have been full.
+                let begun = std::mem::take(&mut worker.begun);
                 self.gone(round, index);
+                let open = begun.into_iter().filter(|task| self.is_open(*task));
+                news.extend(open.map(|task| (task, News::Message(Message::Elsewhere { task }))));
                 return;
             }
             Message::Done { task, .. } | Message::Failed { task, .. } => {

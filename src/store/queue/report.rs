@@ -10,8 +10,8 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Bytes of a report that are read at once.
-const MOST_NEWS: u64 = 1 << 20;
+/// Bytes of a report that are read at once. A longer line is damage: workers write none.
+pub const MOST_NEWS: u64 = 1 << 20;
 /// The longest output of a job that is read for its last line, bytes.
 const MOST_LOG: u64 = 1 << 22;
 /// Room that a report has from the start, so that it can say that the disk is full.
@@ -67,7 +67,8 @@ impl Queue {
         Ok(names)
     }
 
-    /// The whole lines that a report has from byte `from` on, their length, and whether its worker holds its lock.
+    /// The whole lines that a report has from byte `from` on, their length, and whether its worker holds its lock. Bytes
+    /// that are too many for a line are taken for lines, so that what follows them is read.
     ///
     /// # Errors
     /// The store cannot be read.
@@ -82,7 +83,8 @@ impl Queue {
             file.seek(SeekFrom::Start(from))?;
             let mut bytes = Vec::new();
             file.take(MOST_NEWS).read_to_end(&mut bytes)?;
-            let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+            let none = if bytes.len() as u64 == MOST_NEWS { bytes.len() } else { 0 };
+            let whole = bytes.iter().rposition(|byte| *byte == b'\n').map_or(none, |last| last + 1);
             bytes.truncate(whole);
             Ok((String::from_utf8_lossy(&bytes).into_owned(), whole as u64, held))
         };

@@ -81,3 +81,31 @@ fn clocks_of_nodes_that_differ_by_hours_change_nothing() {
     let again = cluster.run(&[]);
     assert!(again.status.success() && cluster.computed().len() == 12, "{}", told(&again));
 }
+
+#[test]
+fn what_another_campaign_finishes_meanwhile_is_not_computed_again() {
+    let cluster = Cluster::new(2, "echo $a >>begun; while [ ! -e DIR/go ]; do sleep 0.02; done", "workers = 2");
+    let lines = std::fs::read_to_string(cluster.0.path("task.sh")).unwrap();
+    let root = cluster.0.path("").display().to_string();
+    cluster.0.write("task.sh", &lines.replace("DIR", &root).replace("begun", &format!("{root}/begun")));
+    let mut here = cluster.0.command(&["run", "w.toml", "--jobs", "2", "--quiet"]).spawn().unwrap();
+    let begun = || std::fs::read_to_string(cluster.0.path("begun")).is_ok_and(|text| text.lines().count() == 2);
+    cluster.until("the other campaign has begun both tasks", begun);
+    let far = cluster.start();
+    // Each worker finds that somebody else computes its task.
+    let elsewhere = || {
+        let reports = super::queue(&cluster.0).and_then(|queue| std::fs::read_dir(queue).ok());
+        let texts = reports.into_iter().flatten().filter_map(|entry| std::fs::read_to_string(entry.ok()?.path()).ok());
+        texts.map(|text| text.matches("\"elsewhere\"").count()).sum::<usize>() == 2
+    };
+    cluster.until("the workers have looked", elsewhere);
+    // The submitter reads reports twice a second at least.
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    cluster.0.write("go", "");
+    assert!(here.wait().unwrap().success());
+    let output = far.wait_with_output().unwrap();
+    let said = told(&output);
+    assert!(output.status.success(), "{said}");
+    assert_eq!(cluster.computed(), [1, 2], "{said}");
+    assert_eq!(cluster.calls("sbatch"), 1, "{said}");
+}
