@@ -144,7 +144,6 @@ fn cases() -> Vec<Case> {
         Case::new(name, "E I of the rows, Seewald", expected, found, Near::Relative(0.01))
     });
     let [few, many] = [20, 40].map(|rows| Lattice::new(rows).opening());
-    for v in [few, many] {}
     let limit = |k: usize| 2.0 * many[k] - few[k];
     let name = "2D: opening of the notch over σ a/E";
     plain.into_iter().chain([Case::new(name, "Tada", limit(0), limit(1), Near::Relative(0.02))]).collect()
