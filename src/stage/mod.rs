@@ -12,7 +12,8 @@
 //!   When all are done, `next` is called again and sees their outcomes in [`Known`]; a killed run resumes by replay.
 //!
 //! A [`Task`] holds everything that decides its result and nothing else. Its `work` names a function in
-//! [`work`]; raise that function's version when its results change, with a line that says what changed.
+//! [`work`]; raise that function's version when its results change, with a line that says what changed (for one kind of
+//! loading test alone, its revision in [`simulate`]).
 //!
 //! # Artifacts that several kinds exchange
 //! * `results`: a table `runs` with one row per run: factors (in their units), `replicate`, responses (in the units of

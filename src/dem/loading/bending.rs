@@ -91,15 +91,15 @@ fn restored<S: Space>(now: &[Vector<S>], remaining: &[usize], start: &[Vector<S>
 }
 
 /// A beam that is bent.
-struct Bent<S: Space> {
+struct Bent {
     beam: Beam,
     marks: Marks,
     /// What the marks read at the start (m).
     start: [f64; 2],
-    rollers: Rollers<S>,
+    rollers: Rollers,
 }
 
-impl<S: Space> Bench<S> for Bent<S> {
+impl<S: Space> Bench<S> for Bent {
     fn follow(&mut self, engine: &mut Engine<S>) {
         self.rollers.follow(engine);
     }

@@ -9,23 +9,20 @@ use super::material::PLATEN;
 use super::piece::Piece;
 use crate::space::Tuple;
 use crate::{Engine, Faults, Other, Particle, Space, Spin, Vector};
-use std::marker::PhantomData;
 
 /// Radius of a roller over the height of the beam.
 const RADIUS: f64 = 0.1;
 
 /// The rollers: two supports and the one that loads.
-pub(super) struct Rollers<S: Space> {
+pub(super) struct Rollers {
     seats: [Seat; 3],
     /// Number of balls of the beam: the rollers come after them.
     balls: usize,
     /// Time when they last followed (s).
     followed: f64,
-    space: PhantomData<S>,
 }
 
 /// Where a roller touches the beam.
-#[derive(Clone, Copy)]
 struct Seat {
     /// The ball that it touches, unless there is none.
     ball: Option<usize>,
@@ -33,11 +30,11 @@ struct Seat {
     place: [f64; 2],
 }
 
-impl<S: Space> Rollers<S> {
+impl Rollers {
     /// Rollers that touch the beam near three places along x, each from below (−1) or above (1); the third is the one that loads.
-    pub(super) fn under(piece: &Piece<S>, places: [(f64, f64); 3]) -> Self {
+    pub(super) fn under<S: Space>(piece: &Piece<S>, places: [(f64, f64); 3]) -> Self {
         let seats = places.map(|(x, side)| seat(piece, x, side));
-        Self { seats, balls: piece.radii.len(), followed: 0.0, space: PhantomData }
+        Self { seats, balls: piece.radii.len(), followed: 0.0 }
     }
 
     /// Where the supports stand along x (m).
@@ -46,7 +43,7 @@ impl<S: Space> Rollers<S> {
     }
 
     /// Their bodies.
-    pub(super) fn bodies(&self, piece: &Piece<S>) -> Vec<Particle<S>> {
+    pub(super) fn bodies<S: Space>(&self, piece: &Piece<S>) -> Vec<Particle<S>> {
         let radius = RADIUS * piece.outline.height();
         let body = |seat: &Seat| {
             let position = Vector::<S>::build(|k| seat.place.get(k).copied().unwrap_or(0.0));
@@ -59,7 +56,7 @@ impl<S: Space> Rollers<S> {
     ///
     /// # Errors
     /// A speed that is not finite.
-    pub(super) fn start(&mut self, engine: &mut Engine<S>, speed: f64) -> Result<(), Faults> {
+    pub(super) fn start<S: Space>(&mut self, engine: &mut Engine<S>, speed: f64) -> Result<(), Faults> {
         for (k, down) in [0.0, 0.0, speed].into_iter().enumerate() {
             let velocity = Vector::<S>::build(|axis| if axis == 1 { -down } else { 0.0 });
             engine.set_motion(self.balls + k, velocity, Spin::<S>::zero())?;
@@ -70,18 +67,17 @@ impl<S: Space> Rollers<S> {
 
     /// Sends each roller along x to where its ball is now, within the time since this was done last: it lags by that time. A ball
     /// that has left its roller by more than its radius is no longer followed.
-    pub(super) fn follow(&mut self, engine: &mut Engine<S>) {
+    pub(super) fn follow<S: Space>(&mut self, engine: &mut Engine<S>) {
         let since = engine.time() - self.followed;
         if since <= 0.0 {
             return;
         }
         self.followed = engine.time();
-        for (k, seat) in self.seats.into_iter().enumerate() {
-            let roller = self.balls + k;
-            let off = seat.ball.map_or(0.0, |ball| engine.position(ball).at(0) - engine.position(roller).at(0));
-            let left = seat.ball.is_none_or(|ball| off.abs() > engine.radius(ball));
+        for (k, seat) in self.seats.iter().enumerate() {
+            let (Some(ball), roller) = (seat.ball, self.balls + k) else { continue };
+            let off = engine.position(ball).at(0) - engine.position(roller).at(0);
+            let along = if off.abs() > engine.radius(ball) { 0.0 } else { off / since };
             let now = engine.velocity(roller);
-            let along = if left { 0.0 } else { off / since };
             let velocity = Vector::<S>::build(|axis| if axis == 0 { along } else { now.at(axis) });
             // Numbers that are not finite end the run by themselves.
             let _ = engine.set_motion(roller, velocity, Spin::<S>::zero());
@@ -89,7 +85,7 @@ impl<S: Space> Rollers<S> {
     }
 
     /// Forces of the beam on them along y (N per metre of thickness), downwards positive.
-    pub(super) fn forces(&self, engine: &Engine<S>) -> [f64; 3] {
+    pub(super) fn forces<S: Space>(&self, engine: &Engine<S>) -> [f64; 3] {
         let mut forces = [0.0; 3];
         for contact in engine.contacts().filter(|contact| contact.active) {
             let Other::Particle(other) = contact.other else { continue };

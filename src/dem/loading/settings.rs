@@ -46,17 +46,6 @@ pub struct Particulars {
     /// Bending: the notch, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub notch: Option<Notch>,
-    /// Bending: how the rollers stand. It is part of what a result is kept under, for once they stayed where they were.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rollers: Option<Standing>,
-}
-
-/// How the rollers of a bending test stand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Standing {
-    /// Straight under the ball that each touches, along x with it.
-    WithTheBeam,
 }
 
 /// A notch at the middle of the tension side of a beam.
@@ -235,7 +224,7 @@ impl Loading {
     }
 
     fn particular_faults(&self) -> Vec<(&'static str, Amount, bool, &'static str)> {
-        let Particulars { jaw_angle, confinement, span, notch, rollers: _ } = self.particulars;
+        let Particulars { jaw_angle, confinement, span, notch } = self.particulars;
         let confined = matches!(self.kind, TestKind::Biaxial | TestKind::Triaxial);
         let (disc, beam) = (self.kind == TestKind::Brazilian, self.kind == TestKind::Bending);
         let mut rules = Vec::new();

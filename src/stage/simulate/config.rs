@@ -171,6 +171,23 @@ pub(super) struct Params {
     /// joints and with fissures.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(super) joints: bool,
+    /// [`revision`] of the kind of test, so that its results are kept apart from earlier ones.
+    #[serde(default, skip_serializing_if = "is_first")]
+    revision: u32,
+}
+
+fn is_first(revision: &u32) -> bool {
+    *revision == 0
+}
+
+/// Raised when the results of one kind of test change and those of the others do not: where all change, the version of the work
+/// function is raised instead.
+fn revision(test: TestKind) -> u32 {
+    match test {
+        // 1: the rollers go with the beam; on the flank of a ball they pushed it along.
+        TestKind::Bending => 1,
+        _ => 0,
+    }
 }
 
 /// Whether some contacts are flat joints.
@@ -181,7 +198,8 @@ fn flat(material: &Material) -> bool {
 impl Params {
     pub(super) fn new(material: Material, test: Loading) -> Self {
         let joints = flat(&material) || !material.fissures.is_empty();
-        Self { material, test, joints }
+        let revision = revision(test.kind);
+        Self { material, test, joints, revision }
     }
 
     /// Whether the record names the interfaces of its cracks.

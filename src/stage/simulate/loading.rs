@@ -4,7 +4,7 @@ use super::super::Complaint;
 use super::Simulate;
 use dem::loading::kind::TestKind;
 use dem::loading::rig::{Machine, Platens};
-use dem::loading::settings::{Loading, Particulars, Rule, Standing};
+use dem::loading::settings::{Loading, Particulars, Rule};
 use dem::loading::speed::{Speed, Threshold};
 use math::text::Amount;
 
@@ -28,7 +28,6 @@ impl Simulate {
                 confinement: self.confinement.map(|stress| stress.get()),
                 span: self.span.map(|span| span.get()),
                 notch: self.notch,
-                rollers: (self.test == TestKind::Bending).then_some(Standing::WithTheBeam),
             },
             machine: Machine { damping: self.damping, masses: self.masses, ..Machine::default() },
             rule: Rule {

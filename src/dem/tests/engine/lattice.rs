@@ -89,7 +89,17 @@ pub(crate) fn lattices() -> Vec<Lattice> {
     vec![hexagon(), square, cubic, body, face]
 }
 
-fn hexagon() -> Lattice {
+/// E and ν in the plane by C₁₁ and C₁₂.
+pub(crate) fn of_sheet(c11: f64, c12: f64) -> [f64; 2] {
+    [c11 - c12 * c12 / c11, c12 / c11]
+}
+
+/// E and ν along an edge of a cube by C₁₁ and C₁₂.
+pub(crate) fn along_edge(c11: f64, c12: f64) -> [f64; 2] {
+    [c11 - 2.0 * c12 * c12 / (c11 + c12), c12 / (c11 + c12)]
+}
+
+pub(crate) fn hexagon() -> Lattice {
     let r3 = 3.0_f64.sqrt();
     let c = r3 / 4.0;
     Lattice {
@@ -157,10 +167,7 @@ fn elastic<S: Space>(lattice: &Lattice, cases: &mut Vec<Case>) {
     let pulled = strained([[1e-6, 0.0, 0.0], [0.0; 3], [0.0; 3]]);
     let sheared = strained([[0.0, 5e-7, 0.0], [5e-7, 0.0, 0.0], [0.0; 3]]);
     let [c11, c12, g] = lattice.constants;
-    let modulus = |c11: f64, c12: f64| match S::DIMENSION {
-        2 => [c11 - c12 * c12 / c11, c12 / c11],
-        _ => [c11 - 2.0 * c12 * c12 / (c11 + c12), c12 / (c11 + c12)],
-    };
+    let modulus = if S::DIMENSION == 2 { of_sheet } else { along_edge };
     let got = [pulled[0][0], pulled[1][1], sheared[0][1]];
     let [wanted, found] = [modulus(c11, c12), modulus(got[0], got[1])];
     let rows = [

@@ -18,6 +18,7 @@
 
 use crate::block::{GRAIN, model};
 use crate::case::{Case, Family, Near};
+use crate::lattice::of_sheet;
 use dem::*;
 use math::random::Stream;
 use std::sync::LazyLock;
@@ -129,7 +130,8 @@ fn moduli(packed: &Packed, bond: Bond, kappa: f64, gap: f64) -> [f64; 3] {
     };
     let [x, y] = [stiffness(0), stiffness(1)];
     let [c11, c12] = [0.5 * (x[0] + y[0]), 0.5 * (x[1] + y[1])];
-    [(c11 - c12 * c12 / c11) / MODULUS, c12 / c11, bonds as f64 / packed.discs.len() as f64]
+    let [young, poisson] = of_sheet(c11, c12);
+    [young / MODULUS, poisson, bonds as f64 / packed.discs.len() as f64]
 }
 
 pub(crate) fn family() -> Family {

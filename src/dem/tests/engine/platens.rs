@@ -7,7 +7,7 @@
 
 use crate::block::{GRAIN, PLATEN};
 use crate::case::{Case, Family, Near};
-use crate::lattice::{KN, KS, Lattice, lattices};
+use crate::lattice::{KN, KS, Lattice, along_edge, lattices};
 use dem::*;
 use std::sync::LazyLock;
 
@@ -38,14 +38,14 @@ fn cases() -> Vec<Case> {
 
 fn rows(lattice: &Lattice) -> [Case; 2] {
     let [c11, c12, _] = lattice.constants;
-    let [young, poisson] = [c11 - 2.0 * c12 * c12 / (c11 + c12), c12 / (c11 + c12)];
+    let [young, poisson] = along_edge(c11, c12);
     let [stress, strain] = squeezed(lattice);
     // Two equations in two unknowns, [ε_y 2ε_x; ε_x ε_x + ε_y] [C₁₁; C₁₂] = [σ_y; σ_x].
     let [[a, b], [c, d]] = [[strain[1], 2.0 * strain[0]], [strain[0], strain[0] + strain[1]]];
     let determinant = a * d - b * c;
     let found11 = (d * stress[1] - b * stress[0]) / determinant;
     let found12 = (a * stress[0] - c * stress[1]) / determinant;
-    let [e, nu] = [found11 - 2.0 * found12 * found12 / (found11 + found12), found12 / (found11 + found12)];
+    let [e, nu] = along_edge(found11, found12);
     let near = if poisson == 0.0 { Near::Absolute(1e-3) } else { Near::Relative(5e-3) };
     [
         Case::new(format!("{}: E, Pa", lattice.name), "affine, exact", young, e, Near::Relative(5e-3)),
