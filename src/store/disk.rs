@@ -184,8 +184,7 @@ impl Disk {
 
     /// As [`Disk::write_new`], but replaces an older file: for memos and listings, which can be made anew, never for objects.
     pub(super) fn replace(&self, folder: &str, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
-        let written = self.written(folder, name, bytes, false)?.persist(name);
-        written.map_err(|error| self.fail("rename to", &self.path(folder, name), error))
+        self.replace_in_parts(folder, name, |parts| parts.add(bytes))
     }
 
     /// As [`Disk::replace`], for a file whose bytes come in parts.
@@ -289,6 +288,9 @@ fn holds(mut file: File, mut bytes: &[u8]) -> std::io::Result<bool> {
     }
 }
 
+/// Bytes that are gathered before they are written.
+const BLOCK: usize = 1 << 16;
+
 /// A file that is being written in parts.
 pub(super) struct Parts<'a> {
     file: &'a File,
@@ -300,15 +302,31 @@ pub(super) struct Parts<'a> {
 impl Parts<'_> {
     /// Adds bytes.
     pub(super) fn add(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        if self.block.len() + bytes.len() > BLOCK {
+            self.flush()?;
+        }
+        if bytes.len() > BLOCK {
+            return self.put(bytes);
+        }
         self.block.extend_from_slice(bytes);
-        if self.block.len() >= 1 << 16 { self.flush() } else { Ok(()) }
+        Ok(())
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
-        folder::write(self.file, &self.block)?;
-        self.hash.update(&self.block);
-        self.length += self.block.len();
-        self.block.clear();
+        if self.block.is_empty() {
+            return Ok(());
+        }
+        let mut block = std::mem::take(&mut self.block);
+        self.put(&block)?;
+        block.clear();
+        self.block = block;
+        Ok(())
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        folder::write(self.file, bytes)?;
+        self.hash.update(bytes);
+        self.length += bytes.len();
         Ok(())
     }
 }
